@@ -1,31 +1,31 @@
-# Every target sets up what it needs (scripts/setup) and is quick the second time.
+# Every target installs what it needs (scripts/setup); a second run is quick.
 MAKEFLAGS += --no-print-directory
 ELF := target/avr-atmega328p/release/lizard.elf
-# Cargo puts what it builds for the host under the host's name.
+# Cargo puts builds for the host into a folder with the host's name.
 HOST := crates/target/$$(rustc --print host-tuple)
 LIZARD := crates/target/release/lizard
 -include target/toolchain.mk
 
-# Another robot than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT
-# tells the firmware's build script and the tests.
+# A robot other than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT
+# passes the path to the firmware's build script and to the tests.
 ROBOT ?= $(LIZARD_ROBOT)
 ifneq ($(ROBOT),)
 ifeq ($(wildcard $(ROBOT)),)
-$(error There is no robot at ROBOT=$(ROBOT); give a file like robots/paper.toml)
+$(error ROBOT=$(ROBOT) does not exist; give a file such as robots/paper.toml)
 endif
 export LIZARD_ROBOT := $(abspath $(ROBOT))
 FOR_ROBOT := --robot $(LIZARD_ROBOT)
 endif
 
-# All packages but the Python module's, whose dependencies would give those of the others more features, so that
-# every one of them would be compiled twice; and but the page's build tool, which only the page needs.
+# All packages except the Python module and the page's build tool. The module's dependencies would enable more features
+# in the other packages' dependencies, so all of them would be compiled twice. Only the page needs the build tool.
 ALL := --workspace --exclude lizard-python --exclude lizard-bindgen
 
-# Cargo can use make's jobserver only in a rule that calls make, and warns in others.
+# Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.
 CARGO := MAKEFLAGS= cargo
 
-# Set-up decides which compiler is used, so it runs before anything else and
-# calls a make that has read its answer.
+# scripts/setup chooses the compiler, so it runs first; then a new make reads
+# the choice from target/toolchain.mk.
 define prepared
 	@scripts/setup
 	@$(MAKE) $(1)
@@ -33,89 +33,89 @@ endef
 
 .PHONY: help fit measure-test parts-test sim test firmware sweep flash flash-test web web-test lint cli bench prove physics mutants other-robots explore fuzz package code-image docs docs-check install release release-test parallel-test plain-test arduino-test python-test addresses-test desks clean trouble .fit .measure-test .parts-test .firmware .sweep .gaits .flash .flash-test .lint .cli .simulator .sim .web .web-test .tests .workspace .walks .test .bench .prove .physics .mutants .other-robots .explore .fuzz .package .code-image .docs .docs-check .install .release .release-test .parallel-test .plain-test .arduino-test .python-test .addresses-test .desks .trouble
 
-help: ## this list
+help: ## print this list
 	@grep -E '^[a-z-]+:.*## ' Makefile | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 15
-	@echo "firmware, sim, test, bench, prove, fit, trouble and flash take ROBOT=robots/x.toml; without it, robot.toml"
+	@echo "firmware, sim, test, bench, prove, fit, trouble and flash take ROBOT=robots/x.toml; the default is robot.toml"
 
-sim: ## the firmware walks on a simulated UNO; a table and a picture of its gait
+sim: ## run the firmware's walk on a simulated UNO; print a table and a drawing of its gait
 	$(call prepared,.sim)
-test: ## every test, on the host and on the simulated UNO
+test: ## run every test, on the host and on the simulated UNO
 	$(call prepared,.test)
-sweep: ## the example of crates/pulses/, eight servos beside serial traffic, as an .elf for the UNO
+sweep: ## build the example of crates/pulses/, eight servos during serial traffic, as an .elf for the UNO
 	$(call prepared,.sweep)
 firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and every gait's margins
 	$(call prepared,.gaits)
-flash: ## build, write to a UNO on USB, open its console (ravedude)
+flash: ## build the firmware, write it to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
-flash-test: ## `make flash` and `lizard flash`, and their errors, with a simulated board
+flash-test: ## test `make flash` and `lizard flash`, and their errors, with a simulated board
 	$(call prepared,.flash-test)
-web: ## the robot in the browser: a folder for any web server, web/dist
+web: ## build the page with the robot in the browser: web/dist, a folder for any web server
 	$(call prepared,.web)
-web-test: ## test the page in a real browser: walk, turn, refuse, calibrate, flash
+web-test: ## test the page in a real browser: walking, turning, refusals, calibration, flashing
 	$(call prepared,.web-test)
-lint: ## rustfmt, clippy and cargo doc, warnings are errors
+lint: ## run rustfmt, clippy and cargo doc; warnings are errors
 	$(call prepared,.lint)
-measure-test: ## films of a robot whose path is known, and keys of robots that were changed; FILMS=200 SEED=1
+measure-test: ## test measurements with videos of known paths, and the identification of changed keys; VIDEOS=200 SEED=1
 	$(call prepared,.measure-test)
 parts-test: ## check the files of `lizard parts` and `lizard model` with ezdxf, FreeCAD, PrusaSlicer, urdfdom and others; ONLY=grain+large
 	$(call prepared,.parts-test)
 cli: ## build the host program, crates/target/release/lizard
 	$(call prepared,.cli)
-bench: ## measured budgets, beside the Arduino Servo library's; poses solved per second
+bench: ## measure the budgets, compared with the Arduino Servo library; poses solved per second
 	$(call prepared,.bench)
-fit: ## proof that no two parts meet at any pose that the guard accepts
+fit: ## prove that no two parts collide in any pose that the guard accepts
 	$(call prepared,.fit)
-prove: ## compare the guard with floating point at every pose; a minute or two
+prove: ## compare the guard with floating point for every pose; takes a minute or two
 	$(call prepared,.prove)
-physics: ## every gait by the contact model and the engine MuJoCo; WRITE=1 stores the figures, ONE_IN=10 takes every tenth
+physics: ## compare the contact model with the engine MuJoCo for every gait; WRITE=1 stores the values, ONE_IN=10 takes every tenth
 	$(call prepared,.physics)
-mutants: ## make mistakes on purpose, report those that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: fresh ones, with the rate
+mutants: ## mutation tests: report deliberate mistakes that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mistakes, with the rate
 	$(call prepared,.mutants)
-other-robots: ## every test of the image on the files of robots/ and on random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
+other-robots: ## run every test of the image with the robots in robots/ and with random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
 	$(call prepared,.other-robots)
-trouble: ## stalls, resets, dips of the supply and drives by radio at random moments; SEED=1, COUNT=10000, ONLY=number
+trouble: ## fault injection: stalls, resets, supply dips and drives by radio at random times; SEED=1, COUNT=10000, ONLY=number
 	$(call prepared,.trouble)
-explore: ## a model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
+explore: ## run the model checker: commands, resets, stalls and weak supplies in any order; STATES=10000000
 	$(call prepared,.explore)
-fuzz: ## search harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
+fuzz: ## search for harmful bytes with libFuzzer; TARGET=console or memory, MINUTES=1
 	$(call prepared,.fuzz)
 package: ## package the stand-alone crates as for a registry, and build each from its package
 	$(call prepared,.package)
-code-image: ## write firmware/code.hex: the firmware's code, which the program and the page have inside
+code-image: ## write firmware/code.hex: the firmware's code, which the program and the page contain
 	$(call prepared,.code-image)
-docs: ## write the generated pages and pictures; build the book of docs/ in out/book
+docs: ## write the generated pages and drawings; build the book from docs/ in out/book
 	$(call prepared,.docs)
-install: ## the program, its manual pages and completions, into PREFIX=~/.local
+install: ## install the program, its manual pages and completions into PREFIX=~/.local
 	$(call prepared,.install)
-docs-check: ## check that the figures in the book that take long to compute are current
+docs-check: ## check that the book's values with a long computation are current
 	$(call prepared,.docs-check)
 release: ## build all files of a release from the current commit, in dist/; takes a while
 	$(call prepared,.release)
-release-test: ## build a release twice, in different folders; compare the bytes, and try each file
+release-test: ## build a release twice, in different folders; compare the bytes, and test each file
 	$(call prepared,.release-test)
-parallel-test: ## long computations in parts by GNU parallel, merged, compared with one process
+parallel-test: ## split long computations with GNU parallel, merge the parts, compare with one process
 	$(call prepared,.parallel-test)
-plain-test: ## the image's tests and the recorded pulses, linked by avr-gcc alone
+plain-test: ## run the image's tests and the recorded pulses, linked by avr-gcc alone
 	$(call prepared,.plain-test)
-arduino-test: ## the C++ library of arduino/ as the Arduino IDE compiles it, beside the Rust engine; SERVO=folder of the Servo library
+arduino-test: ## compare the C++ library in arduino/, compiled like in the Arduino IDE, with the Rust engine; SERVO=folder of the Servo library
 	$(call prepared,.arduino-test)
 python-test: ## build the Python package's wheel, install it in target/python, test it there
 	$(call prepared,.python-test)
-addresses-test: ## the project's addresses of crates/Cargo.toml, set in a copy, are in the program, a package, the page and the book
+addresses-test: ## check that the addresses in crates/Cargo.toml, set in a copy, appear in the program, a package, the page and the book
 	$(call prepared,.addresses-test)
-desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare what it writes; compile it for macOS
+desks: ## build `lizard` for Linux on ARM and for Windows, run it, compare its output; compile it for macOS
 	$(call prepared,.desks)
 clean: ## remove everything that was built
 	rm -rf target crates/target out dist tools/judge/node_modules web/node_modules web/tests/node_modules web/node/node_modules web/dist web/public web/generated
 
-# RUSTC_BOOTSTRAP opens the AVR parts of a stable compiler, for this build alone. The .hex is
-# replaced in one step, since in .ci/run another target may read it at that moment.
+# RUSTC_BOOTSTRAP enables the AVR features of a stable compiler, only for this build. The .hex is replaced atomically,
+# because in .ci/run another target may read it at the same time.
 .firmware:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release
 	@new=$(ELF).$$$$; avr-objcopy -O ihex -R .eeprom $(ELF) $$new && mv $$new $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
-# The example of crates/pulses/: servos and serial line without a lizard.
+# The example of crates/pulses/: servos and a serial line without a lizard.
 .sweep:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --example sweep --quiet
 
@@ -123,27 +123,27 @@ clean: ## remove everything that was built
 	@echo
 	@cat $(dir $(ELF))gaits.txt
 
-# The port is checked first, so that without a board nobody waits for a build.
+# The port is checked first, so that a missing board is reported before the build.
 .flash:
 	@scripts/flash --check
 	@$(MAKE) .firmware
 	@scripts/setup-flash
 	@scripts/flash
 
-# The README's `make flash`, and `lizard flash`, played on a simulated board behind a pseudo
-# terminal: in real time, and so one after another.
+# The README's `make flash`, and `lizard flash`, with a simulated board on a pseudo terminal. The tests run in real time
+# and therefore one after another.
 .flash-test: .firmware
 	@scripts/setup-flash
 	@scripts/setup-flash-test
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
-	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test $(ALL) --features lizard-host-tests/flash --test flash --test flash_troubles --test lizard_flash --quiet -- --test-threads=1
+	@cd crates && LIZARD=$(CURDIR)/$(HOST)/debug/lizard cargo test $(ALL) --features lizard-host-tests/flash --test flash --test flash_errors --test lizard_flash --quiet -- --test-threads=1
 
 .web:
 	@scripts/setup-web
 	@scripts/build-web
 
-# The firmware is needed because a test compares its section for robot.toml with the page's.
-# ONLY=measure+slow narrows it down to files, one after the other; EXCEPT=measure+slow leaves them out.
+# A test compares the firmware's section for robot.toml with the page's. ONLY=measure+slow runs only these files, one
+# after another; EXCEPT=measure+slow leaves these files out.
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
@@ -152,48 +152,47 @@ clean: ## remove everything that was built
 	@cd crates && cargo build $(ALL) --bin lizard --quiet && cargo build -p lizard-studio --quiet
 	@LIZARD=$(HOST)/debug/lizard $$(cat target/web-node) --test --test-concurrency=$(if $(ONLY),1,2) --test-timeout=900000 $(or $(patsubst %,web/tests/%.test.js,$(subst +, ,$(ONLY))),$(filter-out $(patsubst %,web/tests/%.test.js,$(subst +, ,$(EXCEPT))),$(wildcard web/tests/*.test.js)))
 
-# The second line puts the program at the path that the documentation names.
+# The last line puts the program at the path that the documentation names.
 .cli:
 	@cd crates && cargo build --release
 	@mkdir -p $(dir $(LIZARD))
 	@ln -f $(HOST)/release/lizard $(LIZARD)
 
-# The parts of the host program that a simulation needs, in a profile that compiles fast.
+# The parts of the host program for a simulation, in a profile that compiles fast.
 .simulator:
 	@cd crates && $(CARGO) build --profile sim --no-default-features --features simulator
 
-# Both builds at once: each has phases that keep only one core busy.
+# Both builds run in parallel, because each has phases that use only one core.
 .sim:
 	@$(MAKE) -j2 .firmware .simulator
 	@$(HOST)/sim/lizard sim --elf $(ELF) $(FOR_ROBOT)
 
-# The tested packages: TESTS="-p lizard-host-tests" has those that run the image.
+# The tested packages. TESTS="-p lizard-host-tests" selects the tests that run the image.
 TESTS ?= $(ALL)
 
-# The tests, compiled beside the firmware: each has phases that keep one core busy.
+# The tests are compiled in parallel with the firmware, because each build has phases that use only one core.
 .tests:
 	@cd crates && $(CARGO) test $(TESTS) --no-run --quiet
 
-# The random inputs are the same in every run; PROPTEST_RNG_SEED=2 make test uses others. An
-# input that fails a test is written to a folder proptest-regressions, is tried first from then on,
-# and should be committed.
+# The random inputs are the same in every run; PROPTEST_RNG_SEED=2 make test uses others. An input that fails a test is
+# written to a folder proptest-regressions, is tried first in later runs, and should be committed.
 .workspace:
 	@cd crates && PROPTEST_RNG_SEED=$${PROPTEST_RNG_SEED:-1} $(CARGO) test $(TESTS) --no-fail-fast --quiet
 
-# Runs beside the tests above, many of which wait; its output is shown at the end.
+# Runs in parallel with the tests above, many of which wait; its output is shown at the end.
 WALKS := target/walks.log
 .walks:
 	@mkdir -p $(dir $(WALKS))
 	@MAKEFLAGS= scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) walks > $(WALKS) 2>&1
 
-# If the judge cannot be set up, its tests fail with that reason, and the others run.
+# If the judge cannot be set up, its tests fail with the reason, and the other tests run.
 .test:
 	@scripts/setup-judge || true
 	@$(MAKE) -j2 .firmware .tests
 	@$(MAKE) .sweep
 	$(if $(ROBOT),@$(MAKE) .workspace,@$(MAKE) -j2 -k .workspace .walks; result=$$?; cat $(WALKS); exit $$result)
 
-# FreeCAD and PrusaSlicer are large, so only this target installs them.
+# Only this target installs FreeCAD and PrusaSlicer, which are large.
 .parts-test:
 	@scripts/setup-parts
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
@@ -212,11 +211,11 @@ WALKS := target/walks.log
 .fit: .cli
 	@$(LIZARD) fit $(FOR_ROBOT)
 
-# Apart from the other tests, because hundreds of films take minutes.
+# Separate from the other tests, because hundreds of videos take minutes.
 .measure-test:
-	@cd crates && FILMS=$(or $(FILMS),200) SEED=$(or $(SEED),1) $(CARGO) test -p lizard-film --test film -p lizard-identify --test robots --quiet -- --ignored --nocapture
+	@cd crates && VIDEOS=$(or $(VIDEOS),200) SEED=$(or $(SEED),1) $(CARGO) test -p lizard-video --test video -p lizard-identify --test robots --quiet -- --ignored --nocapture
 
-# Apart from the other tests, because only this target installs MuJoCo.
+# Separate from the other tests, because only this target installs MuJoCo.
 .physics: .firmware
 	@scripts/setup-physics
 	@cd crates && cargo build $(ALL) --bin lizard --bin lizard-physics --quiet
@@ -224,14 +223,14 @@ WALKS := target/walks.log
 	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
 	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
-# ONLY=serial.rs narrows it down.
+# ONLY=serial.rs selects the mistakes in this file.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
 
 .other-robots: .firmware
 	@scripts/other-robots $(or $(SEED),1) $(or $(COUNT),10) all $(EXCEPT)
 
-# ONLY=4711 repeats one scenario of the seed and prints its dialogue.
+# ONLY=4711 repeats one scenario of the seed and prints its events.
 .trouble: .firmware
 	@cd crates && SEED=$(SEED) COUNT=$(COUNT) ONLY=$(ONLY) $(CARGO) run -p lizard-host-tests --bin trouble --quiet
 
@@ -257,21 +256,22 @@ WALKS := target/walks.log
 	@mkdocs build --strict --quiet
 	@echo "the book: out/book/index.html"
 
-# Tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
+# Runs tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
 .docs-check:
 	@cd crates && $(CARGO) test $(ALL) --quiet --test robot -- docs:: --ignored
 
-# Uncommitted changes are packaged, too, so that they can be tried before a commit.
+# Also packages uncommitted changes, so that they can be tested before a commit.
 .package:
 	@rm -f crates/target/package/*.crate
-# Cargo unpacks a package that another needs once per path and version, and compiles it once: an older text of it would stay.
+# Cargo unpacks and compiles a dependency only once per path and version, so an older version of its source would
+# remain.
 	@rm -rf "$${CARGO_HOME:-$$HOME/.cargo}"/registry/src/-*/lizard-*
 	@for list in $$(grep -ls 'registry/src/-' crates/target/*/debug/deps/lizard_*.d); do rm "$${list%/*}"/*"$$(basename "$$list" .d)"*; done
 	@cd crates && cargo package --allow-dirty --quiet -p simulated-uno -p servo-pulses -p lizard-kinematics -p lizard-avr -p lizard-core
 	@scripts/try-packages
 	@cd crates && for package in target/package/*.crate; do echo "$$package"; done
 
-# The code is the same for every robot: see firmware/README.md.
+# The code is the same for every robot; see firmware/README.md.
 .code-image: .firmware
 	@scripts/code-image
 
@@ -289,12 +289,12 @@ PREFIX ?= $(HOME)/.local
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/parallel-test $(HOST)/debug/lizard
 
-# Debian has the Arduino core but not the Servo library, so its test runs only with SERVO.
+# Debian has the Arduino core but not the Servo library, so the library's test runs only with SERVO.
 .arduino-test: .sweep
 	@scripts/arduino $(SERVO)
 	@cd crates && cargo test $(ALL) --features lizard-host-tests/arduino --test arduino --quiet $(if $(SERVO),-- --include-ignored --nocapture)
 
-# The program is the one with the simulator, whose board the package drives over a serial port.
+# The package drives the board of the program's simulator over a serial port.
 .python-test:
 	@scripts/setup-python
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
@@ -306,14 +306,14 @@ PREFIX ?= $(HOME)/.local
 	@scripts/build-web
 	@scripts/addresses-test
 
-# Not a part of .ci/run: it compiles everything three more times.
+# Not part of .ci/run, because this target compiles everything three more times.
 .desks:
 	@scripts/setup-desks
 	@cd crates && cargo build $(ALL) --bin lizard --quiet
 	@scripts/desks $(HOST)/debug/lizard
 
-# The robot lies elsewhere then, which the tests have to know: they are built apart. Left out are
-# robots that have no room there.
+# Without the project's linker, the robot's section is at another address. The tests depend on this address, so they are
+# built separately. Robots that do not fit are left out.
 PLAIN := $(CURDIR)/target/plain
 .plain-test: export LIZARD_PLAIN_LINK := 1
 .plain-test: export CARGO_TARGET_DIR := $(PLAIN)

@@ -1,4 +1,4 @@
-"""Additions to the book's pages: the project's addresses, and a search that works from a file."""
+"""Additions to the book's pages: the project's addresses, and a search that works without a web server."""
 
 import json
 import tomllib
@@ -8,24 +8,24 @@ SEARCH = "search/index.js"
 
 
 def on_config(config):
-    """Shows the addresses of crates/Cargo.toml at the head and the foot."""
+    """Adds the addresses in crates/Cargo.toml to the header and the footer."""
     cargo = Path(config.config_file_path).with_name("crates") / "Cargo.toml"
     package = tomllib.loads(cargo.read_text())["workspace"]["package"]
     page, source = package["homepage"], package["repository"]
     config.repo_url = source
-    links = [(page, "The page"), (source and f"{source}/issues", "Report a fault")]
-    config.copyright = " · ".join(f'<a href="{to}">{name}</a>' for to, name in links if to)
+    links = [(page, "The page"), (source and f"{source}/issues", "Report a bug")]
+    config.copyright = " · ".join(f'<a href="{url}">{name}</a>' for url, name in links if url)
     return config
 
 
 def on_post_page(output, page, config):
-    """Loads the search before the theme's program, which would fetch it: from a file, a browser fetches nothing."""
+    """Loads the search before the theme's script, which would fetch it: a page from a file cannot fetch files."""
     before, bundle, after = output.rpartition('<script src="assets/javascripts/bundle')
     return f'{before}<script src="{SEARCH}"></script>{bundle}{after}'
 
 
 def on_post_build(config):
-    """Writes the search's index, and its worker's program, as a script."""
+    """Writes the search index and the worker's program as one script."""
     site = Path(config.site_dir)
     index = (site / "search/search_index.json").read_text()
     [worker] = site.glob("assets/javascripts/workers/search.*.min.js")

@@ -1,4 +1,5 @@
-// bcryptprimitives.dll for wine 8, which lacks it: random bytes, for which Rust's library asks Windows.
+// A minimal bcryptprimitives.dll for Wine 8, in which it is missing. Rust's standard library gets its random bytes from
+// ProcessPrng.
 #include <windows.h>
 #include <ntsecapi.h>
 

@@ -1,19 +1,19 @@
-// Prints what libsdformat reads from an SDF file with one model, as JSON, for scripts/models-test: the bodies'
-// places in the model, and the joints with their places, axes and ranges. Ends with 1 if the file is wrong.
+// Reads an SDF file with one model with libsdformat, and prints it as JSON for scripts/models-test: the bodies' poses in
+// the model, and the joints with their poses, axes and ranges. Exits with 1 if the file is invalid.
 #include <iostream>
 #include <sdf/sdf.hh>
 
-static void matrix(const ignition::math::Pose3d &pose)
+static void printMatrix(const ignition::math::Pose3d &pose)
 {
-  const ignition::math::Matrix4d all(pose);
+  const ignition::math::Matrix4d matrix(pose);
   std::cout << "[";
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j)
-      std::cout << (i + j ? ", " : "") << all(i, j);
+      std::cout << (i + j ? ", " : "") << matrix(i, j);
   std::cout << "]";
 }
 
-static const char *kind(sdf::JointType type)
+static const char *typeName(sdf::JointType type)
 {
   switch (type)
   {
@@ -42,8 +42,8 @@ int main(int, char **argv)
                 << ", \"valid\": " << link.Inertial().MassMatrix().IsValid() << ", \"meshes\": [";
       for (uint64_t j = 0; j < link.VisualCount(); ++j)
         std::cout << (j ? ", " : "") << "\"" << link.VisualByIndex(j)->Geom()->MeshShape()->Uri() << "\"";
-      std::cout << "], \"place\": ";
-      matrix(pose);
+      std::cout << "], \"pose\": ";
+      printMatrix(pose);
       std::cout << "}";
     }
     std::cout << "}, \"joints\": {";
@@ -52,14 +52,14 @@ int main(int, char **argv)
       const auto &joint = *model.JointByIndex(i);
       for (const auto &error : joint.SemanticPose().Resolve(pose, "__model__")) errors.push_back(error);
       std::cout << (i ? ", " : "") << "\"" << joint.Name() << "\": {\"parent\": \"" << joint.ParentLinkName()
-                << "\", \"child\": \"" << joint.ChildLinkName() << "\", \"kind\": \"" << kind(joint.Type())
-                << "\", \"place\": ";
-      matrix(pose);
+                << "\", \"child\": \"" << joint.ChildLinkName() << "\", \"type\": \"" << typeName(joint.Type())
+                << "\", \"pose\": ";
+      printMatrix(pose);
       if (const auto *axis = joint.Axis())
       {
         const auto xyz = axis->Xyz();
         std::cout << ", \"axis\": [" << xyz.X() << ", " << xyz.Y() << ", " << xyz.Z() << "]";
-        // Without ends in the file, they are at 1e16.
+        // If the file has no limits, libsdformat returns 1e16.
         if (axis->Lower() > -1e15 && axis->Upper() < 1e15)
           std::cout << ", \"range\": [" << axis->Lower() << ", " << axis->Upper() << "]";
       }

@@ -1,8 +1,7 @@
-// Prints the list of all parts of a release, as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
+// Prints a release's bill of materials as SPDX 2.3 in JSON (https://spdx.github.io/spdx-spec/v2.3/):
 //     node scripts/spdx.mjs VERSION COMMIT
-// Run from the root of what was built. The program, the images and the page are the packages
-// that it describes; crates come from `cargo metadata`, Node's packages from the lock files,
-// libraries from Debian. SOURCE_DATE_EPOCH is its time.
+// Run it in the root of the built tree. The document describes the program, the images and the page. Crates come from
+// `cargo metadata`, Node's packages from the lock files, libraries from Debian. SOURCE_DATE_EPOCH is the document's time.
 import { execFileSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 
@@ -14,12 +13,12 @@ if (!version || !commit || !Number.isInteger(epoch)) {
 }
 const run = (program, ...args) => execFileSync(program, args, { encoding: 'utf8', maxBuffer: 1 << 28 });
 
-/** Packages by SPDXID, and relationships as lines of three words, so that none is there twice. */
+/** Packages by SPDXID, and relationships as lines of three words, so that there are no duplicates. */
 const packages = new Map();
 const relationships = new Set();
 const relate = (from, kind, to) => relationships.add(`${from} ${kind} ${to}`);
 
-/** Adds a package and gives its SPDXID. */
+/** Adds a package and returns its SPDXID. */
 function add(source, name, versionInfo, license, more = {}) {
   const SPDXID = `SPDXRef-${source}-${name}-${versionInfo}`.replace(/[^A-Za-z0-9.-]+/g, '-');
   packages.set(SPDXID, {
@@ -32,22 +31,22 @@ function add(source, name, versionInfo, license, more = {}) {
 }
 const purl = (locator) => ({ externalRefs: [{ referenceCategory: 'PACKAGE-MANAGER', referenceType: 'purl', referenceLocator: locator }] });
 
-// --- What is given away ----------------------------------------------------
+// --- The release's products -------------------------------------------------
 const GPL = 'GPL-3.0-or-later';
-const product = (name, license, purpose) => {
+const addProduct = (name, license, purpose) => {
   const id = add('release', name, version, license, { primaryPackagePurpose: purpose });
   relate('SPDXRef-DOCUMENT', 'DESCRIBES', id);
   return id;
 };
-const program = product('lizard-program', GPL, 'APPLICATION');
-const portable = product('lizard-program-without-simulator', 'MIT OR Apache-2.0', 'APPLICATION'); // for ARM and for Windows
-const image = product('lizard-image', 'MIT OR Apache-2.0', 'FIRMWARE');
-const page = product('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-or-later', 'APPLICATION');
+const program = addProduct('lizard-program', GPL, 'APPLICATION');
+const portableProgram = addProduct('lizard-program-without-simulator', 'MIT OR Apache-2.0', 'APPLICATION'); // for ARM and for Windows
+const image = addProduct('lizard-image', 'MIT OR Apache-2.0', 'FIRMWARE');
+const page = addProduct('lizard-page', '(MIT OR Apache-2.0) AND MIT AND GPL-2.0-or-later', 'APPLICATION');
 
 // --- Crates ----------------------------------------------------------------
 
-/** The checksums of a Cargo.lock, by "name version". */
-function checksums(folder) {
+/** Reads the checksums of a Cargo.lock, by "name version". */
+function readChecksums(folder) {
   const found = new Map();
   for (const block of readFileSync(`${folder}/Cargo.lock`, 'utf8').split('[[package]]')) {
     const value = (key) => block.match(new RegExp(`^${key} = "(.*)"$`, 'm'))?.[1];
@@ -57,13 +56,13 @@ function checksums(folder) {
 }
 
 /**
- * Adds the crates that a crate of a workspace is built from, all the way down, except those left out: cargo lists what
- * any member of the workspace needs of it.
+ * Adds a workspace's crate and all its dependencies to a product, except for the excluded crates: cargo lists the
+ * dependencies that any member of the workspace enables.
  */
-function crates(folder, top, of, leftOut, ...filter) {
+function addCrates(folder, top, product, excluded, ...filter) {
   const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...filter], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
   const metadata = JSON.parse(text);
-  const sums = checksums(folder);
+  const sums = readChecksums(folder);
   const crate = new Map(metadata.packages.map((entry) => [entry.id, entry]));
   const node = new Map(metadata.resolve.nodes.map((entry) => [entry.id, entry]));
   const ids = new Map();
@@ -71,15 +70,15 @@ function crates(folder, top, of, leftOut, ...filter) {
     if (ids.has(id)) return ids.get(id);
     const { name, version: number, license, source } = crate.get(id);
     const sum = sums.get(`${name} ${number}`);
-    // Old crates write "MIT/Apache-2.0", which SPDX does not know.
+    // Old crates write "MIT/Apache-2.0", which is not valid in SPDX.
     const more = source
       ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${number}.crate`, ...purl(`pkg:cargo/${name}@${number}`) }
       : {};
     if (sum) more.checksums = [{ algorithm: 'SHA256', checksumValue: sum }];
-    const mine = add('cargo', [name, ...(name === top ? leftOut : [])].join(' without '), number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
+    const mine = add('cargo', [name, ...(name === top ? excluded : [])].join(' without '), number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
     ids.set(id, mine);
     for (const { pkg, dep_kinds } of node.get(id).deps) {
-      if (leftOut.includes(crate.get(pkg).name)) continue;
+      if (excluded.includes(crate.get(pkg).name)) continue;
       for (const { kind } of dep_kinds) {
         if (kind === null) relate(mine, 'DEPENDS_ON', visit(pkg));
         if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', mine);
@@ -88,25 +87,25 @@ function crates(folder, top, of, leftOut, ...filter) {
     return mine;
   };
   const first = metadata.packages.find(({ name, source }) => name === top && !source);
-  relate(of, 'CONTAINS', visit(first.id));
+  relate(product, 'CONTAINS', visit(first.id));
 }
 const machine = run('rustc', '--print', 'host-tuple').trim();
-crates('crates', 'lizard-host', program, [], '--filter-platform', machine);
+addCrates('crates', 'lizard-host', program, [], '--filter-platform', machine);
 for (const target of ['aarch64-unknown-linux-gnu', 'x86_64-pc-windows-gnu']) {
-  crates('crates', 'lizard-host', portable, ['simulated-uno', 'lizard-tune'], '--filter-platform', target);
+  addCrates('crates', 'lizard-host', portableProgram, ['simulated-uno', 'lizard-tune'], '--filter-platform', target);
 }
-crates('crates', 'lizard-web', page, [], '--filter-platform', 'wasm32-unknown-unknown');
-// Cargo knows the AVR's target by a file; what these crates need does not depend on it.
-crates('.', 'lizard', image, []);
+addCrates('crates', 'lizard-web', page, [], '--filter-platform', 'wasm32-unknown-unknown');
+// Cargo takes the AVR target from a file. The dependencies of these crates do not depend on the target.
+addCrates('.', 'lizard', image, []);
 
 const rust = run('rustc', '--version').split(' ')[1];
 const std = add('rust', 'rust-std', rust, 'MIT OR Apache-2.0', { downloadLocation: `https://static.rust-lang.org/dist/rustc-${rust}-src.tar.gz` });
-for (const of of [program, portable, image, page]) relate(of, 'STATIC_LINK', std);
+for (const product of [program, portableProgram, image, page]) relate(product, 'STATIC_LINK', std);
 
 // --- Node's packages -------------------------------------------------------
 
-/** Adds the packages of a lock file: those in the page, and those that only build or test it. */
-function nodePackages(folder) {
+/** Adds the packages of a lock file, which are part of the page or only build or test it. */
+function addNodePackages(folder) {
   const lock = JSON.parse(readFileSync(`${folder}/package-lock.json`, 'utf8'));
   for (const [path, entry] of Object.entries(lock.packages)) {
     if (path === '') continue;
@@ -120,31 +119,31 @@ function nodePackages(folder) {
     else relate(page, 'CONTAINS', id);
   }
 }
-nodePackages('web');
-nodePackages('tools/judge');
+addNodePackages('web');
+addNodePackages('tools/judge');
 
 // --- Libraries from Debian -------------------------------------------------
 
-/** Adds a Debian package whose library is in something that is given away. */
-function debian(name, license, of, kind = 'STATIC_LINK') {
+/** Adds a Debian package whose library is part of a product. */
+function addDebianPackage(name, license, product, kind = 'STATIC_LINK') {
   const number = run('dpkg-query', '-W', '-f=${Version}', name);
   const [source, sourceVersion] = run('dpkg-query', '-W', '-f=${source:Package} ${source:Version}', name).split(' ');
   const id = add('debian', name, number, license, {
     ...purl(`pkg:deb/debian/${name}@${encodeURIComponent(number)}`),
     sourceInfo: `built from the Debian source package ${source} ${sourceVersion}`,
   });
-  for (const one of [of].flat()) relate(one, kind, id);
+  relate(product, kind, id);
 }
-debian('libsimavr-dev', GPL, program);
-debian('libelf-dev', 'GPL-2.0-or-later OR LGPL-3.0-or-later', program);
-debian('zlib1g-dev', 'Zlib', program);
-debian('libc6-dev', 'LGPL-2.1-or-later', program);
-debian('libc6-dev-arm64-cross', 'LGPL-2.1-or-later', portable);
-debian('mingw-w64-x86-64-dev', 'ZPL-2.1', portable);
-debian('gcc-mingw-w64-x86-64-posix', 'GPL-3.0-or-later WITH GCC-exception-3.1', portable);
-debian('avr-libc', 'BSD-3-Clause', image);
-debian('gcc-avr', 'GPL-3.0-or-later WITH GCC-exception-3.1', image);
-debian('arduino-core-avr', 'GPL-2.0-or-later', page, 'CONTAINS'); // optiboot
+addDebianPackage('libsimavr-dev', GPL, program);
+addDebianPackage('libelf-dev', 'GPL-2.0-or-later OR LGPL-3.0-or-later', program);
+addDebianPackage('zlib1g-dev', 'Zlib', program);
+addDebianPackage('libc6-dev', 'LGPL-2.1-or-later', program);
+addDebianPackage('libc6-dev-arm64-cross', 'LGPL-2.1-or-later', portableProgram);
+addDebianPackage('mingw-w64-x86-64-dev', 'ZPL-2.1', portableProgram);
+addDebianPackage('gcc-mingw-w64-x86-64-posix', 'GPL-3.0-or-later WITH GCC-exception-3.1', portableProgram);
+addDebianPackage('avr-libc', 'BSD-3-Clause', image);
+addDebianPackage('gcc-avr', 'GPL-3.0-or-later WITH GCC-exception-3.1', image);
+addDebianPackage('arduino-core-avr', 'GPL-2.0-or-later', page, 'CONTAINS'); // optiboot
 
 // --- The document ----------------------------------------------------------
 const byId = (a, b) => (a.SPDXID < b.SPDXID ? -1 : 1);

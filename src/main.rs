@@ -15,9 +15,8 @@ mod simavr;
 
 use board::{Uno, sleep};
 
-/// The state of main. A static has a fixed address, which the compiler puts into the
-/// instructions. On the stack, every access would have to compute the address, and the
-/// program would be a tenth larger.
+/// The main loop. A static has a fixed address, which the compiler puts into the instructions. With a main loop on the
+/// stack, every access would have to compute the address, and the program would be a tenth larger.
 static mut MAIN: Main = Main::new();
 
 #[avr_device::entry]
@@ -26,10 +25,10 @@ fn main() -> ! {
     let main_pointer = &raw mut MAIN;
     // SAFETY: this function is entered once, and no other code uses `MAIN`.
     let main = unsafe { &mut *main_pointer };
-    main.begin(Region::INITIAL, &mut uno);
+    main.begin(Region::DEFAULT, &mut uno);
     loop {
         if let Step::Idle(ticks) = main.step(&mut uno) {
-            sleep::until_tick_or_byte(ticks);
+            sleep::wait_for_event(ticks);
         }
     }
 }

@@ -1,13 +1,13 @@
-//! The note in the ELF file that tells stock simavr the chip, the clock and the voltages. It is not
-//! part of the flash. Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
+//! The note in the ELF file with the chip, the clock and the voltages for stock simavr. It is not part of the flash.
+//! Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
 
-/// Returns a record of simavr's `avr_mcu_section.h`: tag, length and a 32-bit number.
-const fn number_record(tag: u8, value: u32) -> [u8; 6] {
+/// Makes a record as in simavr's `avr_mcu_section.h`: tag, length and a 32-bit number.
+const fn make_record(tag: u8, value: u32) -> [u8; 6] {
     let [a, b, c, d] = value.to_le_bytes();
     [tag, 4, a, b, c, d]
 }
 
-/// Length in bytes of the chip's name, which is padded with zeros.
+/// The length of the chip's name, which is padded with zeros, in bytes.
 const NAME_BYTES: usize = 64;
 
 /// The layout of the note: records of tag, length and value.
@@ -18,7 +18,8 @@ struct Note {
     end: [u8; 2],
 }
 
-/// The note: tags 1 to 5 for name, clock in Hz, VCC, AVCC and AREF in mV, then the end tag 0.
+/// The note, with the tags 1 to 5 for the name, the clock in Hz, and VCC, AVCC and AREF in mV, followed by the end tag
+/// 0.
 #[used]
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".mmcu")]
@@ -31,10 +32,10 @@ static SIMAVR: Note = Note {
         name
     },
     numbers: [
-        number_record(2, 16_000_000),
-        number_record(3, 5000),
-        number_record(4, 5000),
-        number_record(5, 5000),
+        make_record(2, 16_000_000),
+        make_record(3, 5000),
+        make_record(4, 5000),
+        make_record(5, 5000),
     ],
     end: [0; 2],
 };

@@ -1,10 +1,10 @@
-// Builds the page's service worker, which contains the list of the page's files.
+// Builds the page's service worker, which contains a list of the page's files.
 import { createHash } from 'node:crypto';
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 const WORKER_NAME = 'service-worker.js';
-/** The picture that a chat shows beside a link to the page; the page itself does not use the picture. */
+/** The picture that a chat shows with a link to the page; the page itself does not use it. */
 const PREVIEW_NAME = 'preview.png';
 
 /** Writes the service worker for the page in `folder` into that folder. */
@@ -14,8 +14,8 @@ export function writeServiceWorker(folder) {
     .map((entry) => join(entry.parentPath ?? entry.path, entry.name).slice(join(folder, '/').length).replaceAll('\\', '/'))
     .filter((path) => path !== WORKER_NAME && path !== PREVIEW_NAME)
     .sort();
-  const hashOf = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
-  const fileList = paths.map((path) => `  [${JSON.stringify(path)}, '${hashOf(path)}'],`).join('\n');
+  const computeHash = (path) => createHash('sha256').update(readFileSync(join(folder, path))).digest('hex');
+  const fileList = paths.map((path) => `  [${JSON.stringify(path)}, '${computeHash(path)}'],`).join('\n');
   const workerSource = readFileSync(new URL(WORKER_NAME, import.meta.url), 'utf8');
   const buildHash = createHash('sha256').update(fileList).digest('hex');
   const constants = `const BUILD = '${buildHash}';\nconst FILES = [\n${fileList}\n];\n\n`;

@@ -1,20 +1,20 @@
 // Writes pictures of the page into a folder: the frames of the README's animation, which shows one cycle of a walk; the
-// gait editor for docs/web.md; and the preview that a chat shows beside a link. scripts/page-picture runs this script.
+// gait editor for docs/web.md; and the preview that a chat shows with a link. scripts/page-picture runs this script.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
 import { address, closeBrowser, openBrowser, openPage } from './tests/browser.js';
 
 const [, , folder] = process.argv;
-/** Duration of a cycle of the gait `walk`. */
+/** Duration of a cycle of `walk`. */
 const CYCLE_MS = 1000;
-/** Number of cycles after which all further cycles are equal. */
+/** Number of cycles after which all later cycles are equal. */
 const WARM_UP_CYCLES = 3;
 const FRAME_COUNT = 16;
 
 await mkdir(folder, { recursive: true });
 await openBrowser();
-// This script itself advances the page's clock, so that the frames are evenly spaced and the view follows the robot.
+// The script advances the page's clock, so that the frames are evenly spaced and the view follows the robot.
 const page = await openPage({ viewport: { width: 1240, height: 800 }, deviceScaleFactor: 0.75, colorScheme: 'light' }, () => {});
 await page.goto(`${address()}#room=drive`);
 await page.clock.runFor(3000);

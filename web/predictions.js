@@ -1,5 +1,5 @@
-// Predicts the gaits of the page's robots when the page is built, so that a phone need not do so. Writes
-// NAME.predictions.json beside each NAME.toml in a folder, which must also contain lizard.wasm.
+// Predicts the gaits of the page's robots during the build, so that a phone does not need to. Writes
+// NAME.predictions.json next to each NAME.toml in a folder, which must also contain lizard.wasm.
 import { readdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 

@@ -1,5 +1,5 @@
-// Takes screenshots of every room at the sizes of phones and a desktop, to check a change of the page by eye. Usage:
-// node web/room-pictures.js FOLDER [dark]
+// Takes screenshots of every room at the sizes of phones and a desktop, for a visual check of a change.
+// Usage: node web/room-pictures.js FOLDER [dark]
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 

@@ -1,38 +1,38 @@
-// Stores all files of one build of the page when the page is first opened, so that it works without a network. The
-// build puts two constants in front of this code: FILES, the list of all paths with the SHA-256 of their bytes, and
-// BUILD, the SHA-256 of that list.
+// Stores all files of the page when the page is first opened, so that the page works without a network. The build
+// prepends two constants to this code: FILES, a list of all paths with the SHA-256 of their bytes, and BUILD, the
+// SHA-256 of this list.
 
-/** The prefix of the names of this page's caches, which other pages of the same origin do not share. */
+/** The prefix of this page's cache names, which differs from other pages of the same origin. */
 const CACHE_PREFIX = `lizard ${new URL(self.registration.scope).pathname} `;
 const CACHE_NAME = CACHE_PREFIX + BUILD;
 
-const addressOf = (path) => new URL(path, self.registration.scope).href;
+const toUrl = (path) => new URL(path, self.registration.scope).href;
 
-async function hashOf(bytes) {
+async function computeHash(bytes) {
   const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
   return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
 }
 
-/** Returns a file of this build from an older cache or from the server. Throws if the server has another version. */
+/** Loads a file of this build from an older cache or from the server. Throws if the server has another version. */
 async function loadVerifiedFile(path, hash) {
   for (const name of await caches.keys()) {
     if (!name.startsWith(CACHE_PREFIX)) continue;
-    const cached = await (await caches.open(name)).match(addressOf(path));
-    if (cached && (await hashOf(await cached.clone().arrayBuffer())) === hash) return cached;
+    const cached = await (await caches.open(name)).match(toUrl(path));
+    if (cached && (await computeHash(await cached.clone().arrayBuffer())) === hash) return cached;
   }
-  const response = await fetch(addressOf(path), { cache: 'no-cache' });
-  const isExpected = response.ok && (await hashOf(await response.clone().arrayBuffer())) === hash;
-  if (!isExpected) throw new Error(`${path} is not what was built together with the page`);
+  const response = await fetch(toUrl(path), { cache: 'no-cache' });
+  const isVerified = response.ok && (await computeHash(await response.clone().arrayBuffer())) === hash;
+  if (!isVerified) throw new Error(`${path} does not belong to this build of the page`);
   return response;
 }
 
-// Stores all files or none: if one is missing, the older build stays in use.
+// Stores all files or none: if a file is missing, the older build stays in use.
 self.addEventListener('install', (event) => {
   event.waitUntil(
     (async () => {
       const files = await Promise.all(FILES.map(async ([path, hash]) => [path, await loadVerifiedFile(path, hash)]));
       const cache = await caches.open(CACHE_NAME);
-      for (const [path, response] of files) await cache.put(addressOf(path), response);
+      for (const [path, response] of files) await cache.put(toUrl(path), response);
     })(),
   );
 });
@@ -46,7 +46,7 @@ self.addEventListener('activate', (event) => {
   );
 });
 
-// The user has asked for the newer page.
+// The user requests the newer build.
 self.addEventListener('message', ({ data }) => {
   if (data === 'take over') void self.skipWaiting();
 });
@@ -57,7 +57,7 @@ self.addEventListener('fetch', (event) => {
   event.respondWith(
     (async () => {
       const url = new URL(request.url);
-      const address = url.href === self.registration.scope || request.mode === 'navigate' ? addressOf('index.html') : url.origin + url.pathname;
+      const address = url.href === self.registration.scope || request.mode === 'navigate' ? toUrl('index.html') : url.origin + url.pathname;
       return (await (await caches.open(CACHE_NAME)).match(address)) ?? fetch(request);
     })(),
   );

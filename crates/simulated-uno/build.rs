@@ -9,7 +9,7 @@ const TESTED_VERSION: &str = "1.6";
 fn main() {
     if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "windows") {
         panic!(
-            "there is no libsimavr for Windows; `lizard` builds there without the simulator: \
+            "libsimavr does not exist for Windows: build `lizard` without the simulator, with \
              --no-default-features --features paper,console,parts"
         );
     }
@@ -32,7 +32,7 @@ fn main() {
         .try_compile("simulated_uno_shim");
     if let Err(error) = result {
         panic!(
-            "the shim does not compile; it needs libsimavr's headers:\n\
+            "the shim does not compile; it requires libsimavr's headers:\n\
              sudo apt-get install libsimavr-dev libelf-dev\n{error}"
         );
     }
@@ -41,7 +41,7 @@ fn main() {
     let features = std::env::var("CARGO_CFG_TARGET_FEATURE").unwrap_or_default();
     if features.split(',').any(|feature| feature == "crt-static") {
         for library in ["simavr", "elf", "z"] {
-            if let Some(folder) = folder_of(&format!("lib{library}.a")) {
+            if let Some(folder) = find_folder(&format!("lib{library}.a")) {
                 println!("cargo:rustc-link-search=native={}", folder.display());
             }
             println!("cargo:rustc-link-lib=static:-bundle={library}");
@@ -53,9 +53,9 @@ fn main() {
     println!("cargo:rustc-link-lib=m");
 }
 
-/// Returns the folder in which the C compiler finds a library; `None` if it finds none. rustc itself searches only
-/// the folders that it is given.
-fn folder_of(library: &str) -> Option<PathBuf> {
+/// Returns the folder in which the C compiler finds a library; `None` if it does not find the library. rustc itself
+/// searches only the folders that are passed to it.
+fn find_folder(library: &str) -> Option<PathBuf> {
     let compiler = cc::Build::new().try_get_compiler().ok()?;
     let argument = format!("-print-file-name={library}");
     let output = compiler.to_command().arg(argument).output().ok()?;
@@ -72,8 +72,8 @@ fn check_version() {
     match version.as_deref() {
         Ok(TESTED_VERSION) => {}
         Ok(installed_version) if !installed_version.is_empty() => panic!(
-            "libsimavr {installed_version} is installed; this package corrects {TESTED_VERSION} (Debian 12) and would \
-             simulate another chip with {installed_version}: install {TESTED_VERSION}, from Debian 12 or from source"
+            "this package requires libsimavr {TESTED_VERSION}, but {installed_version} is installed: install \
+             {TESTED_VERSION} from Debian 12 or from source"
         ),
         _ => panic!(
             "pkg-config does not find libsimavr {TESTED_VERSION}:\n\

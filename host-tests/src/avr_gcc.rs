@@ -8,10 +8,10 @@ use simulated_uno::Image;
 use simulated_uno::avr_gcc::run;
 pub use simulated_uno::avr_gcc::{assemble, compile_c};
 
-/// The options of avr-gcc, both for compiling and for linking.
+/// The options of avr-gcc for both compiling and linking.
 const FLAGS: [&str; 4] = ["-O2", "-std=gnu11", "-mrelax", "-ffunction-sections"];
 
-/// Compiles C with avr-gcc to an object that has a section for each function.
+/// Compiles C with avr-gcc to an object with a section for each function.
 ///
 /// # Errors
 /// Returns avr-gcc's message if avr-gcc rejects the program.
@@ -24,7 +24,7 @@ pub fn compile_to_object(source: &str) -> Result<Vec<u8>, String> {
     Ok(fs::read(&object_path).expect("avr-gcc has written an object"))
 }
 
-/// Assembles a text with avr-gcc and links the result and an object, in this order.
+/// Assembles a text with avr-gcc and links the result with an object. The assembled code comes first.
 ///
 /// # Errors
 /// Returns avr-gcc's message if the program does not link.
@@ -39,16 +39,16 @@ pub fn link(assembly: &str, object: &[u8]) -> Result<Image, String> {
     Ok(Image::read(elf_path).expect("avr-gcc's ELF loads"))
 }
 
-/// Shrinks an object as the linker does.
+/// Shrinks an object in the same way as the linker.
 ///
 /// # Panics
-/// If it is not a valid object for an AVR.
+/// If the bytes are not a valid object for an AVR.
 pub fn shrink(object: &[u8]) -> (Vec<u8>, Savings) {
     let shrunk = lizard_linker::shrink(object).expect("the object is valid");
     shrunk.expect("the object is for an AVR")
 }
 
-/// Returns the address of a variable in RAM.
+/// Returns a variable's address in RAM.
 ///
 /// # Panics
 /// If the image has no such variable.

@@ -1,8 +1,8 @@
-//! Test bench for the firmware: powers it on, talks to it and measures its pulses.
+//! Test bench for the firmware, which powers on a board, talks to it and measures its pulses.
 //!
-//! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`,
-//! wait some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test. Every failure
-//! panics, which ends the test.
+//! A test of the running firmware should read like the actions of a person with a board: `boot`, `say("walk")`, wait
+//! some frames, check the pulses. The bench is a [`SimulatedBoard`] with the robot under test. Every error panics,
+//! which ends the test.
 
 use std::ops::{Deref, DerefMut};
 use std::path::PathBuf;
@@ -15,21 +15,21 @@ use simulated_uno::{Call, Fidelity, Image, Uno};
 
 use crate::robots::{robot, root};
 
-/// A simulated UNO with the firmware in flash, seen by a person at its console. Tests of another robot or another
-/// program make one around their own board.
+/// A simulated UNO with the firmware in flash, as a person at its console sees it. Tests of another robot or program
+/// wrap their own board.
 pub struct FirmwareBench(pub SimulatedBoard);
 
 impl FirmwareBench {
-    /// The path of the firmware's ELF file: the one that `LIZARD_ELF` names, or else the one that `make firmware`
+    /// The path of the firmware's ELF file, which `LIZARD_ELF` can set. The default is the file that `make firmware`
     /// builds.
     ///
     /// The file may contain any robot; [`FirmwareBench::image`] replaces it.
-    pub fn elf() -> PathBuf {
+    pub fn elf_path() -> PathBuf {
         let built_elf = root().join("target/avr-atmega328p/release/lizard.elf");
         std::env::var_os("LIZARD_ELF").map_or(built_elf, PathBuf::from)
     }
 
-    /// The firmware's image, in which [`robot`] replaces the robot of the file.
+    /// The firmware's image, with [`robot`] in place of the file's robot.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -38,26 +38,26 @@ impl FirmwareBench {
         IMAGE.clone()
     }
 
-    /// The firmware's image, in which this robot replaces the robot of the file.
+    /// The firmware's image, with the given robot in place of the file's robot.
     ///
     /// # Panics
     /// If there is no firmware.
     pub fn image_with(robot: &Robot) -> Image {
-        let elf = Self::elf();
-        lizard_host::firmware::read_with_robot(&elf, robot)
-            .unwrap_or_else(|error| panic!("{}: {error}; make firmware", elf.display()))
+        let path = Self::elf_path();
+        lizard_host::firmware::read_with_robot(&path, robot)
+            .unwrap_or_else(|error| panic!("{}: {error}; run make firmware", path.display()))
     }
 
-    /// Powers the board on and waits for the banner.
+    /// Powers on the board and waits for the banner.
     ///
     /// # Panics
     /// If there is no firmware, or no banner within 500 ms.
     pub fn boot_with(fidelity: Fidelity) -> Self {
-        let board = SimulatedBoard::boot(&Self::elf(), fidelity, robot());
+        let board = SimulatedBoard::boot(&Self::elf_path(), fidelity, robot());
         Self(unwrap_or_panic(board))
     }
 
-    /// Powers the board on without running it.
+    /// Powers on the board without running it.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -80,18 +80,18 @@ impl FirmwareBench {
         unwrap_or_panic(self.0.say(line))
     }
 
-    /// Sends a line and expects its echo after `ok`.
+    /// Sends a line and checks that the answer is `ok` and the line.
     ///
     /// # Panics
-    /// If the firmware gives no answer, or another one.
+    /// If the firmware gives another answer or no answer.
     #[track_caller]
     pub fn expect_ok(&mut self, line: &str) {
         assert_eq!(self.say(line), format!("ok {line}"));
     }
 
-    /// Returns the texts of the printed lines from index `first` on.
-    pub fn texts_since(&mut self, first: usize) -> Vec<String> {
-        let lines = self.lines()[first..].iter();
+    /// Returns the texts of the printed lines from `first_index` on.
+    pub fn texts_from(&mut self, first_index: usize) -> Vec<String> {
+        let lines = self.lines()[first_index..].iter();
         lines.map(|line| line.text.clone()).collect()
     }
 
@@ -120,7 +120,7 @@ impl FirmwareBench {
         unwrap_or_panic(self.0.run_ms(ms));
     }
 
-    /// Times the calls of a function: see [`SimulatedBoard::time_calls`].
+    /// Measures the duration of a function's calls: see [`SimulatedBoard::time_calls`].
     ///
     /// # Panics
     /// If the ELF has no such function, or more than one.

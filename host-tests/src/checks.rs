@@ -1,18 +1,18 @@
-//! Small checks and measurements that many tests need.
+//! Small helpers that many tests need.
 
 use simulated_uno::{Pin, SerialByte, Uno};
 
-/// Checks that a text has a part; the message is the whole text.
+/// Checks that a text contains a part.
 ///
 /// # Panics
-/// If the text lacks the part.
+/// If the part is missing. The message contains the whole text.
 #[track_caller]
 pub fn assert_contains(text: &str, part: &str) {
     assert!(text.contains(part), "no {part:?} in {text}");
 }
 
-/// Returns the text that bytes on the serial line spell.
-pub fn text_of(bytes: &[SerialByte]) -> String {
+/// Returns bytes from the serial line as a text.
+pub fn decode_text(bytes: &[SerialByte]) -> String {
     let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
     String::from_utf8_lossy(&bytes).into_owned()
 }

@@ -1,8 +1,8 @@
 //! Comparison of the simulated UNO with a second, independent simulator, avr8js.
 //!
-//! The simulated UNO is built on simavr, and an error of simavr can hide an error of the firmware. avr8js is written
-//! in another language by other people. Both simulators get the same image and the same bytes at the same cycles, and
-//! their outputs are compared: every pulse of every servo and every byte of the console.
+//! The simulated UNO is built on simavr, and an error in simavr can hide an error in the firmware. avr8js is written in
+//! another language by other people. Both simulators get the same image and the same bytes at the same cycles. Their
+//! outputs are compared: every pulse of every servo and every byte of the console.
 
 use std::fmt;
 use std::io::ErrorKind;
@@ -11,19 +11,18 @@ use std::process::Command;
 
 use lizard_host::sim::supplies;
 use lizard_robot::Robot;
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::{Edge, Image, Pin, SerialByte};
 
 use crate::robots::root;
 
-/// Cycles at the end of a run in which no pulses are compared: a pulse may have ended on one simulator, but not yet
-/// on the other.
+/// Cycles at the end of a run in which no pulses are compared, because a pulse may have ended on only one simulator.
 const IGNORED_END_CYCLES: u64 = 1_000;
 
 /// Delay of avr8js relative to simavr, cycles. simavr's Timer1 counts from the first cycle of the instruction that
-/// starts the timer; avr8js counts from the last cycle. The firmware's outputs have the same delay. The bytes are sent
-/// to avr8js later by this delay, so that they arrive in the same state of the firmware. The outputs must then agree
-/// to the cycle.
+/// starts the timer; avr8js's counts from the last. The firmware's outputs have the same delay. Bytes are sent to
+/// avr8js later by this delay, so that they find the firmware in the same state. The outputs must then agree to the
+/// cycle.
 pub const AVR8JS_LAG_CYCLES: i64 = 1;
 
 /// A pulse at a pin.
@@ -31,9 +30,9 @@ pub const AVR8JS_LAG_CYCLES: i64 = 1;
 pub struct PinPulse {
     /// The pin.
     pub pin: Pin,
-    /// Cycle of the rising edge.
+    /// The cycle of the rising edge.
     pub rise_cycle: u64,
-    /// Cycles until the falling edge.
+    /// The number of cycles from the rising edge to the falling edge.
     pub width: u64,
 }
 
@@ -54,14 +53,14 @@ pub struct Outputs {
     /// The complete pulses of all pins, in the order of their falling edges.
     pub pulses: Vec<PinPulse>,
     /// The bytes that the UNO sent, each with the cycle at which its stop bit ends.
-    pub sent: Vec<SerialByte>,
+    pub sent_bytes: Vec<SerialByte>,
     /// The cycle at which the run ended.
     pub end_cycle: u64,
 }
 
 impl Outputs {
     /// Collects the outputs of a simulated UNO from its records since power-on.
-    pub fn new(edges: &[Edge], sent: &[SerialByte], end_cycle: u64) -> Self {
+    pub fn new(edges: &[Edge], sent_bytes: &[SerialByte], end_cycle: u64) -> Self {
         // One entry for each Arduino pin number, 0 to 19.
         let mut rise_cycles = [None; 20];
         let mut pulses = Vec::new();
@@ -79,20 +78,20 @@ impl Outputs {
         }
         Self {
             pulses,
-            sent: sent.to_vec(),
+            sent_bytes: sent_bytes.to_vec(),
             end_cycle,
         }
     }
 }
 
-/// The result of a run on avr8js, and its cost.
+/// The result of a run on avr8js, and its processor time.
 #[derive(Debug, Clone, Default)]
 pub struct Avr8jsRun {
     /// The firmware's outputs in the run.
     pub outputs: Outputs,
     /// The 1024 bytes of EEPROM at the end.
     pub eeprom: Vec<u8>,
-    /// Processor time of the simulation, ms.
+    /// The simulation's processor time, ms.
     pub cpu_ms: u64,
 }
 
@@ -126,40 +125,42 @@ pub fn run_on_avr8js(
     }
     script += &format!("end {end_cycle}\n");
     let output_text = run_program(
-        node()?.arg(judge_folder().join("run.js")).arg(hex_path),
+        node_command()?
+            .arg(judge_dir().join("run.js"))
+            .arg(hex_path),
         "nodejs",
         &script,
     )?;
     let mut run = parse_run(&output_text)
-        .ok_or_else(|| format!("the judge's output is malformed:\n{output_text}"))?;
+        .ok_or_else(|| format!("malformed output of the judge:\n{output_text}"))?;
     run.outputs.end_cycle = end_cycle;
     Ok(run)
 }
 
-/// Runs the tests of tools/judge, which show each error of avr8js and its correction. Returns their output.
+/// Runs the tests of tools/judge, which reproduce each error of avr8js and check its correction. Returns their output.
 ///
 /// # Errors
 /// Fails if a program is missing or a test fails.
 pub fn run_judge_tests() -> Result<String, String> {
-    let folder = judge_folder().join("test");
+    let folder = judge_dir().join("test");
     let files = std::fs::read_dir(&folder).map_err(|error| error.to_string())?;
     let paths = files.filter_map(|file| Some(file.ok()?.path()));
-    // The files are named one by one, because different versions of Node treat a folder differently.
+    // Names each file, because versions of Node treat a folder differently.
     let tests = paths.filter(|path| path.to_string_lossy().ends_with(".test.js"));
-    run_program(node()?.arg("--test").args(tests), "nodejs", "")
+    run_program(node_command()?.arg("--test").args(tests), "nodejs", "")
 }
 
-fn judge_folder() -> PathBuf {
+fn judge_dir() -> PathBuf {
     root().join("tools/judge")
 }
 
 /// Returns the command that starts Node. Fails if the package avr8js is not installed.
-fn node() -> Result<Command, String> {
-    let package = judge_folder().join("node_modules/avr8js/package.json");
+fn node_command() -> Result<Command, String> {
+    let package = judge_dir().join("node_modules/avr8js/package.json");
     if !package.exists() {
-        return Err("the package avr8js is missing: scripts/setup-judge fetches it".into());
+        return Err("the package avr8js is missing: run scripts/setup-judge to install it".into());
     }
-    Ok(Command::new("node"))
+    Ok(Command::new("node_command"))
 }
 
 /// Runs a program with `input_text` as its standard input and returns its output. `debian_package` names the Debian
@@ -170,10 +171,10 @@ fn run_program(
     input_text: &str,
 ) -> Result<String, String> {
     let program = command.get_program().to_string_lossy().into_owned();
-    let output = LIMIT.output(command, input_text.as_bytes());
+    let output = TIME_LIMIT.run_command(command, input_text.as_bytes());
     let output = output.map_err(|error| match error.kind() {
         ErrorKind::NotFound => format!(
-            "{program} is missing: scripts/setup and scripts/setup-judge install it \
+            "{program} is missing: run scripts/setup and scripts/setup-judge to install it \
              (Debian package {debian_package})"
         ),
         _ => format!("{program}: {error}"),
@@ -184,7 +185,7 @@ fn run_program(
     }
     let error_text = String::from_utf8_lossy(&output.stderr);
     Err(format!(
-        "{program} fails: {}\n{output_text}",
+        "{program} failed: {}\n{output_text}",
         error_text.trim()
     ))
 }
@@ -201,15 +202,15 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
                 rise_cycle: rise_cycle.parse().ok()?,
                 width: width.parse().ok()?,
             }),
-            ["sent", cycle, byte] => run.outputs.sent.push(SerialByte {
+            ["sent", cycle, byte] => run.outputs.sent_bytes.push(SerialByte {
                 cycle: cycle.parse().ok()?,
                 byte: u8::from_str_radix(byte, 16).ok()?,
             }),
             ["eeprom", bytes] => {
-                let byte_at = |index| u8::from_str_radix(bytes.get(index..index + 2)?, 16).ok();
+                let parse_byte = |index| u8::from_str_radix(bytes.get(index..index + 2)?, 16).ok();
                 run.eeprom = (0..bytes.len())
                     .step_by(2)
-                    .map(byte_at)
+                    .map(parse_byte)
                     .collect::<Option<_>>()?;
             }
             ["cpu", ms] => run.cpu_ms = ms.parse().ok()?,
@@ -219,7 +220,7 @@ fn parse_run(output_text: &str) -> Option<Avr8jsRun> {
     (run.eeprom.len() == 1024).then_some(run)
 }
 
-/// The result of a comparison of two simulators whose outputs agree.
+/// The result of comparing two simulators whose outputs agree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Agreement {
     /// The kind of records compared: pulses or bytes.
@@ -242,30 +243,32 @@ impl fmt::Display for Agreement {
         } = self;
         write!(
             f,
-            "{count} {record_kind}, {offset_cycles} cycles later, with a jitter of {jitter_cycles} cycles"
+            "{count} {record_kind}, delayed by {offset_cycles} cycles, jitter {jitter_cycles} cycles"
         )
     }
 }
 
 /// Compares the servos' pulses to the cycle: their pins, order, widths and rising edges. The rising edges may have a
-/// constant offset, because the data sheet does not specify in which cycle of an instruction a peripheral receives a
-/// write.
+/// constant offset, because the data sheet does not specify the cycle of an instruction in which a peripheral receives
+/// a write.
 ///
 /// # Errors
 /// Returns a message about the first difference.
 pub fn compare_pulses(
     simavr: &Outputs,
     avr8js: &Outputs,
-    servos: &[Pin],
+    servo_pins: &[Pin],
 ) -> Result<Agreement, String> {
-    let pulses_of_servos = |outputs: &Outputs| -> Vec<PinPulse> {
+    let select_servo_pulses = |outputs: &Outputs| -> Vec<PinPulse> {
         let pulses = outputs.pulses.iter().copied();
-        pulses.filter(|pulse| servos.contains(&pulse.pin)).collect()
+        pulses
+            .filter(|pulse| servo_pins.contains(&pulse.pin))
+            .collect()
     };
-    let (simavr_pulses, avr8js_pulses) = (pulses_of_servos(simavr), pulses_of_servos(avr8js));
+    let (simavr_pulses, avr8js_pulses) = (select_servo_pulses(simavr), select_servo_pulses(avr8js));
     let (Some(first_simavr), Some(first_avr8js)) = (simavr_pulses.first(), avr8js_pulses.first())
     else {
-        return Err("on one simulator no servo gets a pulse".into());
+        return Err("no servo gets a pulse on one simulator".into());
     };
     let offset_cycles = first_avr8js.rise_cycle as i64 - first_simavr.rise_cycle as i64;
     let avr8js_pulses: Vec<PinPulse> = avr8js_pulses
@@ -275,10 +278,10 @@ pub fn compare_pulses(
             ..*pulse
         })
         .collect();
-    let limit_cycle = simavr.end_cycle.min(avr8js.end_cycle) - IGNORED_END_CYCLES;
+    let end_cycle = simavr.end_cycle.min(avr8js.end_cycle) - IGNORED_END_CYCLES;
     let (simavr_pulses, avr8js_pulses) = (
-        ended_pulses(&simavr_pulses, limit_cycle),
-        ended_pulses(&avr8js_pulses, limit_cycle),
+        select_ended_pulses(&simavr_pulses, end_cycle),
+        select_ended_pulses(&avr8js_pulses, end_cycle),
     );
     let pairs = simavr_pulses.iter().zip(&avr8js_pulses).enumerate();
     if let Some((index, (simavr_pulse, avr8js_pulse))) = pairs
@@ -286,14 +289,16 @@ pub fn compare_pulses(
         .find(|(_, (simavr_pulse, avr8js_pulse))| simavr_pulse != avr8js_pulse)
     {
         return Err(format!(
-            "pulse {index}: on simavr {simavr_pulse}, on avr8js {avr8js_pulse}, \
-             less the constant delay of {offset_cycles} cycles"
+            "pulse {index}: on simavr {simavr_pulse}; on avr8js {avr8js_pulse}, \
+             after subtracting the constant delay of {offset_cycles} cycles"
         ));
     }
     let count = simavr_pulses.len().min(avr8js_pulses.len());
     for (name, pulses) in [("simavr", &simavr_pulses), ("avr8js", &avr8js_pulses)] {
         if let Some(extra_pulse) = pulses.get(count) {
-            return Err(format!("pulse {count} is on {name} alone: {extra_pulse}"));
+            return Err(format!(
+                "pulse {count} occurs only on {name}: {extra_pulse}"
+            ));
         }
     }
     Ok(Agreement {
@@ -304,25 +309,26 @@ pub fn compare_pulses(
     })
 }
 
-/// Compares the bytes that the console has sent, and measures by how much their delay varies.
+/// Compares the bytes that the console has sent, and measures the variation of their delay.
 ///
 /// # Errors
 /// Returns a message about the first difference.
 pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, String> {
-    let (Some(first_simavr), Some(first_avr8js)) = (simavr.sent.first(), avr8js.sent.first())
+    let (Some(first_simavr), Some(first_avr8js)) =
+        (simavr.sent_bytes.first(), avr8js.sent_bytes.first())
     else {
-        return Err("the console of one simulator is silent".into());
+        return Err("the console sends no bytes on one simulator".into());
     };
     let offset_cycles = first_avr8js.cycle as i64 - first_simavr.cycle as i64;
-    let pairs = simavr.sent.iter().zip(&avr8js.sent);
+    let pairs = simavr.sent_bytes.iter().zip(&avr8js.sent_bytes);
     let mut jitter_cycles = 0;
     for (index, (simavr_byte, avr8js_byte)) in pairs.enumerate() {
         if simavr_byte.byte != avr8js_byte.byte {
             return Err(format!(
-                "byte {index} of the console, cycle {}: simavr has {:?}, avr8js {:?}",
+                "byte {index} of the console, cycle {}: simavr sends {:?}, avr8js {:?}",
                 simavr_byte.cycle,
-                tail(&simavr.sent, index),
-                tail(&avr8js.sent, index)
+                excerpt(&simavr.sent_bytes, index),
+                excerpt(&avr8js.sent_bytes, index)
             ));
         }
         jitter_cycles = jitter_cycles.max(
@@ -332,12 +338,12 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
                 .abs_diff(simavr_byte.cycle),
         );
     }
-    let count = simavr.sent.len().min(avr8js.sent.len());
+    let count = simavr.sent_bytes.len().min(avr8js.sent_bytes.len());
     for (name, outputs) in [("simavr", simavr), ("avr8js", avr8js)] {
-        if outputs.sent.len() > count {
-            let text = tail(&outputs.sent, count);
+        if outputs.sent_bytes.len() > count {
+            let text = excerpt(&outputs.sent_bytes, count);
             return Err(format!(
-                "byte {count} of the console is on {name} alone: {text:?}"
+                "byte {count} of the console occurs only on {name}: {text:?}"
             ));
         }
     }
@@ -349,16 +355,16 @@ pub fn compare_console(simavr: &Outputs, avr8js: &Outputs) -> Result<Agreement, 
     })
 }
 
-/// Returns the pulses that have ended by `limit_cycle`.
-fn ended_pulses(pulses: &[PinPulse], limit_cycle: u64) -> Vec<PinPulse> {
+/// Returns the pulses that have ended by `end_cycle`.
+fn select_ended_pulses(pulses: &[PinPulse], end_cycle: u64) -> Vec<PinPulse> {
     let pulses = pulses.iter().copied();
     pulses
-        .filter(|pulse| pulse.rise_cycle + pulse.width <= limit_cycle)
+        .filter(|pulse| pulse.rise_cycle + pulse.width <= end_cycle)
         .collect()
 }
 
-/// Returns the 60 bytes, about a line, that end with byte `index`.
-fn tail(bytes: &[SerialByte], index: usize) -> String {
+/// Returns an excerpt of 60 bytes, about a line, that ends with byte `index`.
+fn excerpt(bytes: &[SerialByte], index: usize) -> String {
     let end = bytes.len().min(index + 1);
     let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]
         .iter()

@@ -1,4 +1,4 @@
-//! Shared parts of the tests: the robots under test, a bench with the running firmware, random fault-injection
+//! Shared parts of the tests: the robots under test, a test bench with the running firmware, random fault-injection
 //! scenarios, the comparison with a second simulator, and a compiler for small AVR programs.
 
 pub mod avr_gcc;
@@ -11,13 +11,13 @@ mod robots;
 pub mod trouble;
 
 pub use bench::FirmwareBench;
-pub use checks::{assert_contains, pulse_widths, text_of};
+pub use checks::{assert_contains, decode_text, pulse_widths};
 pub use extent::{dialogue_minutes, read_number, scaled_count};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{
-    NamedRobot, gait_commands, paper_robot, patrolling_robot, rng, robot, robot_named,
-    robot_with_patrol, robots, robots_of_files, root, seed,
+    NamedRobot, gait_commands, load_named_robot, load_robots_from_files, paper_robot,
+    patrolling_robot, rng, robot, robot_with_patrol, robots, root, seed,
 };
 
 /// CPU cycles in a microsecond, for pulse widths in floating point.

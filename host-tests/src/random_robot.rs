@@ -1,21 +1,21 @@
 //! Generator of random, valid robots without symmetry.
 //!
 //! In the paper's robot, left equals right, head equals tail and every margin's limit is 0.3. Code that confuses two of
-//! these numbers still works with that robot. In a random robot all lengths, servos and limits differ, except that both
+//! these numbers still works with this robot. In a random robot all lengths, servos and limits differ, except that both
 //! sides of the chassis are equal and the leg is a parallelogram. The generator writes the text of a robot.toml, and
-//! [`Robot::parse`] rejects invalid robots, so each result is a robot that a builder could have. Each robot has a gait
-//! that moves, and about half of the robots measure the voltage of their servos' rail.
+//! [`Robot::parse`] rejects invalid robots, so each result is a robot that a user could build. Each robot has a gait
+//! that moves, and about half of the robots measure the voltage of their servo rail.
 
 use std::fmt::Write;
 
 use fastrand::Rng;
 use lizard_core::numbers::gaits::{Gait, Wave};
-use lizard_core::numbers::section::SPACE_BYTES;
+use lizard_core::numbers::section::REGION_BYTES;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 use lizard_robot::Robot;
 
-/// Number of drafts of a robot after which the search fails.
-const MAX_DRAFTS: usize = 1000;
+/// Number of drafts of a robot after which the generator fails.
+const MAX_DRAFT_COUNT: usize = 1000;
 
 /// The pins to which a servo may be connected.
 const PINS: [&str; 17] = [
@@ -32,12 +32,12 @@ const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 /// Returns a random valid robot and the text of its robot.toml.
 ///
 /// # Panics
-/// If no draft is a valid robot, which would be an error of the generator.
+/// If no draft is a valid robot, which would be an error in the generator.
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
-    (0..MAX_DRAFTS)
+    (0..MAX_DRAFT_COUNT)
         .find_map(|_| {
-            let body = Body::random(rng)?;
-            let mut text = body.text();
+            let body = Body::generate(rng)?;
+            let mut text = body.to_toml();
             Robot::parse(&text).ok()?;
             for gait in random_gaits(rng, &body) {
                 text = with_allowed_gait(text, &gait);
@@ -52,18 +52,18 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
         .expect("one of the drafts is a valid robot")
 }
 
-/// Returns a robot with as many additional gaits as flash has room for. No room is left for the maps of certified
-/// cells. The names of the additional gaits have `name_length` characters and differ only in the last two.
+/// Returns a robot with as many additional gaits as fit in flash. No room is left for the maps of certified cells. The
+/// names of the additional gaits have `name_length` characters and differ only in the last two.
 ///
 /// # Panics
-/// If the robot has no gait that moves, or is not valid.
+/// If the robot is invalid or has no gait that moves.
 pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
     let robot = Robot::parse(text).expect("the text describes a valid robot");
     let gait = robot.gaits().iter().find(|gait| gait.has_movement());
     let gait_name = gait.expect("the robot has a gait that moves").name();
     // Leaves room for one more waveform, which the additional gaits may need.
     let used_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
-    let free_bytes = usize::from(SPACE_BYTES).saturating_sub(used_bytes);
+    let free_bytes = usize::from(REGION_BYTES).saturating_sub(used_bytes);
     let gaits = (0..free_bytes / (size_of::<Gait>() + name_length)).map(|number| {
         let name = format!("{:n<1$}{number:02}", "on-and-o", name_length - 2);
         format!("[gait.{name}]\nlike = \"{gait_name}\"\n")
@@ -91,8 +91,8 @@ struct Body {
 }
 
 impl Body {
-    /// Returns a random body with a safe neutral pose; `None` if no such pose was found.
-    fn random(rng: &mut Rng) -> Option<Self> {
+    /// Returns a random body with a safe neutral pose; `None` if no safe pose was found.
+    fn generate(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
         let mut random_length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
         let chassis = random_length(100.0, 170.0);
@@ -129,9 +129,9 @@ impl Body {
         for (side, halves) in [(Side::Left, [12, 13]), (Side::Right, [17, 18])] {
             let max_shift = 0.5 * limits.stroke_max.min(-limits.stroke_min);
             let nominal_length = solution.side(side).d + random_between(rng, -max_shift, max_shift);
-            let first_share = random_between(rng, 0.35, 0.65);
-            links[halves[0]] = round(nominal_length * first_share);
-            links[halves[1]] = round(nominal_length * (1.0 - first_share));
+            let first_fraction = random_between(rng, 0.35, 0.65);
+            links[halves[0]] = round(nominal_length * first_fraction);
+            links[halves[1]] = round(nominal_length * (1.0 - first_fraction));
             // The shortest length of a slider must be positive.
             limits.stroke_min = limits.stroke_min.max(-round(0.8 * nominal_length));
         }
@@ -167,8 +167,8 @@ impl Body {
         })
     }
 
-    /// Returns the text of a robot whose only gait is `stand`.
-    fn text(&self) -> String {
+    /// Returns the robot.toml text of a robot whose only gait is `stand`.
+    fn to_toml(&self) -> String {
         let mut text = String::from("[links]\n");
         let Lizard { leg, .. } = self.lizard;
         for (link, length) in self.links.iter().enumerate() {
@@ -214,10 +214,10 @@ impl Body {
     }
 }
 
-/// Returns the angles of a random neutral pose, deg. Its margins exceed their limits by at least `ROOM`; the strokes
-/// are not checked. `None` if no such pose was found.
+/// Returns the angles of a random neutral pose, deg; `None` if no pose was found. The pose's margins exceed their
+/// limits by at least `ROOM`; the strokes are not checked.
 fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
-    /// Minimum distance of every margin from its limit, a sine.
+    /// The smallest allowed distance of a margin from its limit, a sine.
     const ROOM: f64 = 0.12;
     (0..200).find_map(|_| {
         let [front_left, front_right, rear_left, rear_right] =
@@ -240,10 +240,10 @@ fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f6
     })
 }
 
-/// Returns the text of a rail on an analogue pin without a servo, with random thresholds.
+/// Returns the text of a measured rail with random thresholds, on an analogue pin that no servo uses.
 fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let free_pin = pins[4..].iter().find(|pin| pin.starts_with('A'));
-    let pin = free_pin.expect("six analogue pins are too many for four servos");
+    let pin = free_pin.expect("four servos leave at least two of six analogue pins free");
     let ratio = round(random_between(rng, 1.5, 3.0));
     // The highest voltage at the pin is 5 V.
     let slow = round(ratio * random_between(rng, 2.4, 4.0));
@@ -256,14 +256,14 @@ fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     )
 }
 
-/// A function that returns a gait's text for a size from 0 to 1; some gaits ignore the size.
-type GaitOfSize = Box<dyn Fn(f64) -> String>;
+/// A function that returns a gait's text for a size between 0 and 1. Some gaits ignore the size.
+type SizedGait = Box<dyn Fn(f64) -> String>;
 
 /// Returns random gaits of every kind: waves, held gaits, reversed and mirrored gaits, and paths of head and tail.
-fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
+fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<SizedGait> {
     let mut gaits = Vec::new();
     let random_period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
-    let table_of_legs = |values: [f64; 4]| {
+    let format_leg_table = |values: [f64; 4]| {
         let pairs: Vec<String> = LEGS
             .iter()
             .zip(values)
@@ -283,20 +283,20 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
         "[gait.wander]\nperiod = {}\nwaveform = \"wave\"\nduty = {}\nstart = {}\ngain = {}",
         random_period(rng),
         round_factor(random_between(rng, 0.5, 0.85)),
-        table_of_legs(wave_starts),
-        table_of_legs(wave_gains),
+        format_leg_table(wave_starts),
+        format_leg_table(wave_gains),
     );
     let mut order = LEGS;
     rng.shuffle(&mut order);
     let held_text = format!(
         "[gait.creep-along]\nperiod = {}\nwaveform = \"held\"\norder = {order:?}\ngain = {}",
         random_period(rng),
-        table_of_legs(held_gains),
+        format_leg_table(held_gains),
     );
     for gait_text in [wave_text, held_text] {
         gaits.push(Box::new(move |size| {
             format!("{gait_text}\namplitude = {}", round_factor(30.0 * size))
-        }) as GaitOfSize);
+        }) as SizedGait);
     }
     gaits.push(Box::new(|_| "[gait.retreat]\nreverse = \"wander\"".into()));
     gaits.push(Box::new(|_| "[gait.advance]\nreverse = \"retreat\"".into()));
@@ -310,10 +310,10 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     gaits.push(Box::new(move |size| {
         format!(
             "{curve_text}\ngain = {}",
-            table_of_legs([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
+            format_leg_table([size, 1.0, 0.5 * size, -0.5 * size].map(round_factor))
         )
     }));
-    // A path of head or tail is centred at the end point's position in the neutral pose.
+    // A path of head or tail is centred on the end point's position in the neutral pose.
     let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {
         return gaits;
     };
@@ -335,9 +335,9 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<GaitOfSize> {
     gaits
 }
 
-/// Returns a robot's text with one more gait, of the largest size that the robot allows. Returns the text unchanged if
-/// the gait is rejected at every size.
-fn with_allowed_gait(text: String, gait: &GaitOfSize) -> String {
+/// Adds a gait to a robot's text, in the largest size that the robot allows. Returns the text unchanged if the gait is
+/// rejected in every size.
+fn with_allowed_gait(text: String, gait: &SizedGait) -> String {
     [1.0, 0.6, 0.35, 0.2, 0.1, 0.05]
         .into_iter()
         .map(|size| format!("{text}{}\n", gait(size)))
@@ -354,12 +354,12 @@ fn random_between(rng: &mut Rng, min: f64, max: f64) -> f64 {
     min + (max - min) * rng.f64()
 }
 
-/// Rounds a length or an angle to the precision of a file written by hand.
+/// Rounds a length or an angle to the two decimals of a hand-written file.
 fn round(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// Rounds a factor to the precision of a file written by hand.
+/// Rounds a factor to the four decimals of a hand-written file.
 fn round_factor(value: f64) -> f64 {
     (value * 1e4).round() / 1e4
 }
@@ -369,7 +369,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn random_robots_are_valid_differ_in_every_length_and_limit_and_move() {
+    fn random_robots_move_and_have_distinct_lengths_and_limits() {
         let mut rng = Rng::with_seed(1);
         let mut gait_count = 0;
         for _ in 0..20 {

@@ -1,10 +1,10 @@
-//! Robots under test: those of the repository's files, and random robots.
+//! Robots under test, from the repository's files and random.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use fastrand::Rng;
-use lizard_host::patrol::with_patrol;
+use lizard_host::patrol::add_patrol;
 use lizard_robot::{CheckedGait, Robot, edit::without_gait};
 
 use crate::random_robot::random_robot;
@@ -26,9 +26,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The robot under test. Its file is the one that `LIZARD_ROBOT` names, relative to the root of the repository, or
-/// robot.toml if the variable is not set. `make test ROBOT=...` sets the variable and builds the firmware from the same
-/// file.
+/// The robot under test. `LIZARD_ROBOT` names its file, relative to the root of the repository; the default is
+/// robot.toml. `make test ROBOT=...` sets the variable and builds the firmware from the same file.
 ///
 /// # Panics
 /// If the file is missing or invalid.
@@ -49,14 +48,14 @@ pub fn patrolling_robot() -> &'static Robot {
     &ROBOT
 }
 
-/// Returns the robot of a robot.toml's text with two inputs and a routine added. Its last gaits are removed one by one
-/// until flash has room for the routine.
+/// Parses the text of a robot.toml, with two inputs and a routine added. The last gaits are removed one by one until
+/// flash has room for the routine.
 ///
 /// # Errors
 /// Fails if there is no room even with one gait, or if the text is not a valid robot.
 pub fn robot_with_patrol(text: &str) -> Result<Robot, lizard_robot::Error> {
     const REST: &str = "rest 1 s";
-    with_patrol(text, &[REST]).or_else(|error| {
+    add_patrol(text, &[REST]).or_else(|error| {
         let robot = Robot::parse(text)?;
         let names = robot.gaits().iter().skip(1).map(|gait| gait.name());
         // A gait to which another gait or a routine refers cannot be removed.
@@ -73,24 +72,24 @@ fn robot_file() -> PathBuf {
     root().join(named_path.unwrap_or_else(|| "robot.toml".into()))
 }
 
-/// The paper's robot, for tests that check the paper's figures.
+/// The paper's robot, for tests that check the paper's values.
 ///
 /// # Panics
 /// If robots/paper.toml is missing or invalid.
 pub fn paper_robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| robot_named("paper"));
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| load_named_robot("paper"));
     &ROBOT
 }
 
-/// Returns the robot of a file in robots/, named without its extension.
+/// Loads the robot from the file `name`.toml in robots/.
 ///
 /// # Panics
 /// If the file is missing or invalid.
-pub fn robot_named(name: &str) -> Robot {
+pub fn load_named_robot(name: &str) -> Robot {
     load(&root().join(format!("robots/{name}.toml")))
 }
 
-/// The console commands of the gaits of the robot under test.
+/// The console commands that start the gaits of the robot under test.
 pub fn gait_commands() -> Vec<String> {
     robot().gaits().iter().map(CheckedGait::command).collect()
 }
@@ -106,16 +105,19 @@ pub fn robots() -> &'static [NamedRobot] {
             name: format!("random robot {number} of seed {}", seed()),
             robot: random_robot(&mut rng(number)).1,
         });
-        robots_of_files().into_iter().chain(random_robots).collect()
+        load_robots_from_files()
+            .into_iter()
+            .chain(random_robots)
+            .collect()
     });
     &ROBOTS
 }
 
-/// Returns the robot under test and every robot in robots/.
+/// Loads the robot under test and every robot in robots/.
 ///
 /// # Panics
 /// If a file is invalid. The message names the file.
-pub fn robots_of_files() -> Vec<NamedRobot> {
+pub fn load_robots_from_files() -> Vec<NamedRobot> {
     let folder = std::fs::read_dir(root().join("robots")).expect("the folder robots/ is readable");
     let files = folder.map(|entry| entry.expect("the folder entry is readable").path());
     let mut files: Vec<PathBuf> = files
@@ -125,7 +127,7 @@ pub fn robots_of_files() -> Vec<NamedRobot> {
         })
         .collect();
     files.sort();
-    assert!(!files.is_empty(), "robots/ has no robots");
+    assert!(!files.is_empty(), "robots/ contains no robots");
     let robot_under_test = NamedRobot {
         name: "the robot under test".into(),
         robot: robot().clone(),
@@ -141,7 +143,7 @@ pub fn robots_of_files() -> Vec<NamedRobot> {
     [robot_under_test].into_iter().chain(named_robots).collect()
 }
 
-/// The seed of all random numbers: `PROPTEST_RNG_SEED`, or 1 if it is not set.
+/// The seed of all random numbers, from the environment variable `PROPTEST_RNG_SEED` (default 1).
 ///
 /// # Panics
 /// If the variable is not a whole number.
@@ -152,8 +154,8 @@ pub fn seed() -> u64 {
     })
 }
 
-/// Returns a generator of random numbers. Each `stream` has its own sequence, which is the same in every run with the
-/// same [`seed`].
+/// Returns a random number generator. Each `stream` has its own sequence, which is the same in every run with the same
+/// [`seed`].
 pub fn rng(stream: u64) -> Rng {
     Rng::with_seed(seed().wrapping_mul(1_000_003).wrapping_add(stream))
 }

@@ -1,8 +1,8 @@
 //! Robustness tests of the core, compiled for this machine. The inputs are two million random bytes, two million nearly
-//! valid lines and two thousand EEPROM contents. Each line must get one answer, no pulse may be outside the limits, and
-//! the EEPROM must always be valid.
+//! valid lines and two thousand EEPROM contents. Each line must get one answer, every pulse must be within the limits,
+//! and the EEPROM must always be valid.
 //!
-//! With `LIZARD_FUZZ=3`, as in continuous integration, the tests take three times as many inputs.
+//! With `LIZARD_FUZZ=3`, as in continuous integration, the number of inputs is three times as large.
 
 use std::thread;
 
@@ -15,13 +15,13 @@ use lizard_host_tests::{robot, scaled_count};
 #[path = "firmware/random_lines.rs"]
 mod random_lines;
 
-/// Number of random inputs of a test: bytes or lines. The test of EEPROM contents takes one for each thousand of them.
+/// Number of random bytes or lines in a test. The test of EEPROM contents takes a thousandth of this number.
 const INPUT_COUNT: u64 = 2_000_000;
 
-/// Number of threads of a test.
+/// Number of threads in a test.
 const THREAD_COUNT: u64 = 2;
 
-/// Runs a test on several threads. Each thread has its own random numbers and gets its share of [`INPUT_COUNT`].
+/// Runs a test on several threads. Each thread gets its own random numbers and an equal part of [`INPUT_COUNT`].
 fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
     thread::scope(|scope| {
         let spawn_test = |thread_number| {
@@ -43,9 +43,9 @@ fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
 #[test]
 fn millions_of_random_bytes_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
-        let mut board = Board::new(robot(), Eeprom::blank());
+        let mut board = Board::power_on(robot(), Eeprom::blank());
         for byte_index in 0..count {
-            // Line ends are more frequent than in random bytes.
+            // Line ends are more frequent than other bytes.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
             board.send_byte(byte);
             if byte_index % 64 == 0 {
@@ -64,9 +64,9 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
 }
 
 #[test]
-fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
+fn millions_of_nearly_valid_lines_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
-        let mut board = Board::new(robot(), Eeprom::blank());
+        let mut board = Board::power_on(robot(), Eeprom::blank());
         let mut accepted_count = 0u64;
         for line_index in 0..count {
             for byte in random_lines::nearly_valid_line(rng) {
@@ -81,12 +81,15 @@ fn millions_of_lines_that_are_nearly_valid_do_no_harm_to_the_core() {
                 board.assert_memory_is_valid();
             }
         }
-        assert!(accepted_count > count / 4, "{accepted_count} of {count}");
+        assert!(
+            accepted_count > count / 4,
+            "{accepted_count} of {count} lines accepted"
+        );
     });
 }
 
 #[test]
-fn thousands_of_memories_do_no_harm_to_the_core() {
+fn thousands_of_eeprom_contents_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
         for _ in 0..count / 1_000 {
             // Changes up to one byte, three bytes or most bytes.

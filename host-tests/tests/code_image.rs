@@ -1,7 +1,7 @@
-//! Tests that the program `lizard` contains the firmware code that the source builds.
+//! Tests that the program `lizard` contains the firmware code built from the source.
 //!
-//! The program contains `firmware/code.hex`, for users without a compiler. If the source changes and this file does
-//! not, boards that these users flash do not behave as the source says.
+//! The program contains `firmware/code.hex` for users without a compiler. If the source changes but this file does not,
+//! boards that these users flash differ from the source.
 
 use std::io::Write as _;
 use std::process::Command;
@@ -15,18 +15,17 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, State, Uno};
 
-/// The failure message if `firmware/code.hex` is out of date.
-const OUT_OF_DATE_MESSAGE: &str =
-    "firmware/code.hex is not what the source builds: run `make code-image` and commit it";
+/// The error message if `firmware/code.hex` is outdated.
+const OUTDATED_MESSAGE: &str = "firmware/code.hex differs from the code built from the source: run `make code-image` and commit it";
 
 /// Returns the code of an image, from address 0 to the robot's section. Unused bytes are 0xff.
-fn code_bytes(image: &Image) -> Vec<u8> {
+fn extract_code(image: &Image) -> Vec<u8> {
     let mut code = image.flash();
     code.resize(START_ADDRESS.into(), 0xff);
     code
 }
 
-/// Returns the image that the program `lizard` contains, with the section of the robot under test added.
+/// Returns the image that the program `lizard` contains, with the section of the robot under test.
 fn embedded_image() -> Image {
     let mut image = Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX");
     let section_addresses = u32::from(START_ADDRESS)..0x7e00;
@@ -36,12 +35,12 @@ fn embedded_image() -> Image {
     image
 }
 
-/// Returns the versions of the installed compiler and linker, one per line.
-fn installed_tool_versions() -> String {
+/// Reads the versions of the installed compiler and linker, one per line.
+fn read_tool_versions() -> String {
     let script = root().join("scripts/code-image");
     let output = Command::new(script)
         .arg("--tools")
-        .arg(FirmwareBench::elf())
+        .arg(FirmwareBench::elf_path())
         .output();
     let output = output.expect("scripts/code-image runs");
     let output_text = String::from_utf8(output.stdout).expect("the output is UTF-8");
@@ -81,29 +80,29 @@ fn record_minute(image: Image) -> Recording {
 }
 
 #[test]
-fn the_program_contains_the_code_that_the_source_builds() {
-    let embedded_code = code_bytes(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
+fn the_program_contains_the_code_built_from_the_source() {
+    let embedded_code = extract_code(&Image::parse_hex(CODE_HEX).expect("code.hex is Intel HEX"));
     let mut built_image = FirmwareBench::image();
     built_image
         .replace(u32::from(START_ADDRESS)..0x7e00, &[])
         .expect("the robot can be removed");
-    let built_code = code_bytes(&built_image);
+    let built_code = extract_code(&built_image);
     let recorded_versions = std::fs::read_to_string(root().join("firmware/tools.txt"));
     let recorded_versions = recorded_versions.expect("firmware/tools.txt is readable");
-    if recorded_versions == installed_tool_versions() {
+    if recorded_versions == read_tool_versions() {
         let first_difference =
             (0..START_ADDRESS.into()).find(|&index| embedded_code[index] != built_code[index]);
         assert_eq!(
             first_difference, None,
-            "{OUT_OF_DATE_MESSAGE} (the first byte that differs)"
+            "{OUTDATED_MESSAGE} (address of the first differing byte)"
         );
         return;
     }
     // Writes to stderr directly, because the test harness hides the output of `eprintln!` if the test passes.
     let note = format!(
-        "code_image: the installed tools differ from the tools that made firmware/code.hex, so the test compares \
-         a minute of behaviour instead of the bytes. Recorded:\n{recorded_versions}Installed:\n{}",
-        installed_tool_versions()
+        "code_image: the installed tools differ from the tools that built firmware/code.hex, so the test compares a \
+         minute of behaviour instead of the bytes. Recorded:\n{recorded_versions}Installed:\n{}",
+        read_tool_versions()
     );
     std::io::stderr()
         .write_all(note.as_bytes())
@@ -112,11 +111,11 @@ fn the_program_contains_the_code_that_the_source_builds() {
         [embedded_image(), FirmwareBench::image()].map(record_minute);
     assert_eq!(
         embedded_recording.banner, built_recording.banner,
-        "{OUT_OF_DATE_MESSAGE} (its banner)"
+        "{OUTDATED_MESSAGE} (its banner)"
     );
     assert_eq!(
         embedded_recording.answers, built_recording.answers,
-        "{OUT_OF_DATE_MESSAGE} (its answers)"
+        "{OUTDATED_MESSAGE} (its answers)"
     );
     assert_eq!(
         embedded_recording.frames.widths.len(),
@@ -131,16 +130,16 @@ fn the_program_contains_the_code_that_the_source_builds() {
     {
         assert_eq!(
             embedded_widths, built_widths,
-            "{OUT_OF_DATE_MESSAGE} (the pulses of frame {index})"
+            "{OUTDATED_MESSAGE} (the pulses of frame {index})"
         );
     }
 }
 
 #[test]
-fn the_code_in_the_program_has_no_robot_and_walks_with_a_robot_added() {
+fn the_code_in_the_program_walks_once_a_robot_is_added() {
     let recording = record_minute(embedded_image());
     let banner = recording.banner.expect("the firmware prints its banner");
-    let robot_label = lizard_host::firmware::robot_label(robot().firmware());
+    let robot_label = lizard_host::firmware::format_robot_label(robot().firmware());
     assert!(
         banner.contains(&format!(" robot {robot_label}")),
         "{banner}"

@@ -1,4 +1,4 @@
-//! Tests of the documentation: its pages name only tests, code items, links and files that exist.
+//! Tests of the documentation: its pages name only existing tests, code items, links and files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,23 +7,23 @@ use std::path::{Path, PathBuf};
 
 use lizard_core::numbers::curve::Table;
 use lizard_core::numbers::gaits::{Gait, Wave};
-use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS};
+use lizard_core::numbers::section::{Header, Numbers, REGION_BYTES, START_ADDRESS};
 use lizard_host_tests::root;
 
-/// Reads a file, given by its path from the root of the repository.
+/// Reads a file. The path is relative to the root of the repository.
 fn read_file(path: impl AsRef<Path>) -> String {
     let path = root().join(path);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Returns the paths of the files and folders in a folder, given by its path from the root of the repository.
-fn paths_in(folder: impl AsRef<Path>) -> impl Iterator<Item = PathBuf> {
+/// Lists the paths of the files and folders in a folder. The path is relative to the root of the repository.
+fn list_paths(folder: impl AsRef<Path>) -> impl Iterator<Item = PathBuf> {
     let entries = fs::read_dir(root().join(folder)).expect("the folder is readable");
     entries.map(|entry| entry.expect("the folder entry is readable").path())
 }
 
 /// Returns the text between the first `start` and the next `end`.
-fn text_between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
+fn find_text_between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
     let pieces = text
         .split_once(start)
         .and_then(|(_, rest)| rest.split_once(end));
@@ -32,9 +32,9 @@ fn text_between<'a>(text: &'a str, start: &str, end: &str) -> &'a str {
 }
 
 #[test]
-fn every_fault_in_the_documentation_names_an_existing_test() {
+fn every_fault_in_the_docs_names_an_existing_test() {
     let page = read_file("docs/faults.md");
-    let table = text_between(&page, "## Each of them", "\n## ");
+    let table = find_text_between(&page, "## Each of them", "\n## ");
     let rows = table.lines().filter(|line| line.starts_with("| ")).skip(1);
     let mut row_count = 0;
     for row in rows {
@@ -49,18 +49,18 @@ fn every_fault_in_the_documentation_names_an_existing_test() {
         let source = folders
             .iter()
             .find_map(|folder| fs::read_to_string(folder.join(file)).ok());
-        let source = source.unwrap_or_else(|| panic!("there is no file {file}"));
+        let source = source.unwrap_or_else(|| panic!("the file {file} does not exist"));
         assert!(
             source.contains(&format!("#[test]\nfn {test_name}()")),
-            "{file} has no {test_name}"
+            "{file} contains no test {test_name}"
         );
         row_count += 1;
     }
-    assert!(row_count > 20, "{row_count}");
+    assert!(row_count > 20, "only {row_count} rows");
 }
 
-/// Returns the table rows `| offset | bytes | field |` of a type, in the order of the given fields. The code compiles
-/// only if every field of the type is given.
+/// Returns the table rows `| offset | bytes | field |` of a type, in the order of the arguments. The code compiles only
+/// if the arguments contain every field of the type.
 macro_rules! rows {
     ($type:ident, $start:expr, [$($field:ident),+ $(,)?]) => {{
         let _ = |$type { $($field: _),+ }: &$type| ();
@@ -81,7 +81,7 @@ fn field_size<T, F>(_: fn(&T) -> &F) -> usize {
 }
 
 #[test]
-fn the_firmware_page_states_the_offset_and_size_of_every_field_of_a_robots_section() {
+fn the_firmware_page_states_every_offset_and_size_in_a_robots_section() {
     let header_rows = rows!(
         Header,
         0,
@@ -107,18 +107,18 @@ fn the_firmware_page_states_the_offset_and_size_of_every_field_of_a_robots_secti
             maps
         ]
     );
-    let row_of_part = |name: &str, bytes: usize| format!("| {name} | {bytes} each |");
+    let format_part_row = |name: &str, bytes: usize| format!("| {name} | {bytes} each |");
     let part_rows = [
         format!("| header | {} |", size_of::<Header>()),
         format!("| numbers | {} |", size_of::<Numbers>()),
-        row_of_part("curves", size_of::<Table>()),
-        row_of_part("gaits", size_of::<Gait>()),
-        row_of_part("waveforms", size_of::<Wave>()),
+        format_part_row("curves", size_of::<Table>()),
+        format_part_row("gaits", size_of::<Gait>()),
+        format_part_row("waveforms", size_of::<Wave>()),
     ];
     let address_texts = [
         format!("{START_ADDRESS:#x}"),
-        format!("{:#x}", START_ADDRESS + SPACE_BYTES),
-        format!("{SPACE_BYTES} bytes"),
+        format!("{:#x}", START_ADDRESS + REGION_BYTES),
+        format!("{REGION_BYTES} bytes"),
     ];
     let page = read_file("docs/firmware.md");
     let missing_texts: Vec<String> = [
@@ -133,19 +133,19 @@ fn the_firmware_page_states_the_offset_and_size_of_every_field_of_a_robots_secti
     .collect();
     assert!(
         missing_texts.is_empty(),
-        "docs/firmware.md lacks:\n{}",
+        "missing in docs/firmware.md:\n{}",
         missing_texts.join("\n")
     );
 }
 
-/// Returns the words of a text. As in the paths of crates, a word may contain dashes, underscores and slashes.
-fn words_of(text: &str) -> BTreeSet<&str> {
+/// Returns the words of a text. As in crate paths, a word may contain dashes, underscores and slashes.
+fn split_words(text: &str) -> BTreeSet<&str> {
     let is_separator = |c: char| !(c.is_alphanumeric() || "_-/".contains(c));
     text.split(is_separator).collect()
 }
 
 #[test]
-fn the_license_lists_every_crate_by_its_use_of_libsimavr() {
+fn the_license_lists_every_crate_with_or_without_libsimavr() {
     let license = read_file("LICENSE");
     let (_, text) = license
         .split_once("therefore licensed")
@@ -154,11 +154,11 @@ fn the_license_lists_every_crate_by_its_use_of_libsimavr() {
         .split_once("The firmware")
         .expect("LICENSE has both lists");
     let (simavr_users, others) = (
-        words_of(text_about_simavr_users),
-        words_of(text_about_others),
+        split_words(text_about_simavr_users),
+        split_words(text_about_others),
     );
     let workspace_manifest = read_file("crates/Cargo.toml");
-    let members = text_between(&workspace_manifest, "members = [", "]");
+    let members = find_text_between(&workspace_manifest, "members = [", "]");
     let member_folders: Vec<&str> = members.split('"').skip(1).step_by(2).collect();
     assert!(member_folders.len() > 9, "{member_folders:?}");
     for member_folder in member_folders {
@@ -183,9 +183,9 @@ fn the_license_lists_every_crate_by_its_use_of_libsimavr() {
 }
 
 #[test]
-fn every_code_item_that_a_page_names_by_its_path_exists() {
+fn every_code_path_on_a_page_names_an_existing_item() {
     let mut item_count = 0;
-    let pages = paths_in("docs");
+    let pages = list_paths("docs");
     for page in pages.filter(|page| page.extension().is_some_and(|extension| extension == "md")) {
         let text = read_file(&page);
         for path in text.split('`').filter(|code| code.starts_with("lizard_")) {
@@ -208,9 +208,9 @@ fn every_code_item_that_a_page_names_by_its_path_exists() {
     assert!(item_count > 0, "no page names a code item");
 }
 
-/// Returns the text of all Rust files in a folder and its subfolders.
+/// Reads the text of all Rust files in a folder and its subfolders.
 fn read_sources(folder: &Path) -> String {
-    paths_in(folder)
+    list_paths(folder)
         .map(|path| match path.is_dir() {
             true => read_sources(&path),
             false => read_file(path),
@@ -218,12 +218,12 @@ fn read_sources(folder: &Path) -> String {
         .collect()
 }
 
-/// Returns the files that contain a whole word, in upper or lower case. `path` is a file, or a folder that is searched
+/// Finds the files that contain a whole word in upper or lower case. `path` is a file, or a folder that is searched
 /// with its subfolders.
-fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
+fn find_files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
     if path.is_dir() {
-        return paths_in(path)
-            .flat_map(|path| files_with_word(&path, word))
+        return list_paths(path)
+            .flat_map(|path| find_files_with_word(&path, word))
             .collect();
     }
     let text = read_file(path);
@@ -237,11 +237,11 @@ fn files_with_word(path: &Path, word: &str) -> BTreeSet<PathBuf> {
 
 /// Compares the files that CONTRIBUTING.md lists for a console command with the files that contain the command
 /// `center`. This word occurs only as the command, while other commands, such as `deadman`, also occur in sentences. No
-/// message names `center`, so text.rs is searched for `deadman` instead.
+/// message contains `center`, so the test searches text.rs for `deadman` instead.
 #[test]
 fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
     let page = read_file("CONTRIBUTING.md");
-    let list = text_between(&page, "**A console command.**", "**A gait.**");
+    let list = find_text_between(&page, "**A console command.**", "**A gait.**");
     let quoted = list.split('`').skip(1).step_by(2);
     let files = quoted.filter(|text| text.contains('/') && !text.contains(' '));
     let listed_files: BTreeSet<PathBuf> = files.map(PathBuf::from).collect();
@@ -255,9 +255,9 @@ fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
     ];
     let mut files_with_command: BTreeSet<PathBuf> = folders
         .iter()
-        .flat_map(|folder| files_with_word(&root().join(folder), "center"))
+        .flat_map(|folder| find_files_with_word(&root().join(folder), "center"))
         .collect();
-    files_with_command.extend(files_with_word(
+    files_with_command.extend(find_files_with_word(
         &root().join("crates/core/src/console/text.rs"),
         "deadman",
     ));
@@ -265,10 +265,10 @@ fn a_console_command_is_in_at_most_seven_files_and_the_docs_name_them() {
     assert!(listed_files.len() <= 7, "{listed_files:?}");
 }
 
-/// Returns the paths and texts of README.md, CONTRIBUTING.md and the pages in docs/.
+/// Reads README.md, CONTRIBUTING.md and the pages in docs/, and returns their paths and texts.
 fn read_pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md"), root().join("CONTRIBUTING.md")];
-    paths.extend(paths_in("docs"));
+    paths.extend(list_paths("docs"));
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
     let read_page = |path: PathBuf| {
         let text = read_file(&path);
@@ -277,8 +277,8 @@ fn read_pages() -> Vec<(PathBuf, String)> {
     paths.into_iter().map(read_page).collect()
 }
 
-/// Returns the targets of a page's links and pictures: the texts between `](` and `)`, and the values of `src="..."`.
-fn links_of(text: &str) -> Vec<&str> {
+/// Returns the targets of a page's links and images: the texts between `](` and `)`, and the values of `src="..."`.
+fn find_links(text: &str) -> Vec<&str> {
     let texts_between = |start: &'static str, end: char| {
         let pieces = text.split(start).skip(1);
         pieces.filter_map(move |rest| rest.split_once(end).map(|(link, _)| link))
@@ -288,9 +288,9 @@ fn links_of(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// Returns the anchors that GitHub and mkdocs make from a page's headings.
-fn anchors_of(text: &str) -> Vec<String> {
-    let anchor_of = |line: &str| {
+/// Returns the anchors that GitHub and mkdocs derive from a page's headings.
+fn find_anchors(text: &str) -> Vec<String> {
+    let to_anchor = |line: &str| {
         let title = line.trim_start_matches('#').trim().to_lowercase();
         let letters = title
             .chars()
@@ -299,7 +299,7 @@ fn anchors_of(text: &str) -> Vec<String> {
     };
     text.lines()
         .filter(|line| line.starts_with('#'))
-        .map(anchor_of)
+        .map(to_anchor)
         .collect()
 }
 
@@ -307,7 +307,7 @@ fn anchors_of(text: &str) -> Vec<String> {
 fn every_link_of_a_page_has_an_existing_target() {
     let mut link_count = 0;
     for (page, text) in read_pages() {
-        for link in links_of(&text) {
+        for link in find_links(&text) {
             if link.contains("://") {
                 continue;
             }
@@ -318,7 +318,7 @@ fn every_link_of_a_page_has_an_existing_target() {
             };
             assert!(target.exists(), "{}: {link}", page.display());
             if !anchor.is_empty() {
-                let has_anchor = anchors_of(&read_file(&target))
+                let has_anchor = find_anchors(&read_file(&target))
                     .iter()
                     .any(|candidate| candidate == anchor);
                 assert!(has_anchor, "{}: {link}", page.display());
@@ -326,13 +326,13 @@ fn every_link_of_a_page_has_an_existing_target() {
             link_count += 1;
         }
     }
-    assert!(link_count > 60, "{link_count}");
+    assert!(link_count > 60, "only {link_count} links");
 }
 
 #[test]
-fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
+fn the_book_contains_every_page_of_docs_and_the_readme_is_short() {
     let book = read_file("mkdocs.yml");
-    let count_of = |name: &str| book.matches(name).count();
+    let count = |name: &str| book.matches(name).count();
     for (page, _) in read_pages() {
         let name = page
             .file_name()
@@ -341,9 +341,9 @@ fn the_book_has_every_page_of_docs_and_the_readme_is_short() {
             .expect("the file name is UTF-8");
         if page.parent().is_some_and(|folder| folder.ends_with("docs")) {
             assert_eq!(
-                count_of(&format!("{name},"))
-                    + count_of(&format!("{name}]"))
-                    + count_of(&format!("{name}\n")),
+                count(&format!("{name},"))
+                    + count(&format!("{name}]"))
+                    + count(&format!("{name}\n")),
                 1,
                 "{name}"
             );
@@ -366,7 +366,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
         if !folder.ends_with("docs") {
             continue;
         }
-        for link in links_of(&text) {
+        for link in find_links(&text) {
             if [".svg", ".png"]
                 .iter()
                 .any(|extension| link.ends_with(extension))
@@ -374,7 +374,7 @@ fn no_picture_is_on_two_pages_of_the_book() {
                 let picture = folder.join(link);
                 assert!(
                     pictures.insert(picture),
-                    "{}: {link} is on another page, too",
+                    "{}: {link} is also on another page",
                     page.display()
                 );
             }
@@ -415,5 +415,5 @@ fn the_pages_name_the_current_version() {
             }
         }
     }
-    assert!(version_count > 10, "{version_count}");
+    assert!(version_count > 10, "only {version_count} versions");
 }

@@ -1,5 +1,5 @@
-//! Tests that run the same image on two simulators, which must agree about every pulse and every byte. docs/judges.md
-//! describes both simulators, and what their agreement proves.
+//! Tests that run the same image on two simulators, which must agree on every pulse and every byte. docs/judges.md
+//! describes both simulators and the meaning of their agreement.
 
 use std::thread;
 
@@ -12,8 +12,8 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::CheckedGait;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
-/// Returns a bench whose robot stands. The bench has recorded all outputs since power-on.
-fn standing_bench() -> FirmwareBench {
+/// Boots a bench until its robot stands. The bench has recorded all outputs since power-on.
+fn boot_to_stand() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
     bench
@@ -27,20 +27,19 @@ fn gait_commands() -> Vec<String> {
 /// The allowed difference in time between the bytes of two consoles.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum TimeTolerance {
-    /// Two cycles. Two interrupts may delay the main loop before a byte, and each may come one cycle later in one
-    /// simulator than in the other.
+    /// Two cycles. Two interrupts may delay the main loop before a byte, and each may come one cycle later on one
+    /// simulator than on the other.
     Cycles,
-    /// One iteration of the main loop, which checks only once per iteration whether the EEPROM is ready and whether a
-    /// byte of a flood has arrived.
+    /// One iteration of the main loop, which polls the EEPROM and the receiver only once per iteration.
     LoopIteration,
-    /// No limit: the consoles are not compared. While long answers are sent, some bytes of a flood are lost, and a
-    /// difference of one cycle decides which bytes.
+    /// No limit: the consoles are not compared. While long answers are sent, some bytes of a flood are lost, and the
+    /// choice of bytes depends on single cycles.
     Any,
 }
 
-/// Upper bound of the cycles of one iteration of the main loop. An iteration computes a frame, in at most
-/// 12 000 cycles, and writes a piece of a line. If the EEPROM becomes ready just before an iteration in one simulator
-/// and just after its start in the other, the main loop notices this one iteration later in the other simulator.
+/// Upper bound of the cycles in one iteration of the main loop. An iteration computes a frame in at most 12 000 cycles,
+/// and writes a piece of a line. If the EEPROM becomes ready just before an iteration on one simulator and just after
+/// its start on the other, the main loop notices the change one iteration later on the other simulator.
 const MAX_LOOP_CYCLES: u64 = 20_000;
 
 /// Runs avr8js on the bytes that the bench has received, and checks that pulses, console and EEPROM agree.
@@ -60,7 +59,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         pulse_agreement.unwrap_or_else(|difference| panic!("{case_name}: {difference}"));
     assert_eq!(
         pulse_agreement.offset_cycles, AVR8JS_LAG_CYCLES,
-        "{case_name}: the delay of the pulses"
+        "{case_name}: the pulses' delay, cycles"
     );
     let max_jitter_cycles = match tolerance {
         TimeTolerance::Cycles => Some(2),
@@ -74,7 +73,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
         assert!(
             console_agreement.offset_cycles.abs() <= 1
                 && console_agreement.jitter_cycles <= max_jitter_cycles,
-            "{case_name}: the console's times differ: {console_agreement:?}"
+            "{case_name}: the times of the console's bytes differ: {console_agreement:?}"
         );
         println!("{case_name}: {console_agreement}");
     }
@@ -82,7 +81,7 @@ fn check_agreement(bench: &mut FirmwareBench, case_name: &str, tolerance: TimeTo
     let differing_address = eeprom.iter().zip(&avr8js.eeprom).position(|(a, b)| a != b);
     assert_eq!(
         differing_address, None,
-        "{case_name}: the EEPROMs differ at this address"
+        "{case_name}: the address at which the EEPROMs differ"
     );
     println!(
         "{case_name}: {} bytes received, {pulse_agreement}; {:.1} s in {} ms of processor time",
@@ -97,8 +96,8 @@ fn unwrap_or_panic<T>(result: Result<T, String>) -> T {
 }
 
 #[test]
-fn two_simulators_agree_about_every_pulse_of_every_gait() {
-    let mut bench = standing_bench();
+fn two_simulators_agree_on_every_pulse_of_every_gait() {
+    let mut bench = boot_to_stand();
     for line in gait_commands() {
         bench.say(&line);
         bench.run_ms(2000);
@@ -110,8 +109,8 @@ fn two_simulators_agree_about_every_pulse_of_every_gait() {
 }
 
 #[test]
-fn two_simulators_agree_about_saved_settings() {
-    let mut bench = standing_bench();
+fn two_simulators_agree_on_saved_settings() {
+    let mut bench = boot_to_stand();
     for line in ["trim 1 3", "save", "trim 2 -2.5", "save", "rest"] {
         bench.say(line);
         bench.run_ms(2_000);
@@ -124,7 +123,7 @@ fn two_simulators_agree_about_saved_settings() {
         .count();
     assert!(
         written_count > 100,
-        "only {written_count} bytes of two calibrations and a pose are written"
+        "only {written_count} bytes of two calibrations and a pose were written"
     );
     check_agreement(
         &mut bench,
@@ -134,13 +133,13 @@ fn two_simulators_agree_about_saved_settings() {
 }
 
 #[test]
-fn two_simulators_agree_under_a_saturated_line() {
+fn two_simulators_agree_with_a_saturated_serial_line() {
     let moving_gait = gait_commands()
         .iter()
         .find(|line| *line != "stand")
         .cloned();
     let moving_gait = moving_gait.unwrap_or_else(|| "stand".into());
-    // No flood contains a command that moves the robot: bytes of a flood are lost, so the two simulators might obey
+    // No flood contains a command that moves the robot: bytes of a flood are lost, so the two simulators might execute
     // different commands.
     let floods = [
         ("status\n", TimeTolerance::Any),
@@ -153,7 +152,7 @@ fn two_simulators_agree_under_a_saturated_line() {
         for (flood, tolerance) in floods {
             let moving_gait = &moving_gait;
             scope.spawn(move || {
-                let mut bench = standing_bench();
+                let mut bench = boot_to_stand();
                 bench.say("watch 1");
                 bench.say(moving_gait);
                 bench.uno.flood(flood.as_bytes());
@@ -168,7 +167,7 @@ fn two_simulators_agree_under_a_saturated_line() {
 }
 
 #[test]
-fn the_known_faults_of_avr8js_still_exist_and_are_corrected() {
+fn the_known_errors_of_avr8js_still_exist_and_are_corrected() {
     unwrap_or_panic(run_judge_tests());
 }
 
@@ -180,22 +179,22 @@ fn pulse(rise_cycle: u64, width: u64) -> PinPulse {
     }
 }
 
-fn outputs_of(pulses: &[PinPulse], text: &str) -> Outputs {
-    let sent = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
+fn build_outputs(pulses: &[PinPulse], text: &str) -> Outputs {
+    let sent_bytes = text.bytes().map(|byte| SerialByte { cycle: 0, byte });
     Outputs {
         pulses: pulses.to_vec(),
-        sent: sent.collect(),
+        sent_bytes: sent_bytes.collect(),
         end_cycle: 10_000_000,
     }
 }
 
 #[test]
-fn the_first_difference_between_the_outputs_of_two_simulators_is_named() {
+fn the_first_difference_between_two_simulators_is_reported() {
     let pulses = [pulse(1_000, 24_000), pulse(321_000, 24_000)];
-    let simavr_outputs = outputs_of(&pulses, "ok walk");
+    let simavr_outputs = build_outputs(&pulses, "ok walk");
     let later_pulses = pulses.map(|original| pulse(original.rise_cycle + 1, original.width));
     let compare_with_simavr = |pulses: &[PinPulse]| {
-        let avr8js_outputs = outputs_of(pulses, "ok walk");
+        let avr8js_outputs = build_outputs(pulses, "ok walk");
         compare_pulses(&simavr_outputs, &avr8js_outputs, &[Pin::d(9)])
             .map(|agreement| (agreement.count, agreement.offset_cycles))
     };
@@ -203,16 +202,16 @@ fn the_first_difference_between_the_outputs_of_two_simulators_is_named() {
     for (avr8js_pulses, expected_text) in [
         (
             &[pulse(1_000, 24_000), pulse(321_000, 24_001)][..],
-            "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles, on avr8js D9 rises at cycle 321000 for 24001 cycles",
+            "pulse 1: on simavr D9 rises at cycle 321000 for 24000 cycles; on avr8js D9 rises at cycle 321000 for 24001 cycles",
         ),
         (
             &[pulse(1_000, 24_000), pulse(321_001, 24_000)],
             "on avr8js D9 rises at cycle 321001",
         ),
-        (&pulses[..1], "pulse 1 is on simavr alone"),
+        (&pulses[..1], "pulse 1 occurs only on simavr"),
         (
             &[pulses[0], pulses[1], pulse(641_000, 24_000)],
-            "pulse 2 is on avr8js alone: D9 rises at cycle 641000",
+            "pulse 2 occurs only on avr8js: D9 rises at cycle 641000",
         ),
         (&[], "no servo gets a pulse"),
     ] {
@@ -222,16 +221,16 @@ fn the_first_difference_between_the_outputs_of_two_simulators_is_named() {
     for (text, expected_text) in [
         (
             "ok well",
-            "byte 4 of the console, cycle 0: simavr has \"ok wa\", avr8js \"ok we\"",
+            "byte 4 of the console, cycle 0: simavr sends \"ok wa\", avr8js \"ok we\"",
         ),
-        ("ok", "byte 2 of the console is on simavr alone: \"ok \""),
+        ("ok", "byte 2 of the console occurs only on simavr: \"ok \""),
         (
             "ok walks",
-            "byte 7 of the console is on avr8js alone: \"ok walks\"",
+            "byte 7 of the console occurs only on avr8js: \"ok walks\"",
         ),
     ] {
-        let message =
-            compare_console(&simavr_outputs, &outputs_of(&pulses, text)).expect_err(expected_text);
+        let message = compare_console(&simavr_outputs, &build_outputs(&pulses, text))
+            .expect_err(expected_text);
         assert!(message.contains(expected_text), "{message}");
     }
 }

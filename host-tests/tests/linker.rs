@@ -4,7 +4,7 @@ use lizard_host_tests::avr_gcc::{compile_to_object, link, ram_address, shrink};
 use lizard_linker::{ROUTINES, Savings};
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Links a program twice: unchanged, and after `lizard-linker` has shrunk it. Returns both images with their savings.
+/// Links a program twice: unchanged, and shrunk by `lizard-linker`. Returns both images with their savings.
 fn link_plain_and_shrunk(program: &str) -> [(Image, Savings); 2] {
     let object = compile_to_object(program).expect("the program compiles");
     let (shrunk, savings) = shrink(&object);
@@ -12,21 +12,21 @@ fn link_plain_and_shrunk(program: &str) -> [(Image, Savings); 2] {
         .map(|(object, savings)| (link(ROUTINES, &object).expect("the object links"), savings))
 }
 
-/// Returns a UNO that has run the program to its end.
+/// Runs the program to its end on a UNO.
 fn run_to_end(image: &Image) -> Uno {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(100);
     assert_eq!(
         uno.peek(ram_address(image, "done")),
         1,
-        "the program has not ended, or the timer has interrupted it too rarely"
+        "the program did not finish, or the timer interrupted it too rarely"
     );
     uno
 }
 
-/// Returns a C program that a timer interrupts, with twenty functions of 600 bytes. Each function `i` of the first ten
-/// calls function `i + 10`. `extra_code` is inserted before `main`.
-fn program_with_far_calls(extra_code: &str) -> String {
+/// Generates a C program that a timer interrupts, with twenty functions of 600 bytes. Each function `i` of the first
+/// ten calls function `i + 10`. `extra_code` is inserted before `main`.
+fn generate_far_calls_program(extra_code: &str) -> String {
     let functions: String = (0..20)
         .rev()
         .map(|index| {
@@ -63,8 +63,8 @@ fn program_with_far_calls(extra_code: &str) -> String {
     )
 }
 
-/// Returns the correct result of the program that [`program_with_far_calls`] returns.
-fn expected_sum() -> u16 {
+/// Computes the correct result of [`generate_far_calls_program`]'s program.
+fn compute_expected_sum() -> u16 {
     fn f(index: u16, a: u16) -> u16 {
         let a = a.wrapping_mul(33).wrapping_add(index);
         a ^ if index < 10 {
@@ -76,28 +76,30 @@ fn expected_sum() -> u16 {
     (0..10).fold(7, |sum, index| f(index, sum))
 }
 
-fn run_for_result(image: &Image) -> u16 {
+fn run_and_read_result(image: &Image) -> u16 {
     let uno = run_to_end(image);
     let result_address = ram_address(image, "result");
     u16::from_le_bytes([uno.peek(result_address), uno.peek(result_address + 1)])
 }
 
 #[test]
-fn functions_in_another_order_compute_the_same_result_in_fewer_bytes() {
+fn reordered_functions_compute_the_same_result_in_fewer_bytes() {
     let [(plain_image, _), (shrunk_image, savings)] =
-        link_plain_and_shrunk(&program_with_far_calls(""));
-    assert_eq!(run_for_result(&plain_image), expected_sum());
-    assert_eq!(run_for_result(&shrunk_image), expected_sum());
-    // `main` cannot be near all ten functions that it calls, but each of the ten can be near the function that it
-    // calls.
-    assert!(savings.calls >= 20, "{savings:?}");
+        link_plain_and_shrunk(&generate_far_calls_program(""));
+    assert_eq!(run_and_read_result(&plain_image), compute_expected_sum());
+    assert_eq!(run_and_read_result(&shrunk_image), compute_expected_sum());
+    // `main` cannot be near all ten functions that it calls, but each of the ten functions can be near its callee.
+    assert!(savings.call_bytes >= 20, "{savings:?}");
     let end_address = |image: &Image| image.symbol("_etext").expect("the symbol exists").address;
     let saved_bytes = end_address(&plain_image) as i64 - end_address(&shrunk_image) as i64;
-    assert!(saved_bytes >= savings.calls, "{saved_bytes} {savings:?}");
+    assert!(
+        saved_bytes >= savings.call_bytes,
+        "{saved_bytes} {savings:?}"
+    );
 }
 
 #[test]
-fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
+fn functions_stay_in_place_if_one_falls_through_into_the_next() {
     // The function `upper` ends without a return, with a return that may be skipped, or with a jump to `lower`.
     for ending in ["subi r24, 5", "sbrs r24, 0\\n ret", "rjmp lower"] {
         let extra_code = format!(
@@ -108,21 +110,21 @@ fn functions_stay_in_place_if_one_of_them_falls_through_into_the_next() {
             "lower: com r24\n ret\n .size lower, . - lower\n .text\n");
             uint8_t upper(uint8_t a);"#
         );
-        let program = program_with_far_calls(&extra_code)
+        let program = generate_far_calls_program(&extra_code)
             .replace("sum = f9(sum);", "sum = f9(sum) + upper(sum);");
         let mut results = Vec::new();
         for (image, savings) in link_plain_and_shrunk(&program) {
-            assert_eq!(savings.calls, 0, "{ending}: {savings:?}");
-            let symbol_of = |name| image.symbol(name).expect("the symbol exists");
-            let upper = symbol_of("upper");
+            assert_eq!(savings.call_bytes, 0, "{ending}: {savings:?}");
+            let find_symbol = |name| image.symbol(name).expect("the symbol exists");
+            let upper = find_symbol("upper");
             assert_eq!(
-                symbol_of("lower").address,
+                find_symbol("lower").address,
                 upper.address + upper.size,
                 "{ending}"
             );
-            results.push(run_for_result(&image));
+            results.push(run_and_read_result(&image));
         }
         assert_eq!(results[0], results[1], "{ending}");
-        assert_ne!(results[0], expected_sum(), "{ending}");
+        assert_ne!(results[0], compute_expected_sum(), "{ending}");
     }
 }

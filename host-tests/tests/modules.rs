@@ -1,4 +1,5 @@
-//! Tests of the dependencies between modules: none is cyclic, and each layer of the core uses only the layers below it.
+//! Tests of the dependencies between modules: no dependency is cyclic, and each layer of the core uses only lower
+//! layers.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -11,7 +12,7 @@ const CRATES: [&str; 23] = [
     "crates/calibrate",
     "crates/contact",
     "crates/core",
-    "crates/film",
+    "crates/video",
     "crates/host",
     "crates/identify",
     "crates/kinematics",
@@ -33,27 +34,27 @@ const CRATES: [&str; 23] = [
     "web/wasm-parts",
 ];
 
-/// The layers of the core, which are its top-level modules, from top to bottom. A layer may use the layers below it.
-/// docs/structure.md describes them.
+/// The layers of the core, which are its top-level modules, from top to bottom. A layer may use the layers below.
+/// docs/structure.md describes the layers.
 const CORE_LAYERS: [&str; 6] = ["console", "control", "motion", "guard", "memory", "numbers"];
 
-/// Folders whose `mod.rs` counts as a separate module, which must not be part of a cycle either. Each folder is given
-/// by its crate and its path prefix.
+/// Folders whose `mod.rs` counts as a separate module, which must not be part of a cycle either. Each entry consists of
+/// a crate and a path prefix.
 const FOLDERS_WITH_ROOT_FILE: [(&str, &str); 2] = [
     ("crates/host", "crate::"),
     ("crates/host", "crate::commands::"),
 ];
 
-/// The other modules of its folder that each module uses, by the module's name.
+/// For each module, the other modules of the same folder that it uses.
 type Uses = BTreeMap<String, BTreeSet<String>>;
 
 #[test]
-fn no_modules_use_each_other_in_a_cycle() {
+fn no_modules_depend_on_each_other_in_a_cycle() {
     let mut use_count = 0;
     for crate_path in CRATES {
-        for folder in folders(&root().join(crate_path).join("src")) {
-            let uses =
-                folder.uses(FOLDERS_WITH_ROOT_FILE.contains(&(crate_path, &folder.path_prefix)));
+        for folder in find_folders(&root().join(crate_path).join("src")) {
+            let uses = folder
+                .find_uses(FOLDERS_WITH_ROOT_FILE.contains(&(crate_path, &folder.path_prefix)));
             use_count += uses.values().map(BTreeSet::len).sum::<usize>();
             let cyclic_modules = find_cyclic_modules(uses);
             assert!(
@@ -65,34 +66,34 @@ fn no_modules_use_each_other_in_a_cycle() {
     }
     assert!(
         use_count > 200,
-        "only {use_count} uses of another module were found"
+        "found only {use_count} uses of another module"
     );
 }
 
 #[test]
 fn a_layer_of_the_core_uses_only_layers_below_it() {
-    let core = folders(&root().join("crates/core/src")).remove(0);
-    let uses = core.uses(false);
+    let core = find_folders(&root().join("crates/core/src")).remove(0);
+    let uses = core.find_uses(false);
     for (index, layer) in CORE_LAYERS.into_iter().enumerate() {
         for other_layer in &uses[layer] {
             assert!(
                 CORE_LAYERS[index..].contains(&other_layer.as_str()),
-                "{layer} uses {other_layer}, which is not below it"
+                "{layer} uses {other_layer}, which is not a lower layer"
             );
         }
     }
 }
 
 #[test]
-fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
-    let uses_of = |lines: &[(&str, &[&str])]| -> Uses {
+fn a_cycle_is_found_without_modules_that_lead_to_or_from_it() {
+    let parse_uses = |lines: &[(&str, &[&str])]| -> Uses {
         let name_set = |names: &[&str]| names.iter().map(ToString::to_string).collect();
-        let uses_of_line = |&(name, used): &(&str, &[&str])| (name.to_string(), name_set(used));
-        lines.iter().map(uses_of_line).collect()
+        let parse_line = |&(name, used): &(&str, &[&str])| (name.to_string(), name_set(used));
+        lines.iter().map(parse_line).collect()
     };
-    let chain = uses_of(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
+    let chain = parse_uses(&[("a", &["b", "c"]), ("b", &["c"]), ("c", &[])]);
     assert!(find_cyclic_modules(chain).is_empty());
-    let cycle = uses_of(&[
+    let cycle = parse_uses(&[
         ("above", &["a"]),
         ("a", &["b"]),
         ("b", &["c"]),
@@ -103,14 +104,14 @@ fn a_cycle_is_found_without_the_modules_that_lead_to_it_or_from_it() {
 }
 
 #[test]
-fn super_is_resolved_to_the_path_of_the_parent_module_and_the_items_of_a_root_file_are_found() {
+fn super_is_resolved_to_the_parent_module_and_items_of_a_root_file_are_found() {
     let text = "use super::{Link, status};\nuse super::super::recorder::Event;";
     assert_eq!(
         resolve_super(text, "crate::drive::console::"),
         "use crate::drive::console::{Link, status};\nuse crate::drive::recorder::Event;"
     );
     let root = "mod menu;\npub fn run() {}\nconst KNOWN: u8 = 1;\nuse menu::Choice;";
-    assert_eq!(item_names(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
+    assert_eq!(find_item_names(root).collect::<Vec<_>>(), ["run", "KNOWN"]);
 }
 
 /// Repeatedly removes every module that uses no other module or that no other module uses. Returns the remaining
@@ -136,12 +137,12 @@ struct Folder {
     path_prefix: String,
     /// The text of the file that declares the modules, without comments and tests.
     root_text: String,
-    /// The directory that holds the modules' files.
+    /// The directory that contains the modules' files.
     directory: PathBuf,
 }
 
-/// Returns all folders of modules of a crate, the crate itself first.
-fn folders(source_directory: &Path) -> Vec<Folder> {
+/// Finds all folders of modules in a crate, the crate itself first.
+fn find_folders(source_directory: &Path) -> Vec<Folder> {
     let mut all_folders = vec![Folder {
         path_prefix: "crate::".to_owned(),
         root_text: read_code(&source_directory.join("lib.rs")),
@@ -149,7 +150,7 @@ fn folders(source_directory: &Path) -> Vec<Folder> {
     }];
     let mut next_index = 0;
     while let Some(folder) = all_folders.get(next_index) {
-        let inner_folders = folder.modules().into_iter().filter_map(|module| {
+        let inner_folders = folder.find_modules().into_iter().filter_map(|module| {
             let module_folder = folder.directory.join(module);
             let root_text = read_code(&module_folder.join("mod.rs"))
                 + &read_code(&module_folder.with_extension("rs"));
@@ -168,14 +169,17 @@ fn folders(source_directory: &Path) -> Vec<Folder> {
 }
 
 impl Folder {
-    fn modules(&self) -> BTreeSet<&str> {
-        self.root_text.lines().filter_map(declared_module).collect()
+    fn find_modules(&self) -> BTreeSet<&str> {
+        self.root_text
+            .lines()
+            .filter_map(parse_declared_module)
+            .collect()
     }
 
-    /// Returns the uses among the folder's modules. A module and its submodules count as one module. If
+    /// Finds the uses among the folder's modules. A module and its submodules count as one module. If
     /// `includes_root_file` is true, `mod.rs` counts as another module. Tests do not count.
-    fn uses(&self, includes_root_file: bool) -> Uses {
-        let modules = self.modules();
+    fn find_uses(&self, includes_root_file: bool) -> Uses {
+        let modules = self.find_modules();
         // A use of `crate::Name` counts as a use of the module from which the root file exports this name.
         let mut module_by_name: BTreeMap<&str, &str> =
             modules.iter().map(|name| (*name, *name)).collect();
@@ -187,12 +191,12 @@ impl Folder {
             if let Some((module_name, names)) = path.split_once("::")
                 && let Some(module_name) = modules.get(module_name)
             {
-                module_by_name.extend(words_in(names).map(|name| (name, *module_name)));
+                module_by_name.extend(split_words(names).map(|name| (name, *module_name)));
             }
         }
         let mut uses = Uses::new();
         if includes_root_file {
-            module_by_name.extend(item_names(&self.root_text).map(|name| (name, ROOT_FILE)));
+            module_by_name.extend(find_item_names(&self.root_text).map(|name| (name, ROOT_FILE)));
             let used = modules
                 .iter()
                 .filter(|module| self.root_text.contains(&format!("{module}::")));
@@ -207,7 +211,7 @@ impl Folder {
                 &read_code(&module_folder.with_extension("rs")),
                 &self.path_prefix,
             );
-            for path in source_files(&module_folder) {
+            for path in find_source_files(&module_folder) {
                 let relative_path = path
                     .strip_prefix(&self.directory)
                     .expect("the path is in the folder");
@@ -228,7 +232,7 @@ impl Folder {
                     &format!("{}{parent_path}", self.path_prefix),
                 );
             }
-            let used = names_after(&text, &self.path_prefix).into_iter();
+            let used = find_names_after(&text, &self.path_prefix).into_iter();
             let others = used
                 .filter_map(|name| module_by_name.get(name))
                 .filter(|other| *other != module);
@@ -244,8 +248,8 @@ impl Folder {
 /// The name of a folder's root file in the uses of its modules.
 const ROOT_FILE: &str = "(mod.rs)";
 
-/// Returns the names of the functions, types and constants that a text defines.
-fn item_names(text: &str) -> impl Iterator<Item = &str> {
+/// Finds the names of the functions, types and constants that a text defines.
+fn find_item_names(text: &str) -> impl Iterator<Item = &str> {
     const KINDS: [&str; 6] = ["fn ", "struct ", "enum ", "trait ", "type ", "const "];
     text.lines().filter_map(|line| {
         let line = line.trim_start_matches("pub(crate) ");
@@ -253,12 +257,12 @@ fn item_names(text: &str) -> impl Iterator<Item = &str> {
         let name = KINDS
             .iter()
             .find_map(|keyword| line.strip_prefix(keyword))?;
-        words_in(name).next()
+        split_words(name).next()
     })
 }
 
-/// Replaces every `super::` in the text of a file with the path of the module that it refers to. `parent_path` is the
-/// path of the file's parent module.
+/// Replaces every `super::` in a file's text with the path of the module to which it refers. `parent_path` is the path
+/// of the file's parent module.
 fn resolve_super(text: &str, parent_path: &str) -> String {
     let mut text = text.to_owned();
     let parts: Vec<&str> = parent_path.split_inclusive("::").collect();
@@ -272,25 +276,25 @@ fn resolve_super(text: &str, parent_path: &str) -> String {
 }
 
 /// Returns the name of the module that a line of a root file declares; `None` if the line declares no module.
-fn declared_module(line: &str) -> Option<&str> {
+fn parse_declared_module(line: &str) -> Option<&str> {
     let line = line
         .trim_start_matches("pub(crate) ")
         .trim_start_matches("pub ");
     line.strip_prefix("mod ")?.strip_suffix(';')
 }
 
-/// Returns the names that follow each occurrence of a path such as `crate::`: a single name, or the names in braces.
-fn names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
+/// Finds the names that follow a path such as `crate::`: a single name, or the names in braces.
+fn find_names_after<'a>(text: &'a str, path: &str) -> BTreeSet<&'a str> {
     let parts_after = text.split(path).skip(1);
     parts_after
         .flat_map(|rest| match rest.strip_prefix('{') {
-            Some(list) => words_in(list.split('}').next().unwrap_or_default()).collect(),
-            None => words_in(rest).take(1).collect::<Vec<_>>(),
+            Some(list) => split_words(list.split('}').next().unwrap_or_default()).collect(),
+            None => split_words(rest).take(1).collect::<Vec<_>>(),
         })
         .collect()
 }
 
-fn words_in(text: &str) -> impl Iterator<Item = &str> {
+fn split_words(text: &str) -> impl Iterator<Item = &str> {
     let is_separator = |c: char| !(c.is_alphanumeric() || c == '_');
     text.split(is_separator).filter(|word| !word.is_empty())
 }
@@ -311,8 +315,8 @@ fn read_code(path: &Path) -> String {
     indices.map(|index| format!("{}\n", lines[index])).collect()
 }
 
-/// Returns the files of a module's folder and of the folders in it, except for its tests.
-fn source_files(folder: &Path) -> Vec<PathBuf> {
+/// Finds the files in a module's folder and its subfolders, except for tests.
+fn find_source_files(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
@@ -320,7 +324,7 @@ fn source_files(folder: &Path) -> Vec<PathBuf> {
     let sources = paths.filter(|path| path.file_stem().is_some_and(|name| name != "tests"));
     sources
         .flat_map(|path| match path.is_dir() {
-            true => source_files(&path),
+            true => find_source_files(&path),
             false => vec![path],
         })
         .collect()

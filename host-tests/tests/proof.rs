@@ -1,18 +1,18 @@
-//! Tests that compare the guard of every robot of this repository with floating point and with the robot's maps of
-//! cells. They check one in 256 of all pairs of servo positions; `make prove` checks all pairs.
+//! Tests that compare the guard of every robot in this repository with floating point and with the robot's maps of
+//! cells. They check one in 256 pairs of servo positions; `make prove` checks all pairs.
 
 use std::iter::repeat;
 
-use lizard_host_tests::{NamedRobot, robots_of_files, root, seed};
+use lizard_host_tests::{NamedRobot, load_robots_from_files, root, seed};
 use lizard_proof::{PairSample, Proof};
 use lizard_robot::Robot;
 
-/// Sampling ratio: one in this many pairs of servo positions is checked.
+/// Number of pairs of servo positions for each pair that is checked.
 const SAMPLE_ONE_IN: u32 = 256;
 
 #[test]
-fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correctly() {
-    for (number, NamedRobot { name, robot }) in (0..).zip(robots_of_files()) {
+fn the_guard_decides_correctly_for_every_pair_of_positions_outside_the_band_or_in_a_cell() {
+    for (number, NamedRobot { name, robot }) in (0..).zip(load_robots_from_files()) {
         // Each robot and each seed gets a different sample of the pairs.
         let sample = PairSample {
             one_in: SAMPLE_ONE_IN,
@@ -29,7 +29,7 @@ fn the_guard_judges_every_pair_of_positions_outside_the_band_or_in_a_cell_correc
         let certified_count = proof.certified_count();
         assert!(
             certified_count > pair_count / 50,
-            "{certified_count} of {pair_count} pairs in cells"
+            "only {certified_count} of {pair_count} pairs are in certified cells"
         );
         for finding in &proof.findings {
             let (part, example) = (&finding.part, &finding.tally.example);
@@ -58,7 +58,7 @@ fn a_guard_with_another_robots_lengths_fails_the_proof() {
     let proof = Proof::compute(&robot, robot.firmware(), sample, &|_| {});
     assert_eq!(proof.wrong_count(), 0);
     let proof = Proof::compute(&robot, longer_robot.firmware(), sample, &|_| {});
-    // The findings are those of the two ends, the two sides, and the legs, whose margins do not depend on lengths.
+    // The findings are for the two ends, the two sides, and the legs, whose margins do not depend on lengths.
     let has_longer_bars = [true, false, true, true].into_iter().chain(repeat(false));
     for (finding, has_longer_bars) in proof.findings.iter().zip(has_longer_bars) {
         let is_wrong = finding.tally.wrong_count > 0;

@@ -1,4 +1,4 @@
-//! Tests of the crate `servo-pulses` without the lizard's firmware: on the simulated UNO, the crate's example moves
+//! Tests of the crate `servo-pulses` without the lizard's firmware. On the simulated UNO, the crate's example moves
 //! eight servos during a flood of serial bytes.
 
 use lizard_host_tests::{FirmwareBench, root};
@@ -8,9 +8,9 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
 /// The pins of the example's servos, in the order of the example.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
 
-/// Returns the width of a servo's pulse in a frame, cycles, according to the example's description: the width rises
-/// from 1000 us to 2000 us and falls again, by a constant step per frame, which is different for each servo.
-fn expected_width(servo: u64, frame: u64) -> u64 {
+/// Returns the width of a servo's pulse in a frame, cycles. According to the example's description, the width rises
+/// from 1000 us to 2000 us and falls again, by a constant step per frame that is different for each servo.
+fn compute_expected_width(servo: u64, frame: u64) -> u64 {
     // The example stores the position in 16 bits.
     let position = frame * (16 * servo + 5) % 65_536 % 32_000;
     32_000 - 16_000u64.abs_diff(position)
@@ -18,7 +18,7 @@ fn expected_width(servo: u64, frame: u64) -> u64 {
 
 /// Loads the crate's example `sweep`.
 fn load_sweep_example(fidelity: Fidelity) -> Uno {
-    let elf = FirmwareBench::elf().with_file_name("examples/sweep.elf");
+    let elf = FirmwareBench::elf_path().with_file_name("examples/sweep.elf");
     Uno::load(&elf, fidelity).unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"))
 }
 
@@ -38,17 +38,22 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         let frame_length_cycles = u64::from(frame_cycles(8));
         let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servo_edges: Vec<_> = servo_edges.copied().collect();
-        assert_eq!(most_pins_high(&servo_edges), 1, "pins high at once");
+        assert_eq!(
+            most_pins_high(&servo_edges),
+            1,
+            "number of pins that are high at the same time"
+        );
         // The first two or three frames are not among the edges.
         let first_width = uno.pulses(Pin::arduino(PINS[0]))[0].width;
         let skipped_frame_count = (0..10)
-            .find(|frame| expected_width(0, *frame) == first_width)
+            .find(|frame| compute_expected_width(0, *frame) == first_width)
             .expect("the first recorded frame is one of the first ten");
         for (servo, pin) in PINS.into_iter().enumerate() {
             let pulses = uno.pulses(Pin::arduino(pin));
             assert!(pulses.len() > 880, "{} pulses of pin {pin}", pulses.len());
             for (frame, pulse) in pulses.iter().enumerate() {
-                let expected = expected_width(servo as u64, skipped_frame_count + frame as u64);
+                let expected =
+                    compute_expected_width(servo as u64, skipped_frame_count + frame as u64);
                 assert_eq!(
                     pulse.width, expected,
                     "{fidelity:?}, pin {pin}, frame {frame}"
@@ -64,8 +69,8 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
             }
         }
         let echo: Vec<u8> = uno.transmitted().iter().map(|byte| byte.byte).collect();
-        // The serial line was saturated in both directions. Stock simavr sends more slowly than it receives, so it
-        // loses bytes. The simulation that follows the data sheet loses none.
+        // The serial line was saturated in both directions. Stock simavr sends more slowly than it receives and
+        // therefore loses bytes. The simulation according to the data sheet loses no byte.
         if fidelity == Fidelity::DataSheet {
             assert!(echo.len() > 115_000, "{} bytes", echo.len());
             let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
@@ -91,25 +96,25 @@ fn the_led_blinks_every_sixteen_frames() {
 }
 
 #[test]
-fn the_costs_in_the_readme_match_those_of_the_example() {
+fn the_costs_in_the_readme_match_the_example() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
     let count_interrupt_cycles = |uno: &Uno| {
         let interrupts = uno.interrupts();
-        let cycles_of = |vector| {
+        let handler_cycles = |vector| {
             interrupts
                 .iter()
                 .find(|interrupt| interrupt.vector == vector)
                 .map_or(0, |interrupt| interrupt.cycles)
         };
-        cycles_of(11) + cycles_of(12) // TIMER1_COMPA and TIMER1_COMPB
+        handler_cycles(11) + handler_cycles(12) // TIMER1_COMPA and TIMER1_COMPB
     };
     let cycles_before = count_interrupt_cycles(&uno);
     uno.run_cycles(100 * u64::from(frame_cycles(8)));
     let cycles_per_frame = (count_interrupt_cycles(&uno) - cycles_before) as f64 / 100.0;
     let readme =
         std::fs::read_to_string(root().join("crates/pulses/README.md")).expect("the README exists");
-    let cells_of_row = |name: &str| -> Vec<String> {
+    let read_row = |name: &str| -> Vec<String> {
         let row = readme
             .lines()
             .find(|line| line.starts_with(&format!("| {name}")));
@@ -122,16 +127,16 @@ fn the_costs_in_the_readme_match_those_of_the_example() {
         cell.parse::<f64>()
             .unwrap_or_else(|_| panic!("{cell} is not a number"))
     };
-    // The tolerance is 2 %, because another version of the compiler may save a few bytes.
+    // The tolerance is 2 %, because another compiler version may save a few bytes.
     let assert_near = |name: &str, measured: f64| {
-        let stated_value = parse_number(&cells_of_row(name)[2]);
+        let stated_value = parse_number(&read_row(name)[2]);
         let error = (measured - stated_value).abs();
         assert!(
             error <= stated_value / 50.0,
-            "{name}: {measured}, not {stated_value}"
+            "{name}: the README states {stated_value}, measured {measured}"
         );
     };
-    assert_near("cycles of its interrupts in a frame", cycles_per_frame);
+    assert_near("cycles of the interrupts per frame", cycles_per_frame);
     let image = uno.image();
     assert_near(
         "flash of the whole example, bytes",
@@ -145,8 +150,8 @@ fn the_costs_in_the_readme_match_those_of_the_example() {
 
 #[test]
 fn the_pulse_width_limits_leave_room_for_a_servos_full_travel() {
-    let cycles_of_us = |us: u32| us * u32::from(CYCLES_PER_US);
-    assert!(u32::from(MIN_WIDTH_CYCLES) <= cycles_of_us(400));
-    let allows_2400_us = |count: usize| u32::from(max_width_cycles(count)) >= cycles_of_us(2_400);
+    let us_to_cycles = |us: u32| us * u32::from(CYCLES_PER_US);
+    assert!(u32::from(MIN_WIDTH_CYCLES) <= us_to_cycles(400));
+    let allows_2400_us = |count: usize| u32::from(max_width_cycles(count)) >= us_to_cycles(2_400);
     assert!((1..=8).all(allows_2400_us));
 }

@@ -1,25 +1,24 @@
-//! Tests of the stack depth that is computed from machine code. They compare the computed depth of programs with the
-//! known and the measured depth.
+//! Tests of the stack depth computed from machine code, which is compared with known and measured depths.
 
 use lizard_host::bench::{StackDepth, StackError};
 use lizard_host_tests::avr_gcc::{assemble, compile_c};
 use lizard_linker::ROUTINES;
 use simulated_uno::{Fidelity, Image, Uno};
 
-/// Code that sets the stack pointer to the end of SRAM by way of r28 and r29, as avr-libc does.
+/// Code that sets the stack pointer to the end of SRAM through r28 and r29, as in avr-libc.
 const SET_STACK_POINTER: &str = "
         ldi r28, 0xff $ ldi r29, 0x08
         out SPH, r29 $ out SPL, r28";
 
-fn depth_of(image: &Image) -> StackDepth {
+fn compute_depth(image: &Image) -> StackDepth {
     StackDepth::compute(image).unwrap_or_else(|error| panic!("{error}"))
 }
 
-fn expect_refusal(image: &Image) -> StackError {
-    StackDepth::compute(image).expect_err("the program must be refused")
+fn expect_error(image: &Image) -> StackError {
+    StackDepth::compute(image).expect_err("the stack depth of the program has no bound")
 }
 
-/// Runs a program for 10 ms and returns the depth of its stack.
+/// Runs a program for 10 ms and returns its stack depth.
 fn measure_depth(image: &Image) -> u16 {
     let mut uno = Uno::with_image(image.clone(), Fidelity::DataSheet);
     uno.run_ms(10);
@@ -27,8 +26,8 @@ fn measure_depth(image: &Image) -> u16 {
 }
 
 #[test]
-fn pushes_and_calls_are_added_up_along_the_deepest_path() {
-    // The start calls `one` (2 bytes), which pushes 3 bytes and calls `two` (2 bytes), which pushes 1 byte.
+fn pushes_and_calls_add_up_along_the_deepest_path() {
+    // The start code calls `one` (2 bytes). `one` pushes 3 bytes and calls `two` (2 bytes), which pushes 1 byte.
     let image = assemble(&format!(
         "{SET_STACK_POINTER}
         rcall one
@@ -46,14 +45,14 @@ fn pushes_and_calls_are_added_up_along_the_deepest_path() {
     over: pop r17
         ret"
     ));
-    assert_eq!(depth_of(&image).max_depth(), 2 + 3 + 2 + 1);
+    assert_eq!(compute_depth(&image).max_depth(), 2 + 3 + 2 + 1);
     assert_eq!(measure_depth(&image), 8);
     // There is no static data, so the rest of SRAM is free.
-    assert_eq!(depth_of(&image).margin(), 2048 - 8);
+    assert_eq!(compute_depth(&image).margin(), 2048 - 8);
 }
 
 #[test]
-fn small_and_large_stack_frames_and_jumps_at_the_end_of_a_function_are_counted() {
+fn stack_frames_and_final_jumps_are_counted() {
     for frame_bytes in [1u16, 20, 63, 64, 300] {
         let reserve = match frame_bytes {
             0..64 => format!("sbiw r28, {frame_bytes}"),
@@ -79,7 +78,7 @@ fn small_and_large_stack_frames_and_jumps_at_the_end_of_a_function_are_counted()
         leaf: ret"
         ));
         assert_eq!(
-            depth_of(&image).max_depth(),
+            compute_depth(&image).max_depth(),
             2 + 2 + frame_bytes + 2,
             "{frame_bytes}"
         );
@@ -106,7 +105,7 @@ fn only_the_deepest_interrupt_handler_is_counted() {
     deep: push r0 $ push r1 $ rcall more $ pop r1 $ pop r0 $ reti
     more: push r2 $ pop r2 $ ret"
     ));
-    let depth = depth_of(&image);
+    let depth = compute_depth(&image);
     assert_eq!((depth.main, depth.handler), (1, 2 + 2 + 2 + 1));
 }
 
@@ -133,7 +132,7 @@ fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
             for (;;) out = fill(out);
         }",
     );
-    let (worst_depth, measured_depth) = (depth_of(&image).max_depth(), measure_depth(&image));
+    let (worst_depth, measured_depth) = (compute_depth(&image).max_depth(), measure_depth(&image));
     assert!(
         measured_depth > 100 && measured_depth <= worst_depth,
         "{measured_depth} of {worst_depth}"
@@ -145,7 +144,7 @@ fn the_depth_of_compiled_c_is_an_upper_bound_near_the_measured_depth() {
 }
 
 #[test]
-fn recursion_is_refused_with_the_name_of_the_function() {
+fn the_error_for_recursion_names_the_function() {
     let image = compile_c(
         "#include <avr/io.h>
         __attribute__((noinline)) void deeper(unsigned char n) {
@@ -155,7 +154,7 @@ fn recursion_is_refused_with_the_name_of_the_function() {
         }
         int main(void) { for (;;) deeper(PINB); }",
     );
-    let error = expect_refusal(&image).to_string();
+    let error = expect_error(&image).to_string();
     assert!(
         error.contains("deeper") && error.contains("calls itself"),
         "{error}"
@@ -163,7 +162,7 @@ fn recursion_is_refused_with_the_name_of_the_function() {
 }
 
 #[test]
-fn an_indirect_call_is_refused_with_the_name_of_the_function() {
+fn the_error_for_an_indirect_call_names_the_function() {
     let image = compile_c(
         "#include <avr/io.h>
         static void one(void) { GPIOR0 = 1; }
@@ -172,15 +171,17 @@ fn an_indirect_call_is_refused_with_the_name_of_the_function() {
         __attribute__((noinline)) void choose(void) { chosen(); GPIOR1 = 1; }
         int main(void) { chosen = PINB ? one : two; for (;;) choose(); }",
     );
-    let error = expect_refusal(&image).to_string();
+    let error = expect_error(&image).to_string();
     assert!(
-        error.contains("choose") && error.contains("computes"),
+        error.contains("choose") && error.contains("computed address"),
         "{error}"
     );
     for jump in ["ijmp", "icall"] {
         let image = assemble(&format!("{SET_STACK_POINTER}\n{jump}\nend: rjmp end"));
         assert!(
-            expect_refusal(&image).to_string().contains("computes"),
+            expect_error(&image)
+                .to_string()
+                .contains("computed address"),
             "{jump}"
         );
     }
@@ -203,8 +204,7 @@ fn code_without_a_bound_on_its_stack_is_refused() {
         ("nop", "runs out"),
     ];
     for (program, reason) in programs {
-        let error =
-            expect_refusal(&assemble(&format!("{SET_STACK_POINTER}\n{program}"))).to_string();
+        let error = expect_error(&assemble(&format!("{SET_STACK_POINTER}\n{program}"))).to_string();
         assert!(error.contains(reason), "{program}: {error}");
     }
     let image = assemble(
@@ -215,12 +215,12 @@ fn code_without_a_bound_on_its_stack_is_refused() {
     start: rjmp start
     handler: sei $ reti",
     );
-    let error = expect_refusal(&image).to_string();
-    assert!(error.contains("lets interrupts into"), "{error}");
+    let error = expect_error(&image).to_string();
+    assert!(error.contains("enables interrupts in"), "{error}");
 }
 
 #[test]
-fn a_handler_that_never_returns_but_enables_interrupts_is_added_to_the_deepest_other_handler() {
+fn a_handler_that_enables_interrupts_and_never_returns_adds_to_the_deepest_handler() {
     let image = assemble(
         "jmp start
         .org 0x2c
@@ -233,7 +233,7 @@ fn a_handler_that_never_returns_but_enables_interrupts_is_added_to_the_deepest_o
     hung: push r1 $ sei
     stay: rjmp stay",
     );
-    let depth = depth_of(&image);
+    let depth = compute_depth(&image);
     assert_eq!(
         (depth.main, depth.handler, depth.nonreturning_handler),
         (0, 2 + 3, 2 + 1)
@@ -242,29 +242,29 @@ fn a_handler_that_never_returns_but_enables_interrupts_is_added_to_the_deepest_o
 }
 
 #[test]
-fn the_registers_and_the_room_of_shared_prologues_are_counted() {
-    for (first_register, saved_bytes, room_bytes) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
+fn the_registers_and_locals_of_shared_prologues_are_counted() {
+    for (first_register, saved_bytes, locals_bytes) in [(2, 18, 0), (14, 6, 5), (18, 2, 200)] {
         let image = assemble(&format!(
             "{SET_STACK_POINTER}
             call framed
         end: rjmp end
-        framed: ldi r26, {room_bytes} $ call __frame_save_{first_register}
+        framed: ldi r26, {locals_bytes} $ call __frame_save_{first_register}
             std Y+1, r16
             call leaf
-            ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
+            ldi r26, {locals_bytes} $ jmp __frame_restore_{first_register}
         leaf: ret
         {ROUTINES}"
         ));
-        // The stack holds the return address of `framed`, the saved registers, the room, and the return address of
-        // `leaf`.
+        // The stack contains the return address of `framed`, the saved registers, the local variables, and the return
+        // address of `leaf`.
         assert_eq!(
-            depth_of(&image).max_depth(),
-            2 + saved_bytes + room_bytes + 2,
+            compute_depth(&image).max_depth(),
+            2 + saved_bytes + locals_bytes + 2,
             "{first_register}"
         );
         assert_eq!(
             measure_depth(&image),
-            2 + saved_bytes + room_bytes + 2,
+            2 + saved_bytes + locals_bytes + 2,
             "{first_register}"
         );
     }
@@ -272,18 +272,18 @@ fn the_registers_and_the_room_of_shared_prologues_are_counted() {
 
 #[test]
 fn a_shared_epilogue_that_does_not_match_its_prologue_is_refused() {
-    for (first_register, room_bytes) in [(16, 5), (14, 6)] {
+    for (first_register, locals_bytes) in [(16, 5), (14, 6)] {
         let image = assemble(&format!(
             "{SET_STACK_POINTER}
             call framed
         end: rjmp end
         .type framed, @function
         framed: ldi r26, 5 $ call __frame_save_14
-            ldi r26, {room_bytes} $ jmp __frame_restore_{first_register}
+            ldi r26, {locals_bytes} $ jmp __frame_restore_{first_register}
         {ROUTINES}"
         ));
-        let error = expect_refusal(&image);
+        let error = expect_error(&image);
         assert_eq!(error.function, "framed");
-        assert_eq!(error.reason, "restores other registers than it saved");
+        assert_eq!(error.reason, "restores different registers than it saved");
     }
 }

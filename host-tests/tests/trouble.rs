@@ -1,19 +1,18 @@
-//! Tests with fault injection at random moments of all activities. `make trouble` plays about a hundred times as many
+//! Fault-injection tests at random moments during all activities. `make trouble` runs about a hundred times as many
 //! scenarios.
 
 use std::collections::BTreeSet;
 use std::thread;
 
-use lizard_host_tests::trouble::{Activity, Scenario, play, run_campaign};
+use lizard_host_tests::trouble::{Activity, Scenario, run_campaign, run_scenario};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, robot_with_patrol, root, seed};
 use lizard_robot::Robot;
 
-/// The number of scenarios. Of thirteen scenarios, four are drives, and one belongs to each of the other nine
-/// activities.
+/// The number of scenarios. Of thirteen scenarios, four are drives, and the other nine activities have one each.
 const SCENARIO_COUNT: u64 = 156;
 
 #[test]
-fn trouble_at_any_moment_breaks_no_rule() {
+fn faults_at_any_moment_violate_no_rule() {
     let image = FirmwareBench::image_with(patrolling_robot());
     let thread_count = thread::available_parallelism().map_or(1, usize::from);
     let summary = run_campaign(
@@ -27,18 +26,19 @@ fn trouble_at_any_moment_breaks_no_rule() {
     let first_failure = summary.failures.first();
     assert!(
         summary.failures.is_empty(),
-        "{}  to run it alone: make trouble SEED={} ONLY={}\n\n{summary}",
+        "{}  to run only this scenario: make trouble SEED={} ONLY={}\n\n{summary}",
         first_failure.map_or_else(String::new, ToString::to_string),
         seed(),
         first_failure.map_or(0, |failure| failure.scenario.number),
     );
     let all_activities: BTreeSet<Activity> = Activity::ALL.into();
-    let played_activities: BTreeSet<Activity> = summary.activities.keys().copied().collect();
-    assert_eq!(played_activities, all_activities);
-    for (activity, (played_count, _)) in summary.activities {
+    let counts_by_activity = summary.counts_by_activity;
+    let tested_activities: BTreeSet<Activity> = counts_by_activity.keys().copied().collect();
+    assert_eq!(tested_activities, all_activities);
+    for (activity, (run_count, _)) in counts_by_activity {
         let scenarios_of_13 = if activity == Activity::Driving { 4 } else { 1 };
         assert_eq!(
-            played_count,
+            run_count,
             scenarios_of_13 * SCENARIO_COUNT / 13,
             "{activity}"
         );
@@ -58,20 +58,23 @@ fn seed_and_number_determine_a_scenario() {
 }
 
 #[test]
-fn most_patrols_of_the_scenarios_reach_the_wait_for_an_obstacle() {
+fn most_patrols_reach_the_wait_for_an_obstacle() {
     let image = FirmwareBench::image_with(patrolling_robot());
     let scenarios =
         (0..SCENARIO_COUNT).map(|number| Scenario::generate(seed(), number, patrolling_robot()));
     let patrols = scenarios.filter(|scenario| scenario.activity == Activity::Patrolling);
     let reaches_obstacle_wait = |scenario: &Scenario| {
-        let record = play(&image, patrolling_robot(), scenario);
+        let record = run_scenario(&image, patrolling_robot(), scenario);
         record
             .printed_lines
             .iter()
             .any(|line| line.text == "# waiting for nose")
     };
     let walking_count = patrols.filter(reaches_obstacle_wait).count() as u64;
-    assert!(walking_count > SCENARIO_COUNT / 13 / 2, "{walking_count}");
+    assert!(
+        walking_count > SCENARIO_COUNT / 13 / 2,
+        "{walking_count} patrols wait for an obstacle"
+    );
 }
 
 #[test]
@@ -87,9 +90,9 @@ fn a_robot_without_room_for_a_routine_patrols_with_fewer_gaits() {
         }
     }
     let text = text.rsplit_once("[gait.").expect("the text has a gait").0;
-    let robot_with_fewer_gaits =
+    let reduced_robot =
         robot_with_patrol(text).expect("without some gaits there is room for a routine");
-    assert!(robot_with_fewer_gaits.gaits().len() < full_robot.gaits().len());
-    assert!(robot_with_fewer_gaits.gaits().len() > 5);
-    assert!(robot_with_fewer_gaits.routine("patrol").is_some());
+    assert!(reduced_robot.gaits().len() < full_robot.gaits().len());
+    assert!(reduced_robot.gaits().len() > 5);
+    assert!(reduced_robot.routine("patrol").is_some());
 }

@@ -1,9 +1,9 @@
-//! Test of the running image with the digital twin, from power-on to the position of the body on the floor.
+//! Test of the running image with the digital twin, from power-on to the body's position on the floor.
 
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
 use lizard_host::sim::session::play;
-use lizard_host::sim::spans::command_spans;
+use lizard_host::sim::spans::list_command_spans;
 use lizard_host::sim::supplies;
 use lizard_host::twin::replay::Replay;
 use lizard_host::twin::report::Report;
@@ -11,8 +11,8 @@ use lizard_host_tests::{FirmwareBench, robot};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, Uno};
 
-/// Runs every gait that moves, for one second to reach the gait's first pose and for three cycles, and replays it on
-/// the twin.
+/// Runs every gait that moves, for three cycles and one second to reach the first pose, and replays the pulses on the
+/// twin.
 fn walk_all_gaits(model: ServoModel) -> Replay {
     let mut ms = 1000;
     let mut steps = Vec::new();
@@ -30,14 +30,14 @@ fn walk_all_gaits(model: ServoModel) -> Replay {
     supplies::connect(&mut uno, robot());
     let recording = play(&mut uno, servo_pins(robot()), &script, |_| Ok(()));
     let recording = recording.expect("the event handler never fails");
-    let spans = command_spans(&script, &recording.answers);
-    Replay::new(robot(), &recording.frames, spans, model)
+    let spans = list_command_spans(&script, &recording.answers);
+    Replay::simulate(robot(), &recording.frames, spans, model)
 }
 
 #[test]
-fn the_image_moves_the_body_as_its_gaits_predict() {
+fn the_image_moves_the_body_as_predicted() {
     let model = ServoModel::Ideal;
-    let report = Report::new(robot(), &walk_all_gaits(model), model, false);
+    let report = Report::compute(robot(), &walk_all_gaits(model), model, false);
     let cycles: Vec<_> = report
         .rows
         .iter()
@@ -65,7 +65,7 @@ fn the_image_moves_the_body_as_its_gaits_predict() {
                 let error = (measured - expected).abs();
                 assert!(
                     error <= tolerance.max(0.03 * expected.abs()),
-                    "{} {name}: {measured}, not {expected}",
+                    "{} {name}: expected {expected}, got {measured}",
                     row.command
                 );
             };

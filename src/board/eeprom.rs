@@ -1,8 +1,7 @@
 //! The EEPROM: 1024 bytes that survive a loss of power.
 //!
-//! The chip erases and writes a byte by itself, in 3.4 ms, while the program continues. A
-//! write must begin within four cycles after it is enabled (data sheet, section 8.6.3),
-//! so interrupts are off for about ten cycles.
+//! The chip erases and writes a byte in 3.4 ms while the program continues. A write must begin within four cycles after
+//! it is enabled (data sheet, section 8.6.3), so interrupts are off for about ten cycles.
 
 use core::arch::asm;
 
@@ -12,9 +11,9 @@ use lizard_core::memory::record::Memory;
 
 /// The I/O address of EECR, for `sbi`.
 const EECR: u8 = 0x1f;
-/// The number of the bit of EECR that permits a write within four cycles.
+/// The number of the EECR bit that enables a write within four cycles.
 const EEMPE: u8 = 2;
-/// The number of the bit of EECR that begins a write.
+/// The number of the EECR bit that starts a write.
 const EEPE: u8 = 1;
 
 /// The chip's EEPROM.
@@ -23,12 +22,11 @@ pub struct Eeprom {
 }
 
 impl Eeprom {
-    /// Takes the EEPROM's registers. First waits, at most 3.4 ms, for the end of a write that was in progress
-    /// at a reset, since nothing can be read during a write.
+    /// Creates the EEPROM from its registers. First waits, at most 3.4 ms, for the end of a write that was in progress
+    /// at a reset, because the EEPROM cannot be read during a write.
     pub fn new(registers: EEPROM) -> Self {
         while registers.eecr.read().eepe().bit_is_set() {}
-        // Selects erase and write in one operation, and no interrupt. The boot loader may have
-        // left another mode.
+        // Selects erasing and writing in one operation, and no interrupt. The boot loader may have left another mode.
         registers.eecr.reset();
         Self { registers }
     }
@@ -49,8 +47,7 @@ impl Memory for Eeprom {
         self.registers.eear.write(|w| w.bits(address));
         self.registers.eedr.write(|w| w.bits(byte));
         interrupt::free(|_| {
-            // SAFETY: sets two bits of EECR, which no other code uses. The second is set
-            // two cycles after the first.
+            // SAFETY: sets two bits of EECR, which no other code uses, the second bit two cycles after the first.
             unsafe {
                 asm!(
                     "sbi {eecr}, {eempe}",

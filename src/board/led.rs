@@ -1,8 +1,7 @@
-//! The LED on D13, which shows that the board is alive.
+//! The LED on D13, which shows the heartbeat or a fault.
 //!
-//! D13 shares PORTB with servo pins, whose interrupts may change the port
-//! between any two instructions. So `sbi` and `cbi` in inline assembly set D13:
-//! each is one instruction that changes only one bit.
+//! D13 shares PORTB with servo pins, whose interrupts may change the port between any two instructions. Therefore D13
+//! is changed only with `sbi` and `cbi`, each a single instruction that changes a single bit.
 
 use core::arch::asm;
 
@@ -10,12 +9,12 @@ use core::arch::asm;
 const PORTB: u8 = 0x05;
 /// The I/O address of DDRB, for `sbi`.
 const DDRB: u8 = 0x04;
-/// The number of D13's bit in both registers.
+/// The bit number of D13 in both registers.
 const BIT: u8 = 5;
 
 /// Makes D13 an output.
 pub fn start() {
-    // SAFETY: sets one bit of DDRB, D13's.
+    // SAFETY: sets only the bit of D13 in DDRB.
     unsafe {
         asm!("sbi {port}, {bit}", port = const DDRB, bit = const BIT, options(nostack, preserves_flags))
     }
@@ -23,7 +22,7 @@ pub fn start() {
 
 /// Switches the LED on or off.
 pub fn set(is_on: bool) {
-    // SAFETY: either instruction changes only one bit of PORTB, D13's.
+    // SAFETY: either instruction changes only the bit of D13 in PORTB.
     unsafe {
         if is_on {
             asm!("sbi {port}, {bit}", port = const PORTB, bit = const BIT, options(nostack, preserves_flags))

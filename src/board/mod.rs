@@ -1,31 +1,27 @@
-//! The Arduino UNO board: the only code that knows registers, pins and interrupts.
+//! The Arduino UNO board, the only code that accesses registers, pins and interrupts.
 //!
-//! An Arduino UNO has one processor for everything, and the servos react to every cycle
-//! by which an edge is late. So the interrupts do as little as the hardware allows and
-//! follow fixed rules:
+//! An Arduino UNO has one processor for all tasks, and the servos react to every cycle by which an edge is late.
+//! Therefore the interrupt handlers are as short as possible and follow fixed rules:
 //!
-//! - [`pulses`] owns Timer1 and the four servo pins, and is the robot's clock:
-//!   a tick every 20 ms.
-//! - [`serial`] owns the USART and its two rings.
+//! - [`pulses`] owns Timer1 and the four servo pins, and is the robot's clock, with a tick every 20 ms.
+//! - [`serial`] owns the USART and two ring buffers.
 //! - [`led`] owns D13.
-//! - [`input`] reads the contacts that routines wait for.
+//! - [`input`] reads the contacts for which routines wait.
 //! - [`eeprom`] owns the EEPROM; [`supply`] owns the analogue-to-digital converter.
-//! - [`watchdog`] restarts the program when it hangs; [`kept`] carries the servos' state from
-//!   one run to the next; [`stack`] protects the data from the stack.
+//! - [`watchdog`] restarts a program that hangs; [`retained_ram`] preserves the servo state across a reset; [`stack`]
+//!   detects a stack that has grown into the data.
 //! - [`sleep`] stops the processor until a tick, a received byte or an empty send buffer.
 //!
-//! Main never switches interrupts off for more than the few cycles that `sleep`, a 16-bit
-//! load and the beginning of an EEPROM write take. It shares only single bytes with an
-//! interrupt, and each byte has one writer. Interrupts do not nest. Of the interrupts in
-//! use, Timer1's come first in the vector table. INT0, INT1, PCINT, TIMER2 and
-//! TIMER1_CAPT would come before them, so do not use them. WDT fires only if the program
-//! hangs, and its handler does not return.
+//! Main switches interrupts off only for the few cycles of `sleep`, a 16-bit load and the start of an EEPROM write. It
+//! shares only single bytes with an interrupt handler, and each byte has a single writer. Interrupts do not nest. Of
+//! the interrupts in use, Timer1's have the highest priority. Do not use INT0, INT1, PCINT, TIMER2 and TIMER1_CAPT,
+//! which would have a higher priority. WDT occurs only if the program hangs, and its handler does not return.
 
 pub mod eeprom;
 mod input;
-mod kept;
 pub mod led;
 pub mod pulses;
+mod retained_ram;
 pub mod serial;
 pub mod sleep;
 mod stack;
@@ -35,7 +31,7 @@ mod watchdog;
 use avr_device::atmega328p::Peripherals;
 use lizard_core::console::answer::Counters;
 use lizard_core::control::supply::Reading;
-use lizard_core::memory::restart::{Restart, Stance};
+use lizard_core::memory::restart::{Restart, ServoState};
 use lizard_core::numbers::pose::Pulses;
 use lizard_core::numbers::rate::BaudRate;
 use lizard_core::step::Board;
@@ -49,17 +45,15 @@ pub struct Uno {
 }
 
 impl Uno {
-    /// Starts the serial port, the LED, the clock and, once widths are submitted,
-    /// the pulses; then enables interrupts. Call it once, at the start of main.
+    /// Starts all peripherals, then enables interrupts. Call this function once, at the start of main.
     ///
-    /// The first tick comes 4 ms later. All servo pins are low until the first
-    /// [`Board::submit`].
+    /// The first tick occurs 4 ms later. All servo pins are low until the first [`Board::submit`].
     pub fn start() -> Self {
-        // SAFETY: nothing has run before this except the boot loader; each peripheral
-        // goes to the one module that owns it.
+        // SAFETY: only the boot loader has run before this call, and each peripheral is moved to the module that owns
+        // it.
         let peripherals = unsafe { Peripherals::steal() };
         // The servos' pins are not known yet, so no pin may stay high.
-        // SAFETY: any value of a port is sound; D0 and D1, the serial line, keep theirs.
+        // SAFETY: a port may have any value; D0 and D1, the serial port, keep their levels.
         unsafe {
             peripherals.PORTB.portb.write(|w| w.bits(0));
             peripherals.PORTC.portc.write(|w| w.bits(0));
@@ -68,16 +62,15 @@ impl Uno {
                 .portd
                 .modify(|port, w| w.bits(port.bits() & 0x03));
         }
-        let restart = kept::start(&peripherals.CPU);
+        let restart = retained_ram::begin(&peripherals.CPU);
         stack::start();
         led::start();
         sleep::start(peripherals.CPU);
         serial::start(peripherals.USART0, restart.rate);
-        // SAFETY: interrupts are off, and nothing else here uses Timer1 or the servos' pins.
+        // SAFETY: interrupts are off, and no other code uses Timer1.
         unsafe { pulses::start() };
         watchdog::start();
-        // SAFETY: every interrupt that is enabled above has its handler, and no critical section surrounds this
-        // call.
+        // SAFETY: every interrupt that is enabled above has its handler, and this call is not in a critical section.
         unsafe { avr_device::interrupt::enable() };
         Self {
             writer: serial::Writer,
@@ -97,7 +90,7 @@ impl Board for Uno {
 
     #[inline(always)]
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
-        pulses::connect_numbers(servos);
+        pulses::connect_pins(servos);
         self.converter.connect(rail);
     }
 
@@ -122,8 +115,8 @@ impl Board for Uno {
     }
 
     #[inline(always)]
-    fn store_stance(&mut self, stance: &Stance, brown_outs: u8) {
-        kept::store_stance(stance, brown_outs);
+    fn store_servo_state(&mut self, servo_state: &ServoState, suspected_brown_outs: u8) {
+        retained_ram::store_servo_state(servo_state, suspected_brown_outs);
     }
 
     #[inline(always)]
@@ -133,7 +126,7 @@ impl Board for Uno {
 
     #[inline(always)]
     fn read_supply(&mut self) -> Reading {
-        self.converter.advance()
+        self.converter.advance_frame()
     }
 
     #[inline(always)]
@@ -143,7 +136,7 @@ impl Board for Uno {
 
     #[inline(always)]
     fn is_contact_closed(&mut self, pin: u8) -> bool {
-        input::is_closed(pin)
+        input::read_contact(pin)
     }
 
     #[inline(always)]
@@ -174,7 +167,7 @@ impl Board for Uno {
     #[inline(always)]
     fn set_rate(&mut self, rate: BaudRate) {
         serial::set_rate(rate);
-        kept::store_rate(rate);
+        retained_ram::store_rate(rate);
     }
 
     #[inline(always)]

@@ -1,18 +1,17 @@
-//! The four servos' pulses and the 50 Hz clock: the engine of `servo-pulses`, whose pins
-//! are known once the robot's section has been read.
+//! The four servos' pulses and the 50 Hz clock: the engine of `servo-pulses`, whose pins are known once the robot's
+//! section has been read.
 //!
-//! The documentation of `servo-pulses` explains how the pulses are exact to the cycle, and gives the
-//! rules for all other interrupts. With four servos, a slot is 4 ms and a frame 20 ms; main has 3.9 ms
-//! to compute a frame.
+//! The documentation of `servo-pulses` explains the generation of pulses that are exact to the cycle, and the rules for
+//! all other interrupts. With four servos, a slot is 4 ms and a frame is 20 ms; main has 3.9 ms to compute a frame.
 
 use servo_pulses::Pin;
 
 servo_pulses::engine!(later: 4);
 
-/// Connects the servos A1 to A4 to the pins with these Arduino numbers. All four exist: a robot with any other number
-/// is refused ([`lizard_core::numbers::robot::Robot::open`]).
+/// Connects the servos A1 to A4 to the pins with these Arduino numbers. All four pins exist, because
+/// [`lizard_core::numbers::robot::Robot::open`] rejects any other number.
 #[inline(always)]
-pub fn connect_numbers(numbers: [u8; 4]) {
+pub fn connect_pins(numbers: [u8; 4]) {
     if let [Some(a1), Some(a2), Some(a3), Some(a4)] = numbers.map(Pin::arduino) {
         connect([a1, a2, a3, a4]);
     }

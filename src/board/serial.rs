@@ -1,10 +1,9 @@
-//! The serial line, 8N1, buffered both ways by interrupts.
+//! The serial port, 8N1, with interrupt-driven buffers in both directions.
 //!
-//! At 115200 baud a byte takes 1389 cycles on the line and the receiver holds two bytes, while main may be
-//! busy with a frame for 12 000 cycles. So each direction has a ring buffer between main and an interrupt
-//! handler. One of the two moves only the head, the other only the tail; head and tail are single bytes, so
-//! neither has to lock the other out. The handlers are short, because an edge of a servo's pulse may have to
-//! wait for one of them.
+//! At 115 200 baud a byte takes 1389 cycles and the receiver holds two bytes, while main may be busy with a frame for
+//! 12 000 cycles. Therefore each direction has a ring buffer between main and an interrupt handler. One side moves only
+//! the head, the other side only the tail. Head and tail are single bytes, so no lock is necessary. The handlers are
+//! short, because an edge of a servo's pulse may have to wait for a handler.
 
 use core::convert::Infallible;
 
@@ -16,26 +15,26 @@ use ufmt::uWrite;
 
 use servo_pulses::cells::{Byte, Counter};
 
-/// Size of the receive ring in bytes. It holds a complete line: main may be busy for the time of 64 bytes, which
-/// is 89 000 cycles or seven times the limit of a frame.
+/// The size of the receive ring in bytes. The ring holds a complete line, so main may be busy for the time of 64 bytes,
+/// 89 000 cycles, which is seven times the limit for a frame.
 const RECEIVE_RING_SIZE: usize = 64;
 
-/// Size of the send ring in bytes. The longest line of the console fits, and arithmetic modulo 256 is the cheapest.
+/// The size of the send ring in bytes. The longest line of the console fits, and arithmetic modulo 256 is the fastest.
 const SEND_RING_SIZE: usize = 256;
 
-/// Number of bytes that the send ring holds.
+/// The number of bytes that the send ring holds.
 pub const SEND_CAPACITY: u8 = Ring::<SEND_RING_SIZE>::CAPACITY;
 
-/// Returns the value of UBRR0 for the nearest possible rate. For 115 200 baud that rate is
-/// 16 MHz / 8 / (16 + 1) = 117 647 baud, 2.1 % fast, which the boot loader uses, too. The others are 57 143 baud,
-/// 0.8 % slow, and 38 462 and 9615 baud, 0.2 % fast.
-const fn divisor(rate: BaudRate) -> u16 {
+/// Computes the value of UBRR0 for the nearest possible baud rate. For 115 200 baud this rate is 16 MHz / 8 / (16 + 1)
+/// = 117 647 baud, 2.1 % fast, as in the boot loader. The other rates are 57 143 baud, 0.8 % slow, and 38 462 and 9615
+/// baud, 0.2 % fast.
+const fn compute_divisor(rate: BaudRate) -> u16 {
     let (clock_by_8, baud) = (16_000_000 / 8, rate.baud());
     ((clock_by_8 + baud / 2) / baud - 1) as u16
 }
 
-/// A ring buffer of bytes between main and a handler. The side that puts bytes moves `head`, the side that
-/// takes bytes moves `tail`; both count freely modulo 256.
+/// A ring buffer of bytes between main and a handler. The side that puts bytes moves `head`, the side that takes bytes
+/// moves `tail`; both indices count modulo 256.
 struct Ring<const N: usize> {
     bytes: [Byte; N],
     head: Byte,
@@ -48,7 +47,7 @@ impl<const N: usize> Ring<N> {
         (N - 1) as u8
     };
 
-    /// Number of bytes that the ring holds. A ring of 256 holds 255, because with 256 it would look empty.
+    /// The number of bytes that the ring holds. A ring of 256 bytes holds 255, because with 256 it would seem empty.
     const CAPACITY: u8 = if N == 256 { 255 } else { N as u8 };
 
     const fn new() -> Self {
@@ -68,7 +67,7 @@ impl<const N: usize> Ring<N> {
         self.head.get() == self.tail.get()
     }
 
-    /// Appends a byte; the caller has checked the room.
+    /// Appends a byte; the ring must have room.
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
@@ -83,7 +82,7 @@ impl<const N: usize> Ring<N> {
         }
         let tail = self.tail.get();
         let byte = self.bytes[usize::from(tail & Self::MASK)].get();
-        // The byte is read before the tail moves, because that frees its slot.
+        // The byte is read before the tail moves, because the move frees its slot.
         self.tail.set(tail.wrapping_add(1));
         Some(byte)
     }
@@ -91,13 +90,12 @@ impl<const N: usize> Ring<N> {
 
 static RECEIVED: Ring<RECEIVE_RING_SIZE> = Ring::new();
 static TO_SEND: Ring<SEND_RING_SIZE> = Ring::new();
-/// Counts received bytes that were lost or garbled.
+/// The number of received bytes that were lost or garbled.
 static LOST: Counter = Counter::new();
 
-/// Sets up the port. Call it once, with interrupts off.
+/// Starts the port at a baud rate. Call this function once, with interrupts off.
 pub fn start(usart: USART0, rate: BaudRate) {
-    // Double speed is set before the divisor, because stock simavr computes the
-    // baud rate when the divisor is written.
+    // Double speed is set before the divisor, because stock simavr computes the baud rate when the divisor is written.
     usart.ucsr0a.write(|w| w.u2x0().set_bit());
     set_rate(rate);
     usart.ucsr0c.write(|w| {
@@ -113,20 +111,20 @@ pub fn start(usart: USART0, rate: BaudRate) {
     enable_interrupts(&usart, false);
 }
 
-/// Changes the baud rate. Bytes that are on the line in either direction arrive garbled.
+/// Changes the baud rate, which garbles bytes in transmission in either direction.
 pub fn set_rate(rate: BaudRate) {
     let divisor = match rate {
-        BaudRate::Fastest => const { divisor(BaudRate::Fastest) },
-        BaudRate::Half => const { divisor(BaudRate::Half) },
-        BaudRate::Third => const { divisor(BaudRate::Third) },
-        BaudRate::Slowest => const { divisor(BaudRate::Slowest) },
+        BaudRate::Fastest => const { compute_divisor(BaudRate::Fastest) },
+        BaudRate::Half => const { compute_divisor(BaudRate::Half) },
+        BaudRate::Third => const { compute_divisor(BaudRate::Third) },
+        BaudRate::Slowest => const { compute_divisor(BaudRate::Slowest) },
     };
-    // SAFETY: main alone writes UBRR0, and no handler uses it.
+    // SAFETY: only main writes UBRR0, and no handler uses it.
     let usart = unsafe { &*USART0::ptr() };
     usart.ubrr0.write(|w| w.bits(divisor));
 }
 
-/// Returns the next byte received, if any; [`GARBLED_BYTE`] in place of a byte without its stop bit.
+/// Takes the next received byte, if any, or [`GARBLED_BYTE`] in place of a byte without its stop bit.
 pub fn read() -> Option<u8> {
     RECEIVED.take()
 }
@@ -141,19 +139,19 @@ pub fn is_sending() -> bool {
     !TO_SEND.is_empty()
 }
 
-/// Returns the number of bytes that [`Writer`] takes now without waiting, at most 255.
+/// Returns the number of bytes that [`Writer`] accepts now without waiting, at most 255.
 pub fn room() -> u8 {
     TO_SEND.room()
 }
 
-/// Returns the number of received bytes that were garbled, or lost because the ring was full or the
-/// receiver overran. An overrun counts once, even if it lost more than one byte. The count stops at 65535.
+/// Returns the number of received bytes that were garbled, or lost because the ring was full or the receiver overran.
+/// An overrun counts once, even if more than one byte was lost. The count saturates at 65535.
 pub fn lost_count() -> u16 {
     LOST.read()
 }
 
-/// A writer of text to the serial line. Main checks [`room`] before it writes; if there is no room, a byte
-/// waits until another is sent: at 115200 baud, 1389 cycles at most.
+/// A writer of text to the serial port. Main checks [`room`] before it writes; without room, a byte waits until another
+/// byte is sent, at 115 200 baud at most 1389 cycles.
 pub struct Writer;
 
 impl uWrite for Writer {
@@ -164,8 +162,8 @@ impl uWrite for Writer {
         Ok(())
     }
 
-    // The robot prints only ASCII. The trait's UTF-8 encoding would double the time that a
-    // character takes.
+    // The robot prints only ASCII. The UTF-8 encoding of the trait's default method would double the time per
+    // character.
     #[inline(always)]
     fn write_char(&mut self, character: char) -> Result<(), Infallible> {
         send(character as u8);
@@ -173,20 +171,18 @@ impl uWrite for Writer {
     }
 }
 
-/// Sends a byte; waits while there is no room for it.
+/// Sends a byte after waiting for room.
 #[inline(never)]
 fn send(byte: u8) {
     while room() == 0 {}
     TO_SEND.put(byte);
-    // SAFETY: one store writes all of UCSR0B, with the value that is right while there is
-    // something to send. If the handler has sent the byte meanwhile, it runs once more and
-    // only switches its interrupt off again.
+    // SAFETY: a single store writes all of UCSR0B, with the value for a ring that is not empty. If the handler has
+    // already sent the byte, it runs once more and only switches its interrupt off again.
     enable_interrupts(unsafe { &*USART0::ptr() }, true);
 }
 
-/// Switches on the receiver, the transmitter and the receive interrupt, and the transmit
-/// interrupt if there is something to send. This is one store, not a read and a write, so
-/// that main and a handler cannot undo each other's change.
+/// Switches on the receiver, the transmitter and the receive interrupt, and also the transmit interrupt if `has_output`
+/// is true. This is a single store, not a read and a write, so that main and a handler cannot undo each other's change.
 #[inline(always)]
 fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     usart.ucsr0b.write(|w| {
@@ -201,12 +197,12 @@ fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     });
 }
 
-// A byte has been received.
+// Handles a received byte.
 #[avr_device::interrupt(atmega328p)]
 fn USART_RX() {
-    // SAFETY: the handler reads UCSR0A and UDR0, which main never touches.
+    // SAFETY: the handler reads UCSR0A and UDR0, which main does not access.
     let usart = unsafe { &*USART0::ptr() };
-    // The status belongs to the byte that is read next from UDR0.
+    // The status belongs to the next byte read from UDR0.
     let status = usart.ucsr0a.read();
     let mut byte = usart.udr0.read().bits();
     if status.fe0().bit_is_set() {
@@ -223,7 +219,7 @@ fn USART_RX() {
     }
 }
 
-// The transmitter is ready for a byte.
+// Handles the transmitter's readiness for the next byte.
 #[avr_device::interrupt(atmega328p)]
 fn USART_UDRE() {
     // SAFETY: only this handler writes UDR0; for UCSR0B see `send`.

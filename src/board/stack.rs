@@ -1,18 +1,18 @@
-//! The stack's guard: a word at the end of the data, which the stack must not reach.
+//! The guard word at the end of the data, which the stack must not reach.
 //!
-//! The stack grows down from the end of RAM towards the data, and nothing in the chip
-//! stops it there. `make bench` computes how deep it can get. The guard word between stack and
-//! data is for unforeseen cases; main checks it in every frame.
+//! The stack grows from the end of RAM down towards the data, and the chip does not detect an overflow. `make bench`
+//! computes the largest depth of the stack. The guard word between stack and data is for unforeseen cases; main checks
+//! it in every frame.
 
 use core::arch::global_asm;
 
 use servo_pulses::cells::Byte;
 
-/// The pattern in the guard word, which the stack rarely contains by accident.
+/// The pattern of the guard word, which the stack rarely contains by chance.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
 
-// This section is placed after all others, at the end of the data. The start-up code
-// does not clear it, and the image has no bytes for it.
+// The linker places this section after all others, at the end of the data. The start-up code does not clear the
+// section, and the image contains no bytes for it.
 global_asm!(
     ".pushsection .noinit.zz_guard,\"aw\",@nobits",
     ".global lizard_stack_guard",
@@ -22,18 +22,18 @@ global_asm!(
 
 unsafe extern "C" {
     #[link_name = "lizard_stack_guard"]
-    #[allow(improper_ctypes, reason = "no other language sees it")]
+    #[allow(improper_ctypes, reason = "no other language uses it")]
     static GUARD_WORD: [Byte; 4];
 }
 
 fn guard_word() -> &'static [Byte; 4] {
-    // SAFETY: a byte of RAM may have any value, and so may a `Byte`.
+    // SAFETY: a `Byte` may have any value, so any contents of the RAM are valid.
     unsafe { &GUARD_WORD }
 }
 
-/// Writes the guard word. Call it once.
+/// Writes the guard word. Call this function once.
 pub fn start() {
-    // Written byte by byte, since a loop over both arrays takes four times as much flash.
+    // Written byte by byte, because a loop over both arrays takes four times as much flash.
     let [a, b, c, d] = guard_word();
     a.set(GUARD[0]);
     b.set(GUARD[1]);
@@ -41,7 +41,7 @@ pub fn start() {
     d.set(GUARD[3]);
 }
 
-/// True while the stack has not grown into the data.
+/// True unless the stack has grown into the data.
 pub fn is_intact() -> bool {
     let [a, b, c, d] = guard_word();
     a.get() == GUARD[0] && b.get() == GUARD[1] && c.get() == GUARD[2] && d.get() == GUARD[3]

@@ -1,15 +1,14 @@
 //! The supply voltages, measured by the analogue-to-digital converter.
 //!
-//! The converter compares a voltage with its own supply, AVcc. So its reading of the
-//! chip's 1.1 V reference gives AVcc, without any external part. A conversion takes 104
-//! us, and the reference needs 70 us after it is selected (data sheet, sections 24.6 and
-//! 28.8). So the channel is selected in one frame, the conversion is started in the next frame,
-//! and its result is read in the frame after that.
+//! The converter compares a voltage with its own supply, AVcc. Therefore its reading of the chip's 1.1 V reference
+//! determines AVcc without any external part. A conversion takes 104 us, and the reference settles within 70 us after
+//! its selection (data sheet, sections 24.6 and 28.8). Therefore a frame selects the channel, the next frame starts the
+//! conversion, and the frame after that reads the result.
 
 use avr_device::atmega328p::ADC;
 use lizard_core::control::supply::Reading;
 
-/// ADMUX bits that select AVcc as the converter's reference; the channel is added to them.
+/// The ADMUX bits that select AVcc as the converter's reference; the channel is added to them.
 const AVCC: u8 = 0x40;
 
 /// The channel that measures the chip's 1.1 V reference.
@@ -18,19 +17,19 @@ const REFERENCE_CHANNEL: u8 = 0x0e;
 /// The Arduino number of the first analogue pin, A0.
 const A0: u8 = 14;
 
-/// The value of ADCSRA that switches the converter on. Its clock rate is then 16 MHz / 128 = 125 kHz; for ten bits of
-/// resolution it must be 50 to 200 kHz.
+/// The value of ADCSRA that switches the converter on, with a clock rate of 16 MHz / 128 = 125 kHz. A resolution of ten
+/// bits requires 50 to 200 kHz.
 const CONVERTER_ON: u8 = 0x87;
 /// The bit of ADCSRA that starts a conversion.
 const START_CONVERSION: u8 = 0x40;
 
-/// The converter, and its readings.
+/// The converter with its readings.
 pub struct Converter {
     registers: ADC,
     reading: Reading,
-    /// The channel of the servos' rail, if it is measured.
+    /// The channel of the servos' rail, if the rail is measured.
     rail_channel: Option<u8>,
-    /// True while the rail is being measured, false while the reference is.
+    /// True while the rail is being measured, false while the reference is being measured.
     is_measuring_rail: bool,
     /// True if a channel is selected and its conversion has not been started yet.
     is_conversion_due: bool,
@@ -39,10 +38,10 @@ pub struct Converter {
 }
 
 impl Converter {
-    /// Takes the converter's registers, switches it on, and selects the reference.
+    /// Creates the converter from its registers, switches it on, and selects the reference.
     pub fn new(registers: ADC) -> Self {
         select_channel(&registers, REFERENCE_CHANNEL);
-        // SAFETY: any value of ADCSRA is sound; this one switches the converter on.
+        // SAFETY: any value of ADCSRA is valid; this value switches the converter on.
         registers.adcsra.write(|w| unsafe { w.bits(CONVERTER_ON) });
         Self {
             registers,
@@ -54,17 +53,17 @@ impl Converter {
         }
     }
 
-    /// Measures the rail at this pin, by its Arduino number, from now on; with `None`, measures no rail.
+    /// Connects the rail to the pin with this Arduino number; with `None`, the rail is not measured.
     pub fn connect(&mut self, pin: Option<u8>) {
         self.rail_channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
 
-    /// Begins the next part of a measurement, and returns the latest values, or an empty reading
-    /// until every voltage has been measured. Call it once per frame.
-    pub fn advance(&mut self) -> Reading {
+    /// Starts the next part of a measurement. Returns the latest values, or an empty reading until every voltage has
+    /// been measured. Call this function once per frame.
+    pub fn advance_frame(&mut self) -> Reading {
         if self.is_conversion_due {
             self.is_conversion_due = false;
-            // SAFETY: as above; this value also starts a conversion.
+            // SAFETY: any value of ADCSRA is valid; this value also starts a conversion.
             self.registers
                 .adcsra
                 .write(|w| unsafe { w.bits(CONVERTER_ON | START_CONVERSION) });
@@ -103,6 +102,6 @@ impl Converter {
 }
 
 fn select_channel(registers: &ADC, channel: u8) {
-    // SAFETY: on a UNO, AVcc may be selected as the reference, and `channel` exists.
+    // SAFETY: a UNO allows AVcc as the converter's reference, and `channel` exists.
     registers.admux.write(|w| unsafe { w.bits(AVCC | channel) });
 }

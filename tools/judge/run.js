@@ -2,10 +2,10 @@
 //
 // src/script.js explains SCRIPT. Prints these lines; all cycles count from power-on:
 //   pulse <pin> <rise> <width>   a pin was high; pins 14 to 19 are A0 to A5
-//   sent <cycle> <hex byte>      the UNO has sent a byte; the cycle is the end of its stop bit
-//   eeprom <2048 hex digits>     the EEPROM at the end
+//   sent <cycle> <hex byte>      the UNO sent a byte, whose stop bit ended at this cycle
+//   eeprom <2048 hex digits>     the EEPROM's contents at the end
 //   cpu <ms>                     processor time of the simulation
-// If the program does something that the judge cannot simulate, the run ends with an error message and exit code 1.
+// If the firmware does something that avr8js cannot simulate, the run ends with an error message and exit code 1.
 import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';
@@ -14,19 +14,19 @@ import { Scope } from './src/scope.js';
 import { readScript } from './src/script.js';
 import { Uno } from './src/uno.js';
 
-const hex = (byte) => byte.toString(16).padStart(2, '0');
+const toHex = (byte) => byte.toString(16).padStart(2, '0');
 
-function run(file, script) {
+function run(firmwarePath, script) {
   const uno = new Uno(corrections);
-  loadHex(readFileSync(file, 'utf8'), uno.flash);
+  loadHex(readFileSync(firmwarePath, 'utf8'), uno.flash);
   const { analogue, bytes, endCycle } = readScript(script);
   for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
   const lines = [];
   new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
-  uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${hex(byte)}`);
+  uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${toHex(byte)}`);
   uno.deliver(bytes);
   uno.run(endCycle);
-  lines.push(`eeprom ${Array.from(uno.eepromBytes, hex).join('')}`);
+  lines.push(`eeprom ${Array.from(uno.eepromBytes, toHex).join('')}`);
   return lines;
 }
 

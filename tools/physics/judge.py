@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Simulates walks of the robots that `lizard model --drive` or `make physics` has written, with MuJoCo.
+"""Simulates in MuJoCo the walks that `lizard model --drive` or `make physics` wrote.
 
-Prints a line of JSON for each: the file's name, and the mean displacement per cycle (mm forward, mm to
-the left, deg counter-clockwise). Two walks run at a time. Usage: judge.py FOLDER-OR-FILE
+Prints a line of JSON for each walk: the file's name, and the mean displacement per cycle (mm forward,
+mm to the left, deg counter-clockwise). Two walks run at a time. Usage: judge.py FOLDER-OR-FILE
 """
 
 import json
@@ -14,18 +14,18 @@ from pathlib import Path
 from walk import Walk
 
 
-def judge(path):
+def simulate(path):
     try:
         walk = Walk(path)
     except ValueError as error:
-        return {"file": path.stem, "trouble": " ".join(str(error).split())}
-    if walk.frames == 0:
-        return {"file": path.stem, "trouble": "the file has no gait; write it with --drive GAIT"}
-    displacement = [round(float(component), 3) for component in walk.cycle()]
+        return {"file": path.stem, "error": " ".join(str(error).split())}
+    if walk.frame_count == 0:
+        return {"file": path.stem, "error": "the file has no gait; write it with --drive GAIT"}
+    displacement = [round(float(component), 3) for component in walk.measure_cycles()]
     warning_count = sum(warning.number for warning in walk.data.warning)
     if warning_count or not all(map(math.isfinite, displacement)):
-        return {"file": path.stem, "trouble": f"MuJoCo gives {warning_count} warnings"}
-    return {"file": path.stem, "way": displacement}
+        return {"file": path.stem, "error": f"MuJoCo gave {warning_count} warnings"}
+    return {"file": path.stem, "displacement": displacement}
 
 
 def main():
@@ -35,9 +35,9 @@ def main():
     paths = sorted(path.glob("*.xml")) if path.is_dir() else [path]
     has_failed = False
     with multiprocessing.Pool(2) as pool:
-        for line in pool.imap_unordered(judge, paths):
-            print(json.dumps(line), flush=True)
-            has_failed |= "trouble" in line
+        for answer in pool.imap_unordered(simulate, paths):
+            print(json.dumps(answer), flush=True)
+            has_failed |= "error" in answer
     sys.exit(has_failed)
 
 

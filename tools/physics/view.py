@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Shows the walk of a robot that `lizard model` has written, in MuJoCo's window.
+"""Shows in MuJoCo's window the walk of a robot that `lizard model` wrote.
 
 Usage: target/physics/bin/python tools/physics/view.py out/walk.xml
-Write the file with --drive. The measured cycles are repeated until the window is closed. Space pauses and resumes. `make physics` installs MuJoCo; so does
-`python3 -m pip install -r tools/physics/requirements.txt`.
+Write the file with --drive. The measured cycles repeat until the window is closed. Space pauses and resumes.
+`make physics` installs MuJoCo; so does `python3 -m pip install -r tools/physics/requirements.txt`.
 """
 
 import sys
@@ -26,8 +26,8 @@ def main():
         walk = Walk(sys.argv[1])
     except ValueError as error:
         sys.exit(f"view.py: {sys.argv[1]}: {' '.join(str(error).split())}")
-    if walk.frames == 0:
-        print("view.py: the servos do not move; write the file with --drive GAIT")
+    if walk.frame_count == 0:
+        print("view.py: the file has no gait; write it with --drive GAIT")
     is_paused = False
 
     def handle_key(code):
@@ -41,14 +41,14 @@ def main():
             window.cam.type = mujoco.mjtCamera.mjCAMERA_TRACKING
             window.cam.trackbodyid = walk.model.body("chassis").id
             window.cam.distance = 0.45
-        frame_time = 1 / 60
+        frame_s = 1 / 60
         while window.is_running():
             frame_start = time.monotonic()
-            frame_end = walk.data.time + frame_time
+            frame_end = walk.data.time + frame_s
             while walk.data.time < frame_end and not is_paused:
                 walk.step()
             window.sync()
-            time.sleep(max(0.0, frame_time - (time.monotonic() - frame_start)))
+            time.sleep(max(0.0, frame_s - (time.monotonic() - frame_start)))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,7 @@ import { files } from './files';
 
 let boardPromise: Promise<typeof Board> | null = null;
 
-/** Loads the module, once. Throws an error with a message for the user. */
+/** Loads the module once. Throws an error with a message for the user. */
 export function loadBoard(): Promise<typeof Board> {
   const load = async () => {
     const [board, module] = await Promise.all([import('../generated/board'), files.board()]);

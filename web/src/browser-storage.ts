@@ -5,48 +5,48 @@ import type { Bars, Floor } from './robot';
 export interface SavedChanges {
   /** The name of the robot's file. */
   file: string;
-  /** The robot.toml of the file when the changes were made: they apply only to this text. */
+  /** The file's robot.toml at the time of the changes, which apply only to this text. */
   original: string;
   /** The changed robot.toml. */
   toml: string;
-  /** Floor, mass, feet and leg drive as set in the page; null for the values of robot.toml. */
+  /** Floor, mass, feet and leg drive set in the page; null for the values of robot.toml. */
   floor: Floor | null;
   servos: string;
   volts: number;
 }
 
-/** The key of the changes and the prefix of all keys; it differs between pages of the same server. */
+/** The key of the changes, and the prefix of all keys. It differs between pages of the same server. */
 const CHANGES_KEY = `lizard ${location.pathname}`;
 const ASIDE_KEY = `${CHANGES_KEY} aside`;
 const GAIT_KEY = `${CHANGES_KEY} gait`;
 
-/** Largest number of robots that are put aside; the oldest ones beyond it are dropped. */
-const MAX_PUT_ASIDE = 8;
+/** Largest number of robots put aside; older robots are dropped. */
+const MAX_ROBOTS_ASIDE = 8;
 
 function store(key: string, value: unknown): void {
   try {
     localStorage.setItem(key, JSON.stringify(value));
   } catch (error) {
-    console.info(`Changes are not kept over a reload: ${String(error)}`);
+    console.info(`Changes will not survive a reload: ${String(error)}`);
   }
 }
 
-/** Returns the stored robots that this version of the page can use; an empty list if the stored text is damaged. */
+/** Loads the stored robots that this version of the page can use; returns an empty list for a damaged text. */
 function loadSavedChanges(key: string): SavedChanges[] {
   try {
     const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
     return states.flatMap((state) => {
       if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return [];
-      // An earlier version of the page stored springs in another form, which is dropped.
-      const isCurrentForm = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
-      return [{ ...state, floor: isCurrentForm ? state.floor : null }];
+      // An earlier version of the page stored springs in another format, which is dropped.
+      const isCurrentFormat = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
+      return [{ ...state, floor: isCurrentFormat ? state.floor : null }];
     });
   } catch {
     return [];
   }
 }
 
-/** True if a stored value has the fields of a gait; the ranges of its numbers are checked later, with the robot. */
+/** Returns true if a stored value has the fields of a gait; the robot checks the ranges of the numbers later. */
 function isGait(value: unknown): value is Bars {
   const { name, held, period, duty, amplitude, start, gain } = (value ?? {}) as Partial<Bars>;
   const numbers = [period, duty, amplitude, ...(start ?? []), ...(gain ?? [])];
@@ -54,18 +54,18 @@ function isGait(value: unknown): value is Bars {
 }
 
 export const browserStorage = {
-  /** Stores the changes; if the browser has no storage, they are lost at a reload. */
+  /** Stores the changes; without storage in the browser, a reload loses them. */
   putChanges: (state: SavedChanges) => store(CHANGES_KEY, state),
 
-  /** Returns the stored changes; null if there are no usable ones. */
+  /** Returns the stored changes; null if no usable changes are stored. */
   getChanges: (): SavedChanges | null => loadSavedChanges(CHANGES_KEY)[0] ?? null,
 
-  /** Returns the robots that were put aside, the latest first. */
-  getPutAside: () => loadSavedChanges(ASIDE_KEY),
+  /** Returns the robots put aside, the latest first. */
+  getRobotsAside: () => loadSavedChanges(ASIDE_KEY),
 
-  putRobotsAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_PUT_ASIDE)),
+  putRobotsAside: (robots: SavedChanges[]) => store(ASIDE_KEY, robots.slice(0, MAX_ROBOTS_ASIDE)),
 
-  /** Returns the gait in the editor; null if there is no usable one. */
+  /** Returns the gait in the editor; null if no usable gait is stored. */
   getGait: (): Bars | null => {
     try {
       const gait: unknown = JSON.parse(localStorage.getItem(GAIT_KEY) ?? 'null');

@@ -1,11 +1,11 @@
-// A second robot on the same floor, simulated with its own instance of the firmware's core; it can walk another gait.
+// A second robot on the same floor, which can walk another gait. It has its own instance of the firmware's core.
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
-/** Frames of 20 ms from power-on until the robot stands. */
+/** Number of frames between power-on and standing. */
 const WAKE_FRAMES = 200;
 
 export class Companion {
-  /** The last frame; null before the first. */
+  /** The last frame; null before the first frame. */
   frame: Frame | null = null;
   /** The lines that the robot receives with the next frame. */
   private pendingLines = '';
@@ -16,8 +16,8 @@ export class Companion {
   ) {}
 
   /**
-   * Creates a companion that stands at the start, on the given floor, with the given servo model. Throws an error whose
-   * message is for the user.
+   * Creates a companion that stands at the start, with this floor and this servo model. Throws an error with a message
+   * for the user.
    */
   static create(toml: string, floor: Floor, servoModel: string, volts: number): Companion {
     const robot = new Robot();
@@ -33,12 +33,12 @@ export class Companion {
     return companion;
   }
 
-  /** Frees the companion's robot; `frame` stays valid. */
+  /** Frees the companion's memory; `frame` stays valid. */
   dispose(): void {
     this.robot.free();
   }
 
-  /** Queues a line, which the robot receives with the next frame. */
+  /** Queues a line for the next frame. */
   send(line: string): void {
     this.pendingLines += `${line}\n`;
   }

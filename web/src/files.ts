@@ -1,9 +1,9 @@
-// Access to the files that `make web` puts beside the page: robots, firmware, boot loader, WebAssembly modules.
+// Access to the files that `make web` adds to the page: robots, firmware, boot loader, WebAssembly modules.
 import type { Predictions } from './robot';
 
 async function getFile(path: string): Promise<Response> {
   const response = await fetch(new URL(path, document.baseURI));
-  if (!response.ok) throw new Error(`${path} is not there (${response.status}); was the page built by make web?`);
+  if (!response.ok) throw new Error(`${path} is missing (status ${response.status}); was the page built with make web?`);
   return response;
 }
 
@@ -25,24 +25,24 @@ function compileWasm(path: string): Promise<WebAssembly.Module> {
 }
 
 export const files = {
-  /** The names of the robots' files without extension: of `all` robots, and of those that are meant for `tests`. */
+  /** The names of the robot files without extension: of `all` robots, and of the robots for `tests`. */
   robots: (): Promise<{ all: string[]; tests: string[] }> => getJson('files/robots.json'),
-  /** The robot.toml of the robot whose file has this name. */
+  /** The robot.toml with this file name. */
   toml: (name: string): Promise<string> => getText(`files/${name}.toml`),
-  /** The predictions of a robot's gaits; null if their file is missing, since the page can also compute them. */
+  /** The predictions of a robot's gaits; null if the file is missing, because the page can also compute predictions. */
   predictions: (name: string): Promise<Predictions | null> => getJson<Predictions>(`files/${name}.predictions.json`).catch(() => null),
   /** The firmware's image without a robot, from address 0. */
   firmware: (): Promise<Uint8Array> => getBytes('files/code.bin'),
-  /** The UNO's boot loader, from its first byte. */
+  /** The UNO's boot loader, from its first byte on. */
   bootLoader: (): Promise<Uint8Array> => getBytes('files/optiboot.bin'),
-  /** The WebAssembly module of the robot itself. */
+  /** The WebAssembly module of the robot. */
   wasm: (): Promise<WebAssembly.Module> => compileWasm('files/lizard.wasm'),
   /** The module of the robot with the search for a faster gait; loaded on demand. */
   tune: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),
   /** The module of the robot's parts; loaded when their panel is opened. */
   parts: (): Promise<WebAssembly.Module> => compileWasm('files/parts.wasm'),
-  /** The module that writes to boards, calibrates and identifies them; loaded when it is needed. */
+  /** The module that writes to boards, calibrates and identifies them; loaded on demand. */
   board: (): Promise<WebAssembly.Module> => compileWasm('files/board.wasm'),
-  /** The module that measures films; loaded when the user opens a camera or a film, or saves the sheet of tags. */
+  /** The module that measures videos; loaded when the user opens a camera or a video, or saves the sheet of tags. */
   measure: (): Promise<WebAssembly.Module> => compileWasm('files/measure.wasm'),
 };

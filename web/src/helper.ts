@@ -1,10 +1,10 @@
-// A web worker whose functions the page calls. A computation of tenths of a second runs in a worker, since the page has
+// A web worker whose functions the page calls. Computations of tenths of a second run in a worker, because the page has
 // only 16 ms per animation frame.
 import { type Remote, wrap } from 'comlink';
 
 export class Helper<Api> {
   private readonly api: Remote<Api>;
-  /** The reason why the worker cannot be loaded; null while no failure is known. */
+  /** The error that prevented the worker from loading; null while no error is known. */
   private loadError: Error | null = null;
   /** The reject functions of the pending calls. */
   private readonly pendingRejects = new Set<(error: Error) => void>();
@@ -17,7 +17,7 @@ export class Helper<Api> {
     });
   }
 
-  /** Calls a function of the worker. Rejects with its error, or if the worker cannot be loaded. */
+  /** Calls a function of the worker. Rejects with the function's error, or if the worker cannot be loaded. */
   async call<Result>(invoke: (api: Remote<Api>) => Promise<Result>): Promise<Result> {
     if (this.loadError) throw this.loadError;
     let rejectCall: (error: Error) => void = () => {};

@@ -1,5 +1,5 @@
-// A queue of one for questions that may arrive faster than they are answered, for example while the user drags. Of the
-// questions that arrive while one is being answered, only the last is kept; answers come in the order of their
+// A queue of length one for questions that may arrive faster than their answers, for example while the user drags.
+// While a question is being answered, only the latest new question is kept; answers arrive in the order of the
 // questions.
 
 export class LatestQuestion<Question, Answer> {
@@ -11,7 +11,7 @@ export class LatestQuestion<Question, Answer> {
     private readonly onAnswer: (answer: Answer) => void,
   ) {}
 
-  /** Asks a question; it replaces the waiting one, if there is one. */
+  /** Asks a question, which replaces the waiting question. */
   ask(question: Question): void {
     if (this.isBusy) this.waitingQuestion = question;
     else void this.start(question);
@@ -21,7 +21,7 @@ export class LatestQuestion<Question, Answer> {
     this.isBusy = true;
     this.waitingQuestion = null;
     const answer = await this.getAnswer(question).finally(() => (this.isBusy = false));
-    // The callback may ask again at once; that question replaces the waiting one.
+    // The callback may ask another question, which replaces the waiting question.
     this.onAnswer(answer);
     if (this.waitingQuestion !== null && !this.isBusy) void this.start(this.waitingQuestion);
   }

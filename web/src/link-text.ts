@@ -1,6 +1,6 @@
-// A robot as a link: its compressed robot.toml in the fragment of the page's address, which no server sees.
+// A robot as a link: the compressed robot.toml in the fragment of the page's address, which no server receives.
 
-/** Size of the largest robot.toml that is accepted, bytes; a typical one has a few thousand. */
+/** Largest accepted size of a robot.toml, bytes; a typical robot.toml has a few thousand. */
 const MAX_BYTES = 200_000;
 
 async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
@@ -10,23 +10,23 @@ async function pipe(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | 
   let length = 0;
   for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {
     length += chunk.value.length;
-    if (length > MAX_BYTES) throw new Error('the robot in this address is too large');
+    if (length > MAX_BYTES) throw new Error(`the robot in this address exceeds ${MAX_BYTES} bytes`);
     chunks.push(chunk.value);
   }
   return new Uint8Array(await new Blob(chunks).arrayBuffer());
 }
 
-/** Compresses a robot.toml to the parameter `robot` of an address. */
+/** Compresses a robot.toml for the parameter `robot` of an address. */
 export async function pack(toml: string): Promise<string> {
   const bytes = await pipe(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
   const base64 = btoa(String.fromCharCode(...bytes));
-  // base64url, which needs no escapes in an address.
+  // base64url needs no escapes in an address.
   return base64.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
 }
 
 /**
- * Returns a robot.toml without its comments, which would be most of a link's characters. Returns the text unchanged if
- * it would parse to other values without them, for example because of a # in a multi-line string.
+ * Returns a robot.toml without comments, which would make up most of a link. Returns the text unchanged if the shorter
+ * text would parse to other values, for example because of a # in a multi-line string.
  */
 async function stripComments(toml: string): Promise<string> {
   const { parse } = await import('smol-toml');
@@ -34,12 +34,12 @@ async function stripComments(toml: string): Promise<string> {
   return JSON.stringify(parse(shortText)) === JSON.stringify(parse(toml)) ? shortText : toml;
 }
 
-/** Returns a link that opens this page with a robot, short enough for a chat or a QR code. */
-export async function linkTo(toml: string): Promise<string> {
+/** Makes a link that opens this page with a robot, short enough for a chat or a QR code. */
+export async function makeLink(toml: string): Promise<string> {
   return `${location.href.split('#')[0]}#robot=${await pack(await stripComments(toml))}`;
 }
 
-/** Reads the robot.toml from the parameter `robot` of an address. Throws an error with a message for the user. */
+/** Decompresses the parameter `robot` of an address to a robot.toml. Throws an error with a message for the user. */
 export async function unpack(encoded: string): Promise<string> {
   try {
     const base64 = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));

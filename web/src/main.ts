@@ -1,12 +1,12 @@
 // The page: a session, and the views that follow its state.
 import { effect } from '@preact/signals-core';
 
-import { Address, PAGE_ENTRY, addressParts } from './address';
+import { Address, PAGE_ENTRY, parseFragment } from './address';
 import { runInRealTime } from './real-time';
 import { files } from './files';
 import { follow } from './follow';
 import { browserStorage } from './browser-storage';
-import { BluetoothLink, bluetoothProblem, IPHONE_ADVICE } from './link/bluetooth-link';
+import { BluetoothLink, findBluetoothProblem, IPHONE_ADVICE } from './link/bluetooth-link';
 import type { Link } from './link/link';
 import { hasSerial, NO_SERIAL_MESSAGE, PortLink } from './link/port-link';
 import { installServiceWorker } from './offline';
@@ -14,7 +14,7 @@ import { Predictor } from './predictor';
 import { canLag, load } from './robot';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
-import { messageOf } from './problem';
+import { getMessage } from './problem';
 import { Alarm } from './view/alarm';
 import { BoardRobot } from './view/board-robot';
 import { Calibrate } from './view/calibrate';
@@ -42,22 +42,22 @@ import { RobotText } from './view/robot-text';
 import { ROOM_OPENED, openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
-import { Steering, gaitFor } from './view/steer';
+import { chooseGait, Steering } from './view/steer';
 import { Setup } from './view/setup';
 import { Sketch } from './view/sketch';
 import { ProblemList } from './view/problems';
 import { World } from './view/world';
 import { Writer } from './view/writer';
-import { WORDS, unknownWords } from './words';
+import { WORDS, findUnknownWords } from './words';
 
-/** Rate at which the shown numbers are updated, 1/s. */
+/** Update rate of the shown numbers, 1/s. */
 const NUMBER_UPDATES_PER_SECOND = 10;
-/** Number of animation frames per drawing of scope, margins and maps, since painting costs the most time. */
+/** Number of animation frames per drawing of scope, margins and maps, because painting takes the most time. */
 const FRAMES_PER_DRAWING = 3;
 
 declare global {
   interface Window {
-    /** The page's session, for tests and for the browser's console. */
+    /** The page's session, for tests and the browser's console. */
     lizard?: Session;
   }
 }
@@ -89,12 +89,12 @@ async function start(): Promise<void> {
     },
     confirmUno: () =>
       confirm(
-        'Is this board an Arduino UNO? By its USB chip it may also be a Nano, and this robot reaches into the boot section of a Nano. ' +
-          'What is written there would ruin a Nano until a programmer at its pins repairs it. OK: it is a UNO.',
+        'Is this board an Arduino UNO? Its USB chip is also used on the Nano, and this robot reaches into the boot section of a Nano. ' +
+          'Writing there would overwrite a Nano’s boot loader, which only a programmer at its pins can repair. OK: it is a UNO.',
       ),
     onProblem(cause, message) {
       if (cause === 'fault' && message !== null) remote.vibrate();
-      // A board without this firmware can get it at once.
+      // The page offers to write this firmware to a board without it.
       const remedy = { label: 'Write firmware and robot to it', action: () => flash.write('all') };
       problems.setMessage(cause, message, cause === 'board' && session.link.kind !== 'radio' ? remedy : null);
     },
@@ -131,7 +131,7 @@ async function start(): Promise<void> {
   const text: RobotText = new RobotText(session, writer, () => routines.show());
   const routines = new RoutinesView(session, text, writer);
   new GaitsView(session, writer, (ownGait, foundGait, output) => {
-    // The second robot is drawn from above alone.
+    // The second robot is drawn only from above.
     parts.set3d(false);
     return recordView.compare(ownGait, foundGait, output);
   });
@@ -139,7 +139,7 @@ async function start(): Promise<void> {
   const flash = new FlashView(session, writer);
   const setup: Setup = new Setup(session, writer, () => connectBoard());
   const address = new Address(session, choice.chosenFile);
-  // The view of the room Measure, loaded when the room is opened.
+  // The view of the room Measure is loaded when the room is opened.
   let measure: MeasureView | null = null;
   const openMeasure = async () => {
     if (element('room-measure').hidden || measure || !session.description) return;
@@ -159,35 +159,35 @@ async function start(): Promise<void> {
   // When the page opens, the robot walks slowly until the user acts, unless the system is set to reduced motion.
   let isIntroOver = matchMedia('(prefers-reduced-motion: reduce)').matches;
   const startIntroWalk = () => {
-    const gait = gaitFor({ forward: 1, left: 0 }, predictor.gaits);
+    const gait = chooseGait({ forward: 1, left: 0 }, predictor.gaits);
     if (isIntroOver || !gait || isSetupOpen() || session.isReal || session.gait !== session.description.gaits[0]?.command) return;
     isIntroOver = true;
     void session.drive(`${WORDS.speed} 50`).then(() => session.drive(gait));
   };
-  // Any press of a pointer or a key ends the intro.
+  // Pressing a pointer or a key ends the intro.
   for (const eventName of ['pointerdown', 'keydown']) document.addEventListener(eventName, () => (isIntroOver = true), { once: true });
-  // On a slow machine the predictions may arrive before the robot's banner.
+  // On a slow machine, the predictions may arrive before the robot's banner.
   follow([session.state.banner, predictor.predictions], () => session.banner && startIntroWalk());
 
   session.followRobot(({ words }) => {
-    const missingWords = unknownWords([...drive.commands], words);
-    if (missingWords.length > 0) problems.setMessage('page', `The core does not know these words of the page: ${missingWords.join(', ')}.`);
+    const missingWords = findUnknownWords([...drive.commands], words);
+    if (missingWords.length > 0) problems.setMessage('page', `The page sends words that the core does not have: ${missingWords.join(', ')}.`);
   });
   effect(() => {
     const { link, banner, description, isReal } = session;
     if (!link) return;
     const isBusy = writer.isBusy.value;
-    setText(element('where'), boardText(link.name, banner, description.hash));
-    // Reserves the height of the row for the text that most likely follows.
+    setText(element('where'), describeBoard(link.name, banner, description.hash));
+    // Reserves the row's height for the text that most likely follows.
     const { version, name, hash } = description;
-    element('where').parentElement!.dataset.room = boardText(link.name, { version, robot: { name, hash } }, hash);
+    element('where').parentElement!.dataset.room = describeBoard(link.name, { version, robot: { name, hash } }, hash);
     element('heard').hidden = !isReal;
     element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
     connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';
-    // While the boot loader uses the line, nothing else may take it.
+    // While the boot loader uses the line, no other action may use it.
     connectButton.disabled = isBusy || (!isReal && !hasSerial());
     radioButton.disabled = isBusy;
-    radioButton.hidden = isReal || bluetoothProblem() !== null;
+    radioButton.hidden = isReal || findBluetoothProblem() !== null;
     choice.isEnabled = !isBusy;
   });
   session.state.link.subscribe(() => (latestCycle = 0));
@@ -212,7 +212,7 @@ async function start(): Promise<void> {
     const mayLag = canLag(session.floor);
     for (const box of document.querySelectorAll<HTMLElement>('.sprung')) box.hidden = !mayLag;
     setText(element('lag'), measured ? `${measured.lag.toFixed(1)}°` : '–');
-    setText(element('share'), prediction?.share == null ? '–' : `${(100 * prediction.share).toFixed(0)} %`);
+    setText(element('share'), prediction?.fraction == null ? '–' : `${(100 * prediction.fraction).toFixed(0)} %`);
     showMessage(element('refusal'), last?.fault ?? last?.scene?.refusal ?? '');
   }
 
@@ -222,12 +222,12 @@ async function start(): Promise<void> {
       problems.setMessage('robot', null);
     } catch (error) {
       choice.select(session.file);
-      if (!session.link) element('where').textContent = 'No robot could be read.';
-      problems.setMessage('robot', messageOf(error));
+      if (!session.link) element('where').textContent = 'No robot is loaded.';
+      problems.setMessage('robot', getMessage(error));
     }
   };
   const ownRobot = new OwnRobot(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
-  /** Loads another robot with `loadRobot`, and puts the user's changed robot aside, so that it is not lost. */
+  /** Loads another robot with `loadRobot`, and puts the user's changed robot aside. */
   const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
     const saved = browserStorage.getChanges();
     await loadRobot();
@@ -246,14 +246,14 @@ async function start(): Promise<void> {
       if (session.isReal) await session.disconnect();
       else if (await session.connect(await open())) setup.openNeededStep();
     } catch (error) {
-      problems.setMessage('port', `No board is connected: ${messageOf(error)}`);
+      problems.setMessage('port', `No board is connected: ${getMessage(error)}`);
     }
   }
   connectButton.addEventListener('click', () => void connectBoard());
   radioButton.addEventListener('click', () => void connectBoard(() => BluetoothLink.open()));
   document.addEventListener('visibilitychange', () => document.hidden && session.stopIfWalking());
-  // A board would walk on after its page is closed, so it is stopped, and the browser asks the user to confirm. It also
-  // asks while an image is being written to a board.
+  // Closing the page would leave a walking board: the page stops the board, and the browser asks the user to confirm.
+  // The browser also asks while an image is being written to a board.
   addEventListener('beforeunload', (event) => {
     if (session.isBoardWalking) void session.stop();
     else if (!(writer.isBusy.value && session.isReal)) return;
@@ -261,17 +261,17 @@ async function start(): Promise<void> {
   });
 
   const saved = browserStorage.getChanges();
-  const addressFile = addressParts(location.hash).get('file');
+  const addressFile = parseFragment(location.hash).get('file');
   const requestedFile = addressFile ?? saved?.file;
   const isKnownFile = requestedFile === undefined || choice.select(requestedFile);
   await loadChosenFile();
-  const reportMissing = (file: string) => problems.setMessage('robot', `This page has no ${file}.toml, which its address asks for.`);
+  const reportMissing = (file: string) => problems.setMessage('robot', `The page has no robot ${file}.toml, which its address names.`);
   if (addressFile !== null && !isKnownFile) reportMissing(addressFile);
-  // The robot in the address takes precedence over a stored one.
-  const isRobotInAddress = addressFile !== null || addressParts(location.hash).has('robot');
+  // The robot in the address takes precedence over a stored robot.
+  const isRobotInAddress = addressFile !== null || parseFragment(location.hash).has('robot');
   if (saved && session.file === saved.file && !(await session.restoreSaved(saved)) && !isRobotInAddress) {
-    const remedy = { label: 'Download what was changed', action: () => void downloadRobot(saved.toml, saved.floor) };
-    const message = `${saved.file}.toml is not the file of last time, so what was changed of it then is not taken.`;
+    const remedy = { label: 'Download the changed robot', action: () => void downloadRobot(saved.toml, saved.floor) };
+    const message = `${saved.file}.toml has changed since the last visit; your changes to the previous file are not applied.`;
     problems.setMessage('robot', message, remedy);
   }
   if (await text.loadFromAddress()) address.start();
@@ -279,15 +279,15 @@ async function start(): Promise<void> {
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
-    // Within the page's own entries, Back and Forward change only the room, and the robot stays.
+    // Between the page's own entries, Back and Forward change only the room; the robot stays.
     if (state === PAGE_ENTRY) return address.scheduleUpdate();
-    const file = addressParts(hash).get('file');
+    const file = parseFragment(hash).get('file');
     if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.start());
     if (choice.select(file)) void replaceRobot(loadChosenFile);
     else reportMissing(file);
   });
   window.lizard = session;
-  // The service worker starts only after everything that the page needs first is loaded.
+  // The service worker starts only after the page's first files are loaded.
   void installServiceWorker((loadNewer) => {
     element('fresh').hidden = false;
     element('fresh-take').onclick = loadNewer;
@@ -301,9 +301,8 @@ async function start(): Promise<void> {
     },
     () => {
       steer.readGamepads();
-      // Without a robot there is nothing to draw.
       if (!session.description) return;
-      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.frameToDraw(session.last), recordView.companionFrame);
+      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.chooseFrame(session.last), recordView.companionFrame);
       recordView.afterDrawing();
       parts.render(session.last);
       frameCount += 1;
@@ -324,19 +323,19 @@ async function start(): Promise<void> {
   );
 }
 
-/** Returns the text that names the board and its robot; `hash` is that of the page's robot. */
-function boardText(name: string, banner: BoardBanner | undefined, hash: string): string {
+/** Returns a text that names the board and its robot; `hash` is the hash of the page's robot. */
+function describeBoard(name: string, banner: BoardBanner | undefined, hash: string): string {
   if (banner === undefined) return `waiting for the ${name}`;
   if (banner === null) return `on a ${name} without this firmware`;
-  if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see which robot it has`;
+  if (banner === 'unknown') return `on a ${name} that has not restarted: press its reset button to see its robot`;
   const { robot } = banner;
-  if (!robot) return `on a ${name} with this firmware and no robot in it: write this one`;
+  if (!robot) return `on a ${name} with this firmware but no robot: write this robot`;
   const robotText = `robot ${robot.name} ${robot.hash}`;
-  return robot.hash === hash ? `on a ${name}, ${robotText}` : `on a ${name} with another robot, ${robotText}: choose that one, or write this one`;
+  return robot.hash === hash ? `on a ${name}, ${robotText}` : `on a ${name} with another robot, ${robotText}: choose that robot, or write this robot`;
 }
 
 openRoom(location.hash);
 start().catch((error: unknown) => {
   element('where').textContent = 'The page cannot start.';
-  problems.setMessage('page', messageOf(error));
+  problems.setMessage('page', getMessage(error));
 });

@@ -1,11 +1,11 @@
 /// <reference types="vite/client" />
-// The page without a network: a service worker (service-worker.js) stores all files, and a newer version is loaded only
-// at the user's request, never by itself while the robot walks.
-import { messageOf } from './problem';
+// The page without a network: a service worker (service-worker.js) stores all files. A newer version is loaded only at
+// the user's request, never automatically while the robot walks.
+import { getMessage } from './problem';
 
-/** Stores the page on this machine. Calls `onUpdate` with a function that loads a newer version once one is ready. */
+/** Stores the page on this machine. Once a newer version is ready, calls `onUpdate` with a function that loads it. */
 export async function installServiceWorker(onUpdate: (load: () => void) => void): Promise<void> {
-  // A browser has service workers only over https and on localhost; otherwise the page needs the network.
+  // Browsers have service workers only over https and on localhost; otherwise the page needs the network.
   if (!import.meta.env.PROD || !('serviceWorker' in navigator)) return;
   const { serviceWorker } = navigator;
   const isFirstVisit = serviceWorker.controller === null;
@@ -22,6 +22,6 @@ export async function installServiceWorker(onUpdate: (load: () => void) => void)
     offerUpdate();
     registration.addEventListener('updatefound', () => registration.installing?.addEventListener('statechange', offerUpdate));
   } catch (error) {
-    console.info(`The page is not kept for use without a network: ${messageOf(error)}`);
+    console.info(`Cannot store the page for use without a network: ${getMessage(error)}`);
   }
 }

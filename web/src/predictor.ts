@@ -1,5 +1,5 @@
-// Predicts each gait's displacement in a worker, since on a phone this takes seconds. The robots that come with the
-// page have files with their predictions.
+// Predicts each gait's displacement in a worker, because a prediction takes seconds on a phone. The page's own robots
+// have files with their predictions.
 import { signal } from '@preact/signals-core';
 
 import { follow } from './follow';
@@ -16,10 +16,10 @@ export interface PredictedGait {
 }
 
 export class Predictor {
-  /** The predictions made so far for the session's robot, by the gaits' commands. */
+  /** The predictions so far for the session's robot, by the gaits' commands. */
   readonly predictions = signal<ReadonlyMap<string, GaitPrediction>>(new Map());
   private helper: Promise<Helper<RobotWorkerApi>> | null = null;
-  /** Number of calls of `predict` so far: a later call cancels an earlier one. */
+  /** Number of calls of `predict` so far; a later call cancels an earlier call. */
   private callCount = 0;
 
   constructor(private readonly session: Session) {
@@ -28,7 +28,7 @@ export class Predictor {
     follow([description, floor, servos], () => description.value && void this.predict());
   }
 
-  /** The gaits that have a prediction, in the robot's order. */
+  /** The gaits with a prediction, in the robot's order. */
   get gaits(): PredictedGait[] {
     return this.session.description.gaits.flatMap(({ command }) => {
       const displacement = this.predictions.value.get(command);
@@ -36,7 +36,7 @@ export class Predictor {
     });
   }
 
-  /** Predicts every gait, starting with the robot's current one; a later call cancels this one. */
+  /** Predicts every gait, starting with the robot's current gait; a later call cancels this call. */
   private async predict(): Promise<void> {
     const { toml, floor, servos, description, filePredictions, gait: currentGait } = this.session;
     const { gaits } = description;

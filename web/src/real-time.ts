@@ -1,13 +1,13 @@
 // Runs the simulation in real time, or slower if the machine cannot keep up.
 
-/** Longest simulated time per animation frame, ms; the time that a hidden or slow page misses beyond it is skipped. */
+/** Longest simulated time per animation frame, ms; a hidden or slow page skips the rest. */
 const MAX_CATCH_UP_MS = 100;
 /** Slice of simulated time, ms; promise callbacks run between two slices. */
 const SLICE_MS = 4;
-/** CPU time that the simulation may take per animation frame, ms; if it needs more, it falls behind real time. */
+/** CPU time limit of the simulation per animation frame, ms; beyond it, the simulation falls behind real time. */
 const FRAME_BUDGET_MS = 30;
 
-/** In each animation frame, calls `advance` with the time since the previous frame, in slices, and then `draw`. */
+/** In each animation frame, calls `advance` with slices of the time since the previous frame, and then `draw`. */
 export function runInRealTime(advance: (ms: number) => void, draw: () => void): void {
   let previousTime: number | null = null;
   let hasFailed = false;
@@ -22,7 +22,7 @@ export function runInRealTime(advance: (ms: number) => void, draw: () => void): 
         await Promise.resolve();
       }
     } catch (error) {
-      // The failure is reported only once, and the page continues without the simulation.
+      // A failure is reported only once, and the page continues without the simulation.
       hasFailed = true;
       console.error(error);
     }

@@ -1,18 +1,18 @@
-// A recorded run of the robot, frame by frame, for replay and for export.
+// A recorded run of the robot, frame by frame, for replay and export.
 import type { Four, Frame } from './robot';
 
-/** A frame of the robot in a recording, with its time, activity and pulses. */
+/** A frame in a recording, with its time, activity and pulses. */
 export interface RecordedFrame {
   /** Time since the start of the recording, s. */
   time: number;
-  /** The robot's gait or command at this time. */
+  /** The robot's gait or command in this frame. */
   activity: string;
   frame: Frame;
   /** Pulse widths, CPU cycles; null for a real board, whose pulses are unknown. */
   widths: Four<number> | null;
 }
 
-/** Longest duration of a recording, s, so that a forgotten one does not fill the memory. */
+/** Longest duration of a recording, s, so that a forgotten recording does not fill the memory. */
 export const MAX_SECONDS = 180;
 const CYCLES_PER_US = 16;
 
@@ -31,23 +31,23 @@ export class Recording {
     return this.frames[this.frames.length - 1]?.time ?? 0;
   }
 
-  /** Returns the frame that was current at `time`, s; null if the recording is empty. */
-  frameAt(time: number): RecordedFrame | null {
+  /** Returns the current frame at `time`, s; null if the recording is empty. */
+  findFrame(time: number): RecordedFrame | null {
     const laterIndex = this.frames.findIndex((frame) => frame.time > time + 1e-9);
     return this.frames[laterIndex < 0 ? this.frames.length - 1 : Math.max(0, laterIndex - 1)] ?? null;
   }
 
   /** Formats the recording as CSV, one line per frame: angles and lags in deg, place in mm, pulses in us. */
-  csv(): string {
-    const fourNames = (nameOf: (number: number) => string) => [1, 2, 3, 4].map(nameOf);
+  formatCsv(): string {
+    const nameServos = (makeName: (number: number) => string) => [1, 2, 3, 4].map(makeName);
     const header = [
-      'time_s', 'doing', ...fourNames((n) => `a${n}_deg`), 'right_mm', 'ahead_mm', 'heading_deg',
-      ...['lf', 'rf', 'rh', 'lh'].map((leg) => `lag_${leg}_deg`), ...fourNames((n) => `pulse_a${n}_us`),
+      'time_s', 'doing', ...nameServos((n) => `a${n}_deg`), 'right_mm', 'ahead_mm', 'heading_deg',
+      ...['lf', 'rf', 'rh', 'lh'].map((leg) => `lag_${leg}_deg`), ...nameServos((n) => `pulse_a${n}_us`),
     ];
     const emptyFields = ['', '', '', ''];
     const lines = this.frames.map(({ time, activity, frame: { scene, place, lag }, widths }) => [
       time.toFixed(2),
-      // A gait's name comes from a file. The quotes keep it from ending the field.
+      // A gait's name comes from a file and may contain commas; therefore the field is quoted.
       `"${activity.replaceAll('"', '""')}"`,
       ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? emptyFields),
       ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),

@@ -1,4 +1,4 @@
-// Starts workers that each have a robot of their own.
+// Starts workers, each with its own robot.
 import type { Remote } from 'comlink';
 
 import { files } from './files';
@@ -6,7 +6,7 @@ import { Helper } from './helper';
 import { LatestQuestion } from './latest-question';
 import type { RobotWorkerApi } from './robot-worker';
 
-/** Starts a worker that has a robot of its own. */
+/** Starts a worker with its own robot. */
 export async function startRobotHelper(): Promise<Helper<RobotWorkerApi>> {
   const module = await files.wasm();
   const helper = new Helper<RobotWorkerApi>(new Worker(new URL('./robot-worker.ts', import.meta.url), { type: 'module' }));
@@ -14,7 +14,7 @@ export async function startRobotHelper(): Promise<Helper<RobotWorkerApi>> {
   return helper;
 }
 
-/** Prepares questions to a worker that has a robot of its own and is started by the first question. */
+/** Prepares questions to a worker with its own robot; the first question starts the worker. */
 export function createRobotQuestion<Question, Answer>(
   call: (robot: Remote<RobotWorkerApi>, question: Question) => Promise<Answer>,
   onAnswer: (answer: Answer) => void,

@@ -4,7 +4,7 @@ import { expose } from 'comlink';
 import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, Robot, type Scene } from './robot';
 
 let robot: Robot;
-/** The robot.toml of the loaded robot; empty before the first one. */
+/** The robot.toml of the loaded robot; empty before the first robot. */
 let loadedToml = '';
 
 /** Loads a robot, its floor and its servos; returns false if the robot is refused. */
@@ -19,7 +19,7 @@ function loadRobot({ toml, floor, servos }: OnFloor): boolean {
 }
 
 /** Loads a robot and returns the scene of its neutral pose; null if the robot is refused. */
-function neutralScene(toml: string): Scene | null {
+function loadNeutralScene(toml: string): Scene | null {
   const description = robot.read(toml);
   if (isRefused(description)) return null;
   loadedToml = toml;
@@ -32,24 +32,24 @@ const api = {
     robot = load(module);
   },
 
-  /** Predicts the gait with the index `gait`; null if the robot is refused. */
+  /** Predicts the gait with the index `gait`; returns null if the robot is refused. */
   predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
-  /** Tries an edited gait; null if the robot is refused, or if a drawn line has no length. */
+  /** Tries an edited gait; returns null if the robot is refused, or if a drawn line has no length. */
   trial: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.trial(request.gait) : null),
 
-  /** Returns the path of one round of a routine; null if the robot is refused or has no such routine. */
+  /** Simulates the path of a routine's round; returns null if the robot is refused or has no such routine. */
   round: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.round(request.routine) : null),
 
   /**
    * Tries other lengths; if they are accepted, returns the scene of the neutral pose. `isLast` is true at the end of a
-   * drag: if the lengths are refused then, valid lengths are searched for. If `keys` is not empty, also returns the
-   * range of the values that all lengths of these keys may have together.
+   * drag: only then does a refusal start a search for valid lengths. If `keys` is not empty, also returns the range of
+   * the values that all lengths of these keys may have together.
    */
   lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
     const result = Robot.lengths(toml, edits, isLast);
     const range = keys.length === 0 ? null : Robot.lengthRange(toml, keys);
-    return { ...result, edits, scene: result.refusal ? null : neutralScene(result.text), isLast, range };
+    return { ...result, edits, scene: result.refusal ? null : loadNeutralScene(result.text), isLast, range };
   },
 };
 

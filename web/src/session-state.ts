@@ -1,5 +1,5 @@
-// The state of the session that views follow, as signals: an `effect` that reads a signal, or a subscriber, is called
-// at each change.
+// The session's state as signals, which views follow: each change calls the subscribers, and every `effect` that reads
+// the signal.
 import { signal } from '@preact/signals-core';
 
 import type { Link } from './link/link';
@@ -8,31 +8,31 @@ import type { Banner, Description, Floor, Status } from './robot';
 /** The firmware's pace after a reset, percent. */
 export const FULL_PACE = 100;
 
-/** A board's banner; `unknown` if this firmware answers but sent no banner, null if it does not answer. */
+/** A board's banner; `unknown` if this firmware answers but has sent no banner, null if it does not answer. */
 export type BoardBanner = Banner | 'unknown' | null;
 
 export class SessionState {
-  /** The robot's description, replaced at each change of the robot; null before the first robot. */
+  /** The robot's description, which each change of the robot replaces; null before the first robot. */
   readonly description = signal<Description | null>(null);
-  /** The floor as set in the page; null if it is that of robot.toml. */
+  /** The floor set in the page; null for the floor of robot.toml. */
   readonly floor = signal<Floor | null>(null);
-  /** The servo model, by its name in the description. */
+  /** The servo model's name in the description. */
   readonly servos = signal('own');
   readonly link = signal<Link | null>(null);
   /** The board's firmware and robot; undefined until known. */
   readonly banner = signal<BoardBanner | undefined>(undefined);
-  /** Number of banners received; each one after the first tells of a restart, which loses unsaved settings. */
+  /** Number of received banners; each banner after the first means a restart, which loses unsaved settings. */
   readonly bannerCount = signal(0);
-  /** The robot's activity, a gait or a command; empty if unknown. */
+  /** The robot's activity, a gait or a command; empty if it is unknown. */
   readonly gait = signal('');
   /** The robot's pace, percent. */
   readonly pace = signal(FULL_PACE);
-  /** The message with which the robot refused the last drive command; empty if it was accepted. */
+  /** The robot's refusal of the last drive command; empty if the robot accepted the command. */
   readonly refusal = signal('');
-  /** The last answer to `status`; null before the first. */
+  /** The last answer to `status`; null before the first answer. */
   readonly status = signal<Status | null>(null);
-  /** True while a line has been without an answer for `SILENCE_MS`, or a radio is out of range. */
+  /** True while a line has had no answer for `SILENCE_MS`, or a radio is out of range. */
   readonly isSilent = signal(false);
-  /** True from the first `stop` until the robot has answered it. */
+  /** True between the first `stop` and the robot's answer. */
   readonly isStopping = signal(false);
 }

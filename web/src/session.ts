@@ -1,6 +1,6 @@
 // The session: the robot that the page shows, and the board at the other end of the serial line. Views read the
-// session, call its methods and follow its state: a view that reads the state in an `effect` runs again when it has
-// changed.
+// session, call its methods and follow its state: a view that reads the state in an `effect` runs again after each
+// change.
 import { batch } from '@preact/signals-core';
 
 import { loadBoard } from './board';
@@ -14,48 +14,48 @@ import { UnoLink } from './link/uno-link';
 import { isRefused, parseBanner, parsePoseReport, parseStatus } from './robot';
 import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Robot, Status } from './robot';
 import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
-import { type Cause, messageOf } from './problem';
+import { type Cause, getMessage } from './problem';
 import { SimulatedBoard } from './uno/board';
 import { type CycleDisplacement, WalkedPath } from './walked-path';
 import { DONE_LINE, GAITS, WORDS } from './words';
 
-/** Number of frames of 20 ms per pose that a board reports; a radio at 9600 baud cannot carry more poses. */
+/** Number of frames per reported pose; a radio at 9600 baud cannot transmit more poses. */
 const WATCH_FRAMES = { usb: 2, radio: 10, simulated: 1 };
-/** Time from a reset within which this firmware sends its banner, ms. */
+/** Longest time between a reset and this firmware's banner, ms. */
 const BANNER_TIMEOUT_MS = 2500;
-/** Time within which a board that was not reset answers, ms. */
+/** Longest time until the answer of a board that was not reset, ms. */
 const ANSWER_TIMEOUT_MS = 500;
 /**
- * Number of `status` lines sent to a board that was not reset: it needs up to five lines to find the baud rate, and a
- * radio may lose some.
+ * Number of `status` lines sent to a board that was not reset: the board needs up to five lines to find the baud rate,
+ * and a radio may lose some.
  */
 const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
-/** Time that the answer to `status` may take, ms. */
+/** Longest time until the answer to `status`, ms. */
 const STATUS_TIMEOUT_MS = 1000;
-/** Time a board gets to stop before the port is closed, ms. */
+/** Longest time for a board to stop before the port is closed, ms. */
 const STOP_TIMEOUT_MS = 1000;
-/** Time after a reset within which `boot` has acted, which it does after three seconds, ms. */
+/** Longest time between a reset and the `boot` action, which runs after three seconds, ms. */
 const BOOT_TIMEOUT_MS = 4000;
 const FRAME_SECONDS = 0.02;
 /** Longest simulated time between two updates of `clock`, ms. */
 const CLOCK_STEP_MS = 5;
 
-/** The fault of a robot that has received nothing for the `deadman` time. */
+/** The fault of a robot that received nothing for the `deadman` time. */
 const LINK_FAULT = 'link';
-/** The reason why nothing can be written by radio. */
-export const NO_WRITING_BY_RADIO = 'a radio does not reset a board and is too slow for it: connect its USB cable to write to it';
+/** The reason why a board cannot be written by radio. */
+export const NO_WRITING_BY_RADIO = 'a radio cannot reset the board and is too slow; connect the board by its USB cable to write to it';
 
-/** Callbacks for the events of a session; everything else is in its state. */
+/** Callbacks for a session's events; all other changes are in its state. */
 export interface SessionListener {
-  /** Called for each frame, which lasted `seconds`. */
+  /** Called for each frame, with the frame's duration. */
   onFrame(frame: Frame, widths: Four<number> | null, seconds: number): void;
   /** Called for each pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
   onPulse(pin: number, rise: number, width: number): void;
-  /** Called with each sent line that is to be shown. */
+  /** Called with each visible sent line. */
   onSent(line: string): void;
-  /** Called with each received line that is to be shown. */
+  /** Called with each visible received line. */
   onReceived(line: string): void;
-  /** Asks the user whether the board is a UNO: on a Nano, writing would overwrite the boot loader. */
+  /** Asks the user to confirm that the board is a UNO: on a Nano, writing would overwrite the boot loader. */
   confirmUno(): boolean;
   /** Called with the current problem, or null once it is solved. */
   onProblem(cause: Cause, message: string | null): void;
@@ -74,41 +74,41 @@ export class Session {
   toml = '';
   /** The unchanged text of the robot's file. */
   original = '';
-  /** The predictions of the gaits in `original`, which come with the page; null if they are missing. */
+  /** The page's predictions for the gaits in `original`; null if they are missing. */
   private predictions: Predictions | null = null;
   /** The robot's section of flash. */
   robotSection: Uint8Array = new Uint8Array();
-  /** The last frame; null before the first. */
+  /** The last frame; null before the first frame. */
   last: Frame | null = null;
   /** Supply voltage of the simulated board, V. */
   volts = 5;
   /** The names of the inputs whose simulated contacts are closed. */
   readonly closedInputs = new Set<string>();
-  /** True if the page may send lines that no user has asked for: none while a byte would cancel `boot`. */
+  /** True if the page may send lines without the user's request; false while a byte would cancel `boot`. */
   mayAsk = false;
   dialogue!: Dialogue;
   private deadman!: Deadman;
-  /** Number of unanswered lines that make the robot walk. */
+  /** Number of unanswered drive commands. */
   private pendingDriveCount = 0;
-  /** Number of calls of `ask` with `stop` so far; tells a waiting drive command that it is outdated. */
+  /** Number of `stop` commands so far; a waiting drive command is outdated when it changes. */
   private stopCount = 0;
-  /** The time at which the robot's last line arrived, on the page's clock, ms. */
+  /** The arrival time of the robot's last line, on the page's clock, ms. */
   private lastLineAt = performance.now();
-  /** The firmware's image, which is the same for every robot. */
+  /** The firmware's image, the same for every robot. */
   private firmware: Uint8Array | null = null;
   private bootLoader: Uint8Array | null = null;
   private readonly walkedPath = new WalkedPath();
-  /** The robot's time, s: simulated time, or the total duration of the frames that a real board has reported. */
+  /** The robot's time, s: simulated time, or the total duration of a real board's reported frames. */
   clock = 0;
   /** Resolves the promise of `waitForBanner`. */
   private resolveBanner: () => void = () => {};
-  /** True if a board without this firmware has the boot loader of a UNO. */
+  /** True if a board without this firmware has a UNO's boot loader. */
   hasBootLoader = false;
-  /** The pace of the last line that asks for one, percent; null once it is answered. */
+  /** The last requested pace, percent; null once the robot has answered. */
   private requestedPace: number | null = null;
-  /** True once the board has been told to report its poses. */
+  /** True once the page has requested the board's poses. */
   private isWatching = false;
-  /** Number of calls of `loadFile` so far: a file that arrives after a later call is dropped. */
+  /** Number of calls of `loadFile` so far; a file that arrives after a later call is dropped. */
   private loadCount = 0;
 
   constructor(
@@ -117,7 +117,7 @@ export class Session {
   ) {}
 
   get description(): Description {
-    // There is none only before the first robot is loaded, and no view reads it then.
+    // The description is missing only before the first robot is loaded, when no view reads it.
     return this.state.description.value!;
   }
 
@@ -125,7 +125,7 @@ export class Session {
     return this.state.link.value!;
   }
 
-  /** Calls `show` with the current robot, if there is one, and with each later one. */
+  /** Calls `show` with the current robot, if any, and with each later robot. */
   followRobot(show: (description: Description) => void): void {
     this.state.description.subscribe((description) => description && show(description));
   }
@@ -138,7 +138,7 @@ export class Session {
     return this.state.gait.value;
   }
 
-  /** The pace that was asked for, until the robot has answered, else the robot's pace; percent. */
+  /** The requested pace until the robot answers, else the robot's pace; percent. */
   get pace(): number {
     return this.requestedPace ?? this.state.pace.value;
   }
@@ -149,8 +149,8 @@ export class Session {
   }
 
   /**
-   * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. Throws an
-   * error with a message for the user if the robot cannot be loaded; the previous robot then stays.
+   * Loads a robot by its file name and restarts the simulated UNO with it; a real board stays connected. If the robot
+   * cannot be loaded, keeps the previous robot and throws an error with a message for the user.
    */
   async loadFile(name: string): Promise<void> {
     const loadNumber = ++this.loadCount;
@@ -182,7 +182,7 @@ export class Session {
     return null;
   }
 
-  /** Restores saved changes if the robot's file has not changed since; returns true if they were restored. */
+  /** Restores saved changes unless the robot's file has changed since; returns true if the changes were restored. */
   async restoreSaved({ original, toml, floor, servos, volts }: SavedChanges): Promise<boolean> {
     if (original !== this.original) return false;
     this.setServos(servos);
@@ -235,12 +235,12 @@ export class Session {
     return this.banner !== undefined && this.banner !== null;
   }
 
-  /** True if the board has exactly the page's robot. */
+  /** True if the board's robot equals the page's robot. */
   get hasThisRobot(): boolean {
     return isBanner(this.banner) && this.banner.robot?.hash === this.description.hash;
   }
 
-  /** The board's robot according to its banner; null if it is the page's robot or unknown. */
+  /** The board's robot according to its banner; null if it is unknown or equals the page's robot. */
   get otherRobot(): { name: string; hash: string } | null {
     return isBanner(this.banner) && !this.hasThisRobot ? this.banner.robot : null;
   }
@@ -250,13 +250,13 @@ export class Session {
     return (performance.now() - this.lastLineAt) / 1000;
   }
 
-  /** True if the link leads to a real board. */
+  /** True if the page is connected to a real board. */
   get isReal(): boolean {
-    // There is no link before the first robot is loaded.
+    // The link is null before the first robot is loaded.
     return this.link !== null && this.link.kind !== 'simulated';
   }
 
-  /** Powers on a new simulated UNO with the page's robot; `eeprom` is that of the previous UNO. */
+  /** Powers on a new simulated UNO with the page's robot and, optionally, the previous UNO's EEPROM. */
   async simulate(eeprom?: Uint8Array): Promise<void> {
     this.bootLoader ??= await files.bootLoader();
     const pins = this.description.servos.map(({ pin }) => pin);
@@ -267,18 +267,18 @@ export class Session {
   }
 
   /**
-   * Connects to a board that the user has picked, and identifies it; returns true if it is connected afterwards. Throws
-   * an error with a message for the user.
+   * Connects to a board that the user picked, and identifies it; returns true if the board is connected at the end.
+   * Throws an error with a message for the user.
    */
   async connect(link: Link | null): Promise<boolean> {
     if (!link) return false;
     link.onGone = (reason) => {
-      void this.simulate().then(() => this.listener.onProblem('port', `The board is gone: ${reason} The simulation goes on.`));
+      void this.simulate().then(() => this.listener.onProblem('port', `The board is gone: ${reason} The simulation continues.`));
     };
-    link.onReach = (isInReach) => void this.handleReach(link, isInReach);
+    link.onRange = (isInRange) => void this.handleRange(link, isInRange);
     await this.attach(link);
     this.listener.onProblem('port', null);
-    // Opening a USB port has reset the board. Bytes sent before its banner would go to the boot loader.
+    // Opening a USB port resets the board. The boot loader would receive bytes that are sent before the banner.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
     for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
@@ -293,20 +293,20 @@ export class Session {
 
   private reportSilentModule(link: Link): void {
     this.state.banner.value = null;
-    this.listener.onProblem('board', `The module is connected, but no robot answers from the ${link.name}: is its TXD on D0, and is the robot switched on?`);
+    this.listener.onProblem('board', `The module is connected, but no robot answers from the ${link.name}. Check that the module's TXD is on D0, and that the robot is switched on.`);
   }
 
   /**
-   * Reports that a radio has lost its board, or continues once the board is in reach again. A robot that was walking
-   * has stopped by itself meanwhile.
+   * Reports that a radio has lost its board, or continues once the board is back in range. A walking robot has stopped
+   * by itself meanwhile.
    */
-  private async handleReach(link: Link, isInReach: boolean): Promise<void> {
+  private async handleRange(link: Link, isInRange: boolean): Promise<void> {
     if (this.link !== link) return;
     this.deadman.stopRepeating();
-    this.state.isSilent.value = !isInReach;
-    const message = `The ${link.name} is out of reach. A robot that was driven stops by itself; the page connects again as soon as it can.`;
-    this.listener.onProblem('port', isInReach ? null : message);
-    if (!isInReach) return;
+    this.state.isSilent.value = !isInRange;
+    const message = `The ${link.name} is out of range. A walking robot stops by itself; the page reconnects as soon as possible.`;
+    this.listener.onProblem('port', isInRange ? null : message);
+    if (!isInRange) return;
     for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
       if (!this.banner) this.state.banner.value = 'unknown';
@@ -315,13 +315,13 @@ export class Session {
     }
   }
 
-  /** Waits for the banner of a restarted board; returns true if it came in time. */
+  /** Waits for the banner of a restarted board; returns true if it arrives in time. */
   async waitForBanner(): Promise<boolean> {
     const bannerPromise = new Promise<boolean>((resolve) => (this.resolveBanner = () => resolve(true)));
     return Promise.race([bannerPromise, this.link.wait(BANNER_TIMEOUT_MS).then(() => false)]);
   }
 
-  /** Resolves to true if this firmware answers `status`. Without a reset by the port there is no banner to tell. */
+  /** Resolves to true if this firmware answers `status`; used if the port does not reset the board. */
   private async answersStatus(): Promise<boolean> {
     const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;
@@ -333,17 +333,17 @@ export class Session {
     let message: string;
     try {
       const model = await this.withBootLoader(link, async ({ identify }, line) => identify(line));
-      message = `The board is an Arduino ${model}, an ATmega328P by its boot loader, and this firmware is not on it.`;
+      message = `The board is an Arduino ${model}, an ATmega328P according to its boot loader, without this firmware.`;
       this.hasBootLoader = true;
     } catch (error) {
-      message = `The board does not answer as this firmware does: ${messageOf(error)}.`;
+      message = `The board does not answer like this firmware: ${getMessage(error)}.`;
     }
     if (this.link !== link) return;
     this.state.banner.value = null;
     this.listener.onProblem('board', message);
   }
 
-  /** Makes the board report its poses. */
+  /** Requests reports of the board's poses. */
   private async watch(): Promise<void> {
     this.isWatching = true;
     await this.ask(`${WORDS.watch} ${WATCH_FRAMES[this.link.kind]}`);
@@ -354,7 +354,7 @@ export class Session {
     const hasStopped = await this.stop();
     await this.simulate();
     if (!hasStopped) {
-      this.listener.onProblem('port', 'The board that was left did not say that it stops. If it walks on, press its reset button.');
+      this.listener.onProblem('port', 'The disconnected board did not confirm its stop. If it is still walking, press its reset button.');
     }
   }
 
@@ -363,25 +363,26 @@ export class Session {
     return this.isReal && this.startsWalking(this.gait);
   }
 
-  /** True while a routine runs; a real board may have routines that the page's robot lacks. */
+  /** True while a routine runs, also a real board's routine that the page's robot does not have. */
   private get isRoutineRunning(): boolean {
     return this.startsWalking(this.gait) && !this.description.gaits.some(({ command }) => command === this.gait);
   }
 
-  /** True if the robot walks after this line; an activity counts as the line that starts it. */
+  /** Returns true if the robot walks after this line; an activity counts as the line that starts it. */
   private startsWalking(line: string): boolean {
     const [word] = line.split(' ');
-    // A board with another robot may have gaits that the page's robot lacks. A count may follow the gait's name.
+    // A board with another robot may have gaits that the page's robot does not have. A count may follow the gait's
+    // name.
     const knownGait = this.description.gaits.find(({ command }) => command === line.replace(/ \d+$/, ''));
     return knownGait ? knownGait.moves : !['', '?', GAITS.stand, ...Object.values<string>(WORDS)].includes(word);
   }
 
-  /** Restores the robot's own `deadman` setting if the robot neither walks nor is about to walk. */
+  /** Restores the robot's own `deadman` setting if the robot neither walks nor will soon walk. */
   private restoreDeadmanIfIdle(): void {
     if (this.pendingDriveCount === 0 && !this.isBoardWalking) this.deadman.restore();
   }
 
-  /** Stops a board that walks while the user may not see it; if `stop` does not arrive, `deadman` stops it. */
+  /** Stops a board that walks while the user may not see it; if `stop` does not arrive, `deadman` stops the board. */
   stopIfWalking(): void {
     if (!this.isBoardWalking) return;
     this.deadman.stopRepeating();
@@ -389,8 +390,8 @@ export class Session {
   }
 
   /**
-   * Stops a board that is about to be disconnected; returns true if the board answers, or if no real board with this
-   * firmware is connected.
+   * Stops a board before its disconnection; returns true if the board answers, or if no real board with this firmware
+   * is connected.
    */
   async stop(): Promise<boolean> {
     if (!this.isReal || !this.banner) return true;
@@ -405,7 +406,7 @@ export class Session {
     batch(() => {
       this.state.link.value = link;
       this.state.banner.value = undefined;
-      // The silence of an earlier radio that was out of reach says nothing about the new link.
+      // An earlier radio's silence does not concern the new link.
       this.state.isSilent.value = false;
       this.state.refusal.value = '';
       this.isWatching = false;
@@ -461,7 +462,7 @@ export class Session {
     this.listener.onProblem('board', null);
     this.state.banner.value = parseBanner(line) ?? 'unknown';
     this.resolveBanner();
-    // A byte would cancel `boot`.
+    // A byte would cancel the `boot` action.
     this.mayAsk = false;
     void this.link.wait(BOOT_TIMEOUT_MS).then(() => {
       // The board may have restarted meanwhile, or the boot loader may be using the line.
@@ -483,7 +484,7 @@ export class Session {
     this.walkedPath.clear();
   }
 
-  /** Sends a line and returns its answer, or null after an error, which is shown unless the line is quiet. */
+  /** Sends a line and returns its answer, or null after an error; the error is shown unless the line is quiet. */
   async ask(line: string, isQuiet = false, timeoutMs?: number): Promise<Answer | null> {
     if (!isQuiet) this.mayAsk = true;
     const { deadman } = this;
@@ -495,11 +496,11 @@ export class Session {
       if (isDrive) {
         const { stopCount } = this;
         const isConfirmed = await deadman.engage();
-        // The robot was told to stop meanwhile.
+        // A `stop` was sent meanwhile.
         if (stopCount !== this.stopCount) return null;
-        if (!isConfirmed) throw new Error(`"${line}" was not sent, since the robot has not confirmed that it stops when it hears nothing`);
+        if (!isConfirmed) throw new Error(`"${line}" was not sent, because the robot did not confirm its deadman setting`);
       }
-      // `cal` must print and `save` must store the robot's own setting, not the page's.
+      // `cal` must print and `save` must store the robot's own setting, not the page's setting.
       const needsOwnDeadman = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
       if (needsOwnDeadman) deadman.restore();
       const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
@@ -509,8 +510,8 @@ export class Session {
       deadman.noteLine(command, answer.ok);
       return answer;
     } catch (error) {
-      // A quiet line is sent again later; until then the page shows that the robot is silent.
-      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onProblem('line', `${messageOf(error)}.`);
+      // A quiet line is sent again later; until then, the page shows that the robot is silent.
+      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onProblem('line', `${getMessage(error)}.`);
       return null;
     } finally {
       if (isDrive) {
@@ -520,30 +521,30 @@ export class Session {
     }
   }
 
-  /** Sends a line that drives the robot. Its refusal is shown beside the gaits' buttons until a line is accepted. */
+  /** Sends a drive command. Its refusal is shown next to the gaits' buttons until a command is accepted. */
   async drive(line: string): Promise<void> {
     const requestedPace = line.startsWith(`${WORDS.speed} `) ? Number(line.slice(WORDS.speed.length)) : null;
     this.requestedPace = requestedPace ?? this.requestedPace;
     const answer = await this.ask(line);
-    // A later line may ask for another pace.
+    // A later line may request another pace.
     if (this.requestedPace === requestedPace) this.requestedPace = null;
     if (answer) this.state.refusal.value = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
-  /** Asks for the robot's status; null without an answer. */
+  /** Requests the robot's status; returns null without an answer. */
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
     return answer && parseStatus(answer.text);
   }
 
-  /** Handles a status as soon as its line is received: later it could overwrite a newer state. */
+  /** Handles a status as soon as its line is received, because it could later overwrite a newer state. */
   private handleStatus(status: Status): void {
     if (status.pace !== null) this.setPace(status.pace);
-    this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself: no line had reached it for too long.' : null);
+    this.listener.onProblem('fault', status.fault === LINK_FAULT && this.isReal ? 'The robot has stopped by itself, because it received no line for too long.' : null);
     const gait = status.gait.replaceAll('-', ' ');
     // The robot reports `center` as a pose, and the rest of a routine as `rest`.
     const isSameActivity = (gait === WORDS.pose && this.gait === WORDS.center) || (gait === WORDS.rest && this.isRoutineRunning && status.fault === null);
-    // The page has missed the start of this activity, for example because its link was cut.
+    // The page missed the start of this activity, for example because the link was interrupted.
     if (gait !== this.gait && !isSameActivity) this.setGait(gait);
     this.state.status.value = status;
   }
@@ -558,7 +559,7 @@ export class Session {
 
   /**
    * Writes firmware and robot, or only the robot after the board's firmware, and starts the board. Throws an error
-   * whose message tells the user what the board contains then.
+   * whose message tells the user the board's content.
    */
   async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
     const { link } = this;
@@ -573,7 +574,7 @@ export class Session {
     });
   }
 
-  /** Runs `action` with the boot loader, which has the line meanwhile. Throws an error with a message for the user. */
+  /** Runs `action` with the boot loader, which uses the line meanwhile. Throws an error with a message for the user. */
   private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
     const board = await loadBoard();
     if (this.link !== link) throw new Error(GONE_MESSAGE);
@@ -591,8 +592,8 @@ export class Session {
   }
 
   /**
-   * Waits for the banner of a board that was just written, and compares the robot's hash with `hash` unless that is
-   * null. Returns the problem as the end of a sentence, or null.
+   * Waits for the banner of a board that was just written, and compares the robot's hash with `hash` unless `hash` is
+   * null. Returns the problem as the end of a sentence; null without a problem.
    */
   async checkWrittenBoard(hash: string | null): Promise<string | null> {
     const { link } = this;
@@ -600,14 +601,14 @@ export class Session {
     if (this.link !== link) return null;
     if (!hasSentBanner) {
       this.state.banner.value = null;
-      this.listener.onProblem('board', `What was written to the ${link.name} is not this firmware: it sends no banner.`);
-      return 'it sends no banner of this firmware';
+      this.listener.onProblem('board', `The ${link.name} sends no banner: the written program is not this firmware.`);
+      return 'the board sends no banner of this firmware';
     }
     const boardHash = isBanner(this.banner) ? this.banner.robot?.hash : null;
-    return hash !== null && boardHash !== hash ? 'but it does not say that it has this robot: write firmware and robot' : null;
+    return hash !== null && boardHash !== hash ? 'the board does not report this robot: write firmware and robot' : null;
   }
 
-  /** The link if it leads to a simulated board; null otherwise. */
+  /** The link to the simulated board; null while a real board is connected. */
   private get simulated(): UnoLink | null {
     return this.link instanceof UnoLink ? this.link : null;
   }
@@ -616,14 +617,14 @@ export class Session {
   advance(ms: number): void {
     try {
       const { simulated } = this;
-      // The steps are short, so that each line of the robot gets its own time, even if a slow machine has to catch up.
+      // The steps are short, so that each line of the robot gets its own time, even on a slow machine that catches up.
       for (let remainingMs = simulated ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
         const stepMs = Math.min(remainingMs, CLOCK_STEP_MS);
         this.clock += stepMs / 1000;
         simulated?.advance(stepMs);
       }
     } catch (error) {
-      this.listener.onProblem('simulation', `The simulated UNO has stopped: ${messageOf(error)}`);
+      this.listener.onProblem('simulation', `The simulated UNO has stopped: ${getMessage(error)}`);
       throw error;
     }
   }
@@ -646,24 +647,24 @@ export class Session {
     this.listener.onFrame(frame, widths, seconds);
   }
 
-  /** Returns the displacement in the last complete cycle; null without a gait that moves or a complete cycle. */
+  /** Returns the displacement in the last complete cycle; null without a moving gait or a complete cycle. */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
-    return gait?.moves ? this.walkedPath.displacementIn((gait.period * FULL_PACE) / this.state.pace.value) : null;
+    return gait?.moves ? this.walkedPath.computeDisplacement((gait.period * FULL_PACE) / this.state.pace.value) : null;
   }
 
-  /** The predictions that come with the page; null unless the robot, its floor and its servos are those of the file. */
+  /** The page's stored predictions; null if the robot, its floor or its servos differ from the file. */
   get filePredictions(): Predictions | null {
     return this.toml === this.original && this.state.floor.value === null && this.servos === 'own' ? this.predictions : null;
   }
 
-  /** Puts the robot back to its starting place on the floor. */
+  /** Moves the robot back to its starting place on the floor. */
   returnToStart(): void {
     this.robot.restart();
     this.walkedPath.clear();
   }
 
-  /** Floor, mass, feet and leg drive: as set in the page, else as in robot.toml. */
+  /** Floor, mass, feet and leg drive set in the page, else from robot.toml. */
   get floor(): Floor {
     return this.state.floor.value ?? this.description.floor;
   }
@@ -675,14 +676,14 @@ export class Session {
     this.storeChanges();
   }
 
-  /** Sets the servo model, by its name in the description. */
+  /** Sets the servo model by its name in the description. */
   setServos(name: string): void {
     this.state.servos.value = name;
     this.robot.setServos(name);
     this.storeChanges();
   }
 
-  /** Closes or opens the contact of an input in the simulation. */
+  /** Closes or opens the contact at an input in the simulation. */
   setContact(name: string, isClosed: boolean): void {
     if (isClosed) this.closedInputs.add(name);
     else this.closedInputs.delete(name);

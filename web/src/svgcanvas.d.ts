@@ -1,4 +1,4 @@
-// Types of the part of the package svgcanvas that the page uses.
+// Types of the package svgcanvas, as far as the page uses it.
 declare module 'svgcanvas' {
   /** A canvas context that writes SVG. */
   export class Context {

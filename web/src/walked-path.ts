@@ -1,14 +1,12 @@
-// The robot's path in the last seconds, from which the displacement in a cycle is computed.
+// The robot's path in the last seconds, which gives the displacement in a cycle.
 import { type Frame, Robot } from './robot';
 
-/** Duration of the kept path: enough for a cycle of 3 s at a tenth of its pace. */
+/** Duration of the kept path: enough for a cycle of 3 s at a pace of 10 %. */
 const KEPT_SECONDS = 31;
-/** Duration of a frame before the first one is added. */
-const DEFAULT_FRAME_SECONDS = 0.02;
 
 /**
- * The displacement in the last cycle, in the robot's frame at the start of the cycle: `forward` and `left` in mm,
- * `turn` in deg counter-clockwise. `lag` is the largest lag of a leg in this cycle, deg.
+ * The displacement in the last cycle, in the robot's frame at the cycle's start: `forward` and `left` in mm, `turn` in
+ * deg counter-clockwise. `lag` is the largest lag of a leg in this cycle, deg.
  */
 export interface CycleDisplacement {
   forward: number;
@@ -21,9 +19,10 @@ export class WalkedPath {
   private frames: { time: number; frame: Frame }[] = [];
   /** Sum of the durations of all frames, s. */
   private time = 0;
-  private frameSeconds = DEFAULT_FRAME_SECONDS;
+  /** Duration of the last frame. */
+  private frameSeconds = 0.02;
 
-  /** Clears the path; to be called when the following frames belong to another gait, pace or robot. */
+  /** Clears the path; must be called before frames of another gait, pace or robot. */
   clear(): void {
     this.frames = [];
   }
@@ -36,11 +35,11 @@ export class WalkedPath {
     while (this.frames[0].time < this.time - KEPT_SECONDS) this.frames.shift();
   }
 
-  /** Returns the displacement in the last `cycleSeconds` seconds; null if the path is shorter. */
-  displacementIn(cycleSeconds: number): CycleDisplacement | null {
+  /** Computes the displacement in the last `cycleSeconds` seconds; returns null if the path is shorter. */
+  computeDisplacement(cycleSeconds: number): CycleDisplacement | null {
     const lastFrame = this.frames.at(-1);
     if (!lastFrame) return null;
-    // The cycle starts at the nearest known frame, since a real board does not report every frame.
+    // The cycle starts at the nearest known frame, because a real board does not report every frame.
     const startIndex = this.frames.findLastIndex(({ time }) => time <= lastFrame.time - cycleSeconds + this.frameSeconds / 2);
     if (startIndex < 0) return null;
     const lags = this.frames.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));

@@ -67,7 +67,7 @@ for (const [name, options] of [
   });
 }
 
-// Fonts differ from machine to machine; letter spacing imitates wider ones.
+// Fonts differ from machine to machine; letter spacing imitates wider fonts.
 test('no screen scrolls sideways, with narrow or wide fonts', async () => {
   const overflows = [];
   await checkEveryRoom({ ...PHONE, deviceScaleFactor: 1 }, async (page, room) => {
@@ -80,7 +80,7 @@ test('no screen scrolls sideways, with narrow or wide fonts', async () => {
           return [clientWidth, scrollWidth - clientWidth];
         }, spacing);
         assert.equal(shownWidth, width);
-        if (overflowPixels > 0) overflows.push(`${room}: ${overflowPixels} pixels more than ${width}, letters ${spacing} apart`);
+        if (overflowPixels > 0) overflows.push(`${room}: ${overflowPixels} pixels wider than the window of ${width}, letter spacing ${spacing}`);
       }
     }
     await page.setViewportSize(PHONE.viewport);

@@ -1,8 +1,8 @@
-// A robot by Web Bluetooth: modules with their default settings, and failures of the link.
+// A robot on Web Bluetooth: modules with their default settings, and failures of the link.
 import assert from 'node:assert/strict';
 import { afterEach, test } from 'node:test';
 
-import { complaints, openBrowserWithBluetooth, openPage, text, unfold, useBrowser, hidePage } from './browser.js';
+import { complaints, openBrowserWithBluetooth, openPage, readText, unfold, useBrowser, hidePage } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -13,8 +13,8 @@ afterEach(async () => {
   radio = undefined;
 });
 
-const activityOf = (page) => page.evaluate(() => window.lizard.gait);
-const pageTimeOf = (page) => page.evaluate(() => performance.now());
+const readActivity = (page) => page.evaluate(() => window.lizard.gait);
+const readPageMs = (page) => page.evaluate(() => performance.now());
 
 /** Opens the page and picks a module that is in range. */
 async function openPicked(module, options) {
@@ -25,10 +25,10 @@ async function openPicked(module, options) {
 
 async function openWalking(module) {
   const page = await openPicked(module);
-  await radio.runUntil('the robot is found', async () => (await text(page, '#where')).includes(`board at ${module.name} that has not restarted`));
-  await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
+  await radio.runUntil('the robot is found', async () => (await readText(page, '#where')).includes(`board at ${module.name} that has not restarted`));
+  await radio.runUntil('the robot stands', async () => (await readActivity(page)) === 'stand');
   await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.runUntil('the robot walks', async () => (await activityOf(page)) === 'walk');
+  await radio.runUntil('the robot walks', async () => (await readActivity(page)) === 'walk');
   return page;
 }
 
@@ -36,11 +36,11 @@ for (const module of [HM10, NORDIC]) {
   test(`a robot is driven and stopped through the module ${module.name}`, async () => {
     const page = await openWalking(module);
     await radio.run(3000);
-    assert.equal(await activityOf(page), 'walk', 'the page shows that the robot walks');
-    assert.ok((await pageTimeOf(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
+    assert.equal(await readActivity(page), 'walk', 'the page reports the walk');
+    assert.ok((await readPageMs(page)) - (await page.evaluate(() => window.lastMoveMs)) < 100, 'its servos move');
     await page.keyboard.press('Escape');
-    await radio.runUntil('the robot stops', async () => (await activityOf(page)) === 'stop');
-    assert.ok(Math.max(...radio.packetLengths) <= 20, 'packets of at most 20 bytes');
+    await radio.runUntil('the robot stops', async () => (await readActivity(page)) === 'stop');
+    assert.ok(Math.max(...radio.packetLengths) <= 20, 'packets have at most 20 bytes');
     const receivedText = await page.evaluate(() => window.receivedText);
     assert.ok(receivedText.indexOf('deadman 901\n') < receivedText.indexOf('walk\n'), receivedText);
     assert.match(receivedText, /OK\+CONN.*\n/);
@@ -53,38 +53,38 @@ for (const module of [HM10, NORDIC]) {
 test('a robot whose link is cut stops, and the page reconnects by itself', async () => {
   const page = await openWalking(HM10);
   await radio.run(1000);
-  const cutMs = await pageTimeOf(page);
+  const cutMs = await readPageMs(page);
   await radio.takeOutOfRange();
-  await radio.runUntil('the loss of the link is shown', async () => (await text(page, '#problems')).includes('The board at HMSoft is out of reach.'));
+  await radio.runUntil('the loss of the link is shown', async () => (await readText(page, '#problems')).includes('The board at HMSoft is out of range.'));
   await radio.run(2000);
-  assert.match(await text(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
+  assert.match(await readText(page, '#alarm'), /^No answer from the robot\. [23]\.\d s$/);
   const lastMoveMs = await page.evaluate(() => window.lastMoveMs);
-  assert.ok(lastMoveMs - cutMs <= 901 + 40, `it moved for ${lastMoveMs - cutMs} ms`);
+  assert.ok(lastMoveMs - cutMs <= 901 + 40, `movement after the cut: ${lastMoveMs - cutMs} ms`);
   await radio.bringIntoRange();
-  await radio.runUntil('the robot is stopped', async () => (await activityOf(page)) === 'stop');
-  await page.locator('#problems', { hasText: 'The robot has stopped by itself: no line had reached it for too long.' }).waitFor();
-  assert.ok(!(await text(page, '#problems')).includes('out of reach'));
+  await radio.runUntil('the robot is stopped', async () => (await readActivity(page)) === 'stop');
+  await page.locator('#problems', { hasText: 'The robot has stopped by itself, because it received no line for too long.' }).waitFor();
+  assert.ok(!(await readText(page, '#problems')).includes('out of range'));
   assert.equal(await page.locator('#alarm').isVisible(), false);
   await page.locator('#gaits button[data-command="walk"]').click();
-  await radio.runUntil('the robot walks again', async () => (await activityOf(page)) === 'walk');
+  await radio.runUntil('the robot walks again', async () => (await readActivity(page)) === 'walk');
 });
 
-test('a trim that was set out of range shows the robot\'s value when the robot answers again', async () => {
+test('a trim that was set out of range returns to the robot\'s value when the robot answers again', async () => {
   const page = await openPicked(HM10);
-  await radio.runUntil('the robot stands', async () => (await activityOf(page)) === 'stand');
+  await radio.runUntil('the robot stands', async () => (await readActivity(page)) === 'stand');
   await unfold(page, '#calibrate');
   const trim = page.locator('#calibration fieldset').first().getByLabel('trim');
   await radio.runUntil('the trim is read', () => trim.isVisible());
   await radio.takeOutOfRange();
   await trim.fill('5');
   await radio.run(4000);
-  await page.locator('#problems', { hasText: 'the board at HMSoft is out of reach.' }).waitFor();
+  await page.locator('#problems', { hasText: 'the board at HMSoft is out of range.' }).waitFor();
   assert.equal(await trim.inputValue(), '5');
   await radio.bringIntoRange();
   await radio.runUntil('the trim is read again', async () => (await trim.inputValue()) === '0');
 });
 
-test('a stop that is pressed out of range is the first line that the robot receives afterwards', async () => {
+test('after a stop that is pressed out of range, "stop" is the first line that the robot receives', async () => {
   const page = await openWalking(HM10);
   await radio.takeOutOfRange();
   await radio.run(300);
@@ -98,37 +98,37 @@ test('a stop that is pressed out of range is the first line that the robot recei
   assert.equal(lines.find((line) => line !== '' && !line.startsWith('OK+')), 'stop', lines.join('|'));
 });
 
-test('a module through which no robot answers is named', async () => {
+test('the page names a module through which no robot answers', async () => {
   const page = await openPicked(HM10, { hasRobot: false });
-  await radio.runUntil('the silence is shown', async () => (await text(page, '#problems')).includes('no robot answers'));
-  assert.match(await text(page, '#problems'), /The module is connected, but no robot answers from the board at HMSoft: is its TXD on D0/);
+  await radio.runUntil('the silence is shown', async () => (await readText(page, '#problems')).includes('no robot answers'));
+  assert.match(await readText(page, '#problems'), /The module is connected, but no robot answers from the board at HMSoft\. Check that the module's TXD is on D0/);
   assert.equal(await page.getByRole('button', { name: 'Write firmware and robot to it' }).count(), 0);
 });
 
-test('picking no Bluetooth module reports no problem', async () => {
+test('cancelling the choice of a Bluetooth module reports no problem', async () => {
   radio = await Radio.open(HM10);
   const { page } = radio;
   await radio.pick(false);
   await radio.run(500);
   assert.equal(await page.locator('#problems').isVisible(), false);
-  assert.match(await text(page, '#where'), /simulated UNO/);
+  assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('the page says that a machine has no Bluetooth', async () => {
+test('the page reports a machine without Bluetooth', async () => {
   radio = await Radio.open(HM10, { adapter: 'absent' });
   await radio.page.locator('#radio').click();
-  await radio.page.locator('#problems', { hasText: 'No board is connected: This machine has no Bluetooth, or it is switched off.' }).waitFor();
+  await radio.page.locator('#problems', { hasText: 'No board is connected: Bluetooth is missing on this machine, or it is switched off.' }).waitFor();
 });
 
-test('if Bluetooth is forbidden, the page says where to allow it', async () => {
+test('the page names the setting that allows forbidden Bluetooth', async () => {
   radio = await Radio.open(HM10, { isAllowed: false, hasRobot: false });
   const { page } = radio;
   await page.locator('#radio').click();
-  await page.locator('#problems', { hasText: 'The browser may not use Bluetooth: allow it in its settings' }).waitFor();
-  assert.match(await text(page, '#problems'), /disallowed by permissions policy/, 'the browser itself has refused it');
+  await page.locator('#problems', { hasText: 'The browser may not use Bluetooth: allow it in the settings of the browser' }).waitFor();
+  assert.match(await readText(page, '#problems'), /disallowed by permissions policy/, 'the browser itself has refused it');
 });
 
-test('a phone whose screen goes off stops its robot with the last line that it sends', async () => {
+test('a phone stops its robot when its screen goes off', async () => {
   const page = await openWalking(HM10);
   await radio.run(1000);
   await hidePage(page);
@@ -137,26 +137,26 @@ test('a phone whose screen goes off stops its robot with the last line that it s
   await radio.sleep(3000);
   const [lastMoveMs, receivedText] = await page.evaluate(() => [window.lastMoveBoardMs, window.receivedText]);
   assert.match(receivedText, /stop\n(deadman 0\n)?$/);
-  assert.ok(lastMoveMs - hiddenMs < 400, `it moved for ${lastMoveMs - hiddenMs} ms`);
+  assert.ok(lastMoveMs - hiddenMs < 400, `movement afterwards: ${lastMoveMs - hiddenMs} ms`);
 });
 
-test('when a phone falls asleep without warning, its robot stops, and the page reports that afterwards', async () => {
+test('a robot stops when its phone falls asleep without warning, and the page reports the stop afterwards', async () => {
   const page = await openWalking(HM10);
   const sleepMs = await page.evaluate(() => window.readBoardMs());
   await radio.sleep(3000);
   const lastMoveMs = await page.evaluate(() => window.lastMoveBoardMs);
-  assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `it moved for ${lastMoveMs - sleepMs} ms`);
+  assert.ok(lastMoveMs - sleepMs > 300 && lastMoveMs - sleepMs <= 901 + 40, `movement afterwards: ${lastMoveMs - sleepMs} ms`);
   await page.clock.fastForward(3000);
-  await radio.runUntil('the reason is shown', async () => (await text(page, '#problems')).includes('no line had reached it for too long'));
-  assert.equal(await activityOf(page), 'stop');
+  await radio.runUntil('the reason is shown', async () => (await readText(page, '#problems')).includes('it received no line for too long'));
+  assert.equal(await readActivity(page), 'stop');
 });
 
-test('on an iPhone the page names the browser that works before the user presses anything', async () => {
+test('on an iPhone, the page names a suitable browser at once', async () => {
   const page = await openPage({ userAgent: 'Mozilla/5.0 (iPhone; CPU iPhone OS 26_0 like Mac OS X) AppleWebKit/605.1.15' }, () => {
     for (const name of ['serial', 'bluetooth']) Object.defineProperty(navigator, name, { value: undefined });
     delete Object.getPrototypeOf(navigator).serial;
   });
-  await page.locator('#no-serial', { hasText: 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can' }).waitFor();
+  await page.locator('#no-serial', { hasText: 'On an iPhone or iPad, neither Safari nor Chrome can connect to a robot. The browser Bluefy can' }).waitFor();
   assert.equal(await page.locator('#radio').isVisible(), false);
 });
 

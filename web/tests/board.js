@@ -1,5 +1,5 @@
 // A board at the page's Web Serial port, run by the page's own clock.
-import { openPage, repeatUntil, text } from './browser.js';
+import { openPage, repeatUntil, readText } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 /** Connects the board of the fake port after changing some of its settings. */
@@ -45,9 +45,12 @@ export const runUntil = (page, waitName, condition, stepMs = 100) => repeatUntil
 
 /** Advances the page's clock until the text of an element matches. */
 export const waitForText = (page, selector, pattern, stepMs) =>
-  runUntil(page, `${selector} shows ${pattern}`, async () => pattern.test(await text(page, selector)), stepMs);
+  runUntil(page, `${selector} shows ${pattern}`, async () => pattern.test(await readText(page, selector)), stepMs);
 
-/** Sends a line to the board, and waits until it is answered. */
+/** Reads the board's flash from one address to another. */
+export const readFlash = async (page, from, to) => Buffer.from(await page.evaluate(([from, to]) => Array.from(window.attachedBoard.flash.subarray(from, to)), [from, to]));
+
+/** Sends a line to the board, and waits for its answer. */
 export async function sendToBoard(page, line) {
   const countAnswers = () => page.locator('#log div', { hasText: `ok ${line}` }).count();
   const previousCount = await countAnswers();

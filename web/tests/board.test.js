@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { complaints, text, unfold, useBrowser, chooseRobot } from './browser.js';
+import { complaints, readText, unfold, useBrowser, chooseRobot } from './browser.js';
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, waitForText } from './board.js';
 
 useBrowser();
@@ -18,10 +18,10 @@ async function openWalking() {
   return page;
 }
 
-test('a new UNO is identified after some seconds, and one button writes the firmware', async () => {
+test('the page identifies a new UNO, and one button writes its firmware', async () => {
   const page = await openWithErasedBoard();
-  await page.locator('#problems', { hasText: 'The board is an Arduino UNO, an ATmega328P by its boot loader, and this firmware is not on it.' }).waitFor();
-  assert.equal(await text(page, '#where'), 'on a board on USB without this firmware');
+  await page.locator('#problems', { hasText: 'The board is an Arduino UNO, an ATmega328P according to its boot loader, without this firmware.' }).waitFor();
+  assert.equal(await readText(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
   await page.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
   for (const control of ['#robot', '#connect']) {
@@ -29,7 +29,7 @@ test('a new UNO is identified after some seconds, and one button writes the firm
   }
   await waitForText(page, '#flash-said', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(8000);
-  assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
+  assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
   assert.equal(await page.locator('#problems').isVisible(), false, 'the board sends its banner, so the problem is solved');
   await page.locator('#log div', { hasText: 'ok watch 2' }).first().waitFor();
@@ -41,51 +41,51 @@ test('for a board that does not answer, the page asks whether it is a UNO or a N
   assert.ok(await page.locator('#problems').isVisible());
 });
 
-test('a board that its port does not reset is queried for its state and tracked', async () => {
+test('the page queries and tracks a board that its port does not reset', async () => {
   const page = await openWithBoard('robot', 5000, { boardKeepsRunning: true });
   await page.locator('#log div', { hasText: 'ok watch 2' }).waitFor();
-  assert.match(await text(page, '#where'), /^on a board on USB that has not restarted/);
-  assert.equal(await text(page, '#doing'), 'stand');
+  assert.match(await readText(page, '#where'), /^on a board on USB that has not restarted/);
+  assert.equal(await readText(page, '#doing'), 'stand');
   assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
 test('choosing another robot keeps the board connected', async () => {
   const page = await openWalking();
   await chooseRobot(page, 'large');
-  assert.match(await text(page, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that one, or write this one$/);
+  assert.match(await readText(page, '#where'), /^on a board on USB with another robot, robot paper [0-9a-f]{8}: choose that robot, or write this robot$/);
   await page.locator('#connect', { hasText: 'Back to the simulation' }).waitFor();
   await chooseRobot(page, 'robot');
-  assert.match(await text(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
+  assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await page.clock.runFor(500);
   assert.ok(await page.evaluate(() => window.lizard.isReal && window.lizard.last.place.y > 1), 'the robot is tracked');
 });
 
-test('a board with another robot of the list is reported, and one press shows its own robot', async () => {
+test('the page reports a board with another robot, and one press shows that robot', async () => {
   const page = await openWithBoard('large', 8000);
   const offer = page.locator('#problems').getByRole('button', { name: 'Show large' });
   await offer.waitFor();
-  assert.match(await text(page, '#problems'), /^The board on USB has another robot, large, and is drawn and predicted here as robot\.toml\./);
+  assert.match(await readText(page, '#problems'), /^The board on USB has another robot, large, but the page draws and predicts robot\.toml\./);
   await offer.click();
   await page.waitForFunction(() => window.lizard.file === 'large' && window.lizard.hasThisRobot);
-  assert.match(await text(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
+  assert.match(await readText(page, '#where'), /^on a board on USB, robot large [0-9a-f]{8}$/);
   await page.locator('#problems', { hasText: 'another robot' }).waitFor({ state: 'detached' });
   assert.equal(await page.evaluate(() => window.lizard.isReal), true);
-  // From here on no file of the page equals this robot.
+  // From here on, no file of the page has this robot.
   await page.evaluate(() => window.lizard.change(window.lizard.toml.replace('name = "large"', 'name = "longer"').replace('period = 1.25', 'period = 1.3')).then(() => null));
-  await page.locator('#problems', { hasText: 'is drawn and predicted here as large.toml with your changes' }).waitFor();
+  await page.locator('#problems', { hasText: 'but the page draws and predicts large.toml with your changes' }).waitFor();
   await page.evaluate(() => {
     const { lizard } = window;
     lizard.banner.robot.hash = '00000000';
     return lizard.change(lizard.toml.replace('period = 1.3', 'period = 1.35')).then(() => null);
   });
-  await page.locator('#problems', { hasText: 'This page does not know it: open its robot.toml in Build, or write this one.' }).waitFor();
+  await page.locator('#problems', { hasText: 'It is not among the page’s robots: open its robot.toml in Build, or write this robot.' }).waitFor();
 });
 
 test('the alarm for a board that is out of range ends when the board is gone', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { link } = window.lizard;
-    link.onReach(false);
+    link.onRange(false);
     link.onGone('The test has taken it away.');
   });
   await page.waitForFunction(() => !window.lizard.isReal);
@@ -97,19 +97,19 @@ test('disconnecting a board stops it', async () => {
   await page.locator('#connect').click();
   await page.clock.runFor(1500);
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
-  assert.match(await page.evaluate(() => window.receivedText), /\nstop\n(deadman 0\n)?$/, 'the last lines of the page');
-  assert.match(await text(page, '#where'), /simulated UNO/);
+  assert.match(await page.evaluate(() => window.receivedText), /\nstop\n(deadman 0\n)?$/, 'the last lines from the page');
+  assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('a board that does not confirm the stop is reported', async () => {
+test('the page reports a board that does not confirm the stop', async () => {
   const page = await openWalking();
   await page.evaluate(() => (window.attachedBoard.send = () => {}));
   await page.locator('#connect').click();
   await page.clock.runFor(3000);
-  await page.locator('#problems', { hasText: 'did not say that it stops' }).waitFor();
+  await page.locator('#problems', { hasText: 'did not confirm its stop' }).waitFor();
 });
 
-test('a page that is closed while a board walks stops it, and the browser asks', async () => {
+test('closing the page stops a walking board, and the browser asks for confirmation', async () => {
   const page = await openWalking();
   const dialogEvent = page.waitForEvent('dialog');
   // This call returns only after the dialog is answered.
@@ -122,7 +122,7 @@ test('a page that is closed while a board walks stops it, and the browser asks',
   await page.locator('#log div', { hasText: /^ok stop$/ }).waitFor();
 });
 
-test('after a reset the board is tracked again', async () => {
+test('the page tracks the board again after a reset', async () => {
   const page = await openWalking();
   const watchCount = await page.locator('#log div', { hasText: /^ok watch 2$/ }).count();
   await page.locator('#reset').click();
@@ -131,10 +131,10 @@ test('after a reset the board is tracked again', async () => {
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForLine(page, /^ok walk$/, 2);
   const startY = await readY();
-  await runUntil(page, 'the robot of the page has walked 5 mm', async () => (await readY()) - startY > 5);
+  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readY()) - startY > 5);
 });
 
-test('a board that restarts in the middle of an answer is tracked again', async () => {
+test('the page tracks a board again that restarted during an answer', async () => {
   const page = await openWithBoard('robot', 4000);
   await waitForLine(page, /^ok watch 2$/);
   // The page asks for the status twice a second.
@@ -162,7 +162,7 @@ test('the page shows no pulses for a board that does not report them', async () 
   await page.getByText('A board on USB does not show its pulses here.').waitFor();
 });
 
-test('a HEX file of another program is identified, and written only when the user confirms', async () => {
+test('a HEX file of another program is written only after the user confirms', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#flash');
   // A program that loops forever: rjmp .-2.
@@ -183,17 +183,17 @@ test('a HEX file of another program is identified, and written only when the use
   await page.locator('#flash-yes').click();
   await waitForText(page, '#flash-said', /^(not )?written/);
   await page.clock.runFor(3000);
-  await page.locator('#problems', { hasText: 'is not this firmware: it sends no banner.' }).waitFor();
+  await page.locator('#problems', { hasText: 'sends no banner: the written program is not this firmware.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
 });
 
-test('what a board has refused is not shown any more when the board is gone', async () => {
+test('the page removes the refusal by a board when the board is gone', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => void window.lizard.drive('pose 0 0 0 0'));
   await waitForText(page, '#drive-said', /^pose 0 0 0 0: /);
   await page.evaluate(() => window.unplug());
   await waitForText(page, '#where', /simulated UNO/);
-  assert.equal(await text(page, '#drive-said'), '');
+  assert.equal(await readText(page, '#drive-said'), '');
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

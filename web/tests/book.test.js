@@ -1,4 +1,4 @@
-// The book, opened from a file: its search finds a word.
+// The book, opened from a file: the search finds a word.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { before, test } from 'node:test';
@@ -14,7 +14,7 @@ before(() => {
   assert.equal(build.status, 0, build.stderr);
 });
 
-test('the search of the book finds a word without a server', async () => {
+test('the book\'s search finds a word without a server', async () => {
   const book = await openBlank();
   await book.goto(`file://${folder}/index.html`);
   // The theme reads the input on key-up only, so the text is typed, not set.

@@ -133,8 +133,8 @@ async function startBrowser({ type, ...options }) {
 export const openBrowser = () => startBrowser(CHROMIUM);
 /** Opens the browser with Web Bluetooth, which Chromium on Linux hides behind a flag. */
 export const openBrowserWithBluetooth = () => startBrowser({ ...CHROMIUM, args: [...CHROMIUM.args, '--enable-features=WebBluetooth'] });
-/** Opens the browser with a Y4M film as its camera, or without a camera if there is no film. */
-export const openBrowserWithCamera = (film) => startBrowser({ ...CHROMIUM, args: [...CHROMIUM.args, ...(film ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${film}`] : [])] });
+/** Opens the browser with a Y4M video as its camera, or without a camera if there is no video. */
+export const openBrowserWithCamera = (video) => startBrowser({ ...CHROMIUM, args: [...CHROMIUM.args, ...(video ? ['--use-fake-device-for-media-stream', '--use-fake-ui-for-media-stream', `--use-file-for-fake-video-capture=${video}`] : [])] });
 export const openFirefox = () => startBrowser(FIREFOX);
 
 export async function closeBrowser() {
@@ -197,8 +197,8 @@ function openRoomsOnUse(page) {
 export const address = (webServer = server) => `http://127.0.0.1:${webServer.address().port}${BASE_PATH}`;
 
 /**
- * Opens an empty page with reduced motion, so that nothing moves unless a test asks for it. Files come from the server,
- * unless a test asks for service workers.
+ * Opens an empty page with reduced motion, so that nothing moves unless a test starts it. Files come from the server,
+ * unless a test allows service workers.
  */
 export async function openBlank(options = {}) {
   const page = await withTimeout('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
@@ -218,8 +218,11 @@ export async function openBlank(options = {}) {
 }
 
 /** Returns the number of pixels by which the page is wider than its window; 0 if it fits. */
-export const overflow = (page) =>
+export const measureOverflow = (page) =>
   page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+
+/** Returns an element's box in the window, CSS pixels. */
+export const readBox = (page, selector) => page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
 /** Chooses a robot of the page's list. */
 export async function chooseRobot(page, name) {
@@ -228,13 +231,13 @@ export async function chooseRobot(page, name) {
 }
 
 /** Returns a length of the robot, mm. */
-export const lengthOf = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((length) => length.key === key).value, key);
+export const readLength = (page, key) => page.evaluate((key) => window.lizard.description.lengths.find((length) => length.key === key).value, key);
 
 /** Waits until a length of the robot has a value. */
 export const waitForLength = (page, key, mm) =>
   page.waitForFunction(([key, mm]) => window.lizard.description.lengths.find((length) => length.key === key).value === mm, [key, mm]);
 
-/** Types a length into its box, and leaves the box by Enter. */
+/** Types a length into its box and presses Enter. */
 export async function typeLength(page, key, mm) {
   const box = page.locator(`#lengths input[name="${key}"]`);
   await box.fill(String(mm));
@@ -256,7 +259,7 @@ export async function openStored(webServer) {
   return page;
 }
 
-/** Makes the page believe that its tab is hidden. */
+/** Makes the document report that its tab is hidden. */
 export const hidePage = (page) =>
   page.evaluate(() => {
     Object.defineProperty(document, 'hidden', { value: true });
@@ -264,7 +267,7 @@ export const hidePage = (page) =>
   });
 
 /** Returns the text of an element. */
-export const text = (page, selector) => page.locator(selector).innerText();
+export const readText = (page, selector) => page.locator(selector).innerText();
 
 /** Waits until a function in the page returns true, or a promise of true. */
 export function waitUntil(page, condition, value) {
@@ -278,7 +281,7 @@ export function waitUntil(page, condition, value) {
 export async function openPage(options = {}, initScript = undefined, url = address()) {
   const page = await openBlank(options);
   page.on('console', (message) => {
-    // Expected: these pages take their files from the server.
+    // Expected: these pages load their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;
     // Without a graphics chip the browser warns that software rendering is slow.
     if (message.text().includes('GL Driver Message (OpenGL, Performance')) return;

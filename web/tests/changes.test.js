@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, complaints, openStanding, sendLine, unfold, useBrowser, chooseRobot, lengthOf, waitForLength, typeLength, download } from './browser.js';
+import { address, advance, complaints, openStanding, sendLine, unfold, useBrowser, chooseRobot, readLength, waitForLength, typeLength, download } from './browser.js';
 
 useBrowser();
 
@@ -76,22 +76,22 @@ async function typeRefusedLength(page, key, value) {
   return [await page.locator('#lengths-refusal').innerText(), await offer.innerText()];
 }
 
-test('a refused length is explained by its effect on the robot, with the nearest valid one', async () => {
+test('the message about a refused length names its effect on the robot, and a button offers the nearest valid length', async () => {
   const page = await openLengths();
   const [refusalText, offerText] = await typeRefusedLength(page, 'links.l12', 80);
-  assert.equal(refusalText, '80 mm is too long: in the neutral pose the left slider would run into its end.');
+  assert.equal(refusalText, '80 mm is too long: in the neutral pose the left slider would hit its end stop.');
   const nearest = Number(/^Try ([0-9.]+) mm$/.exec(offerText)?.[1]);
   assert.ok(nearest > 45 && nearest < 80, offerText);
   await page.locator('#lengths-instead button').click();
   await waitForLength(page, 'links.l12', nearest);
   assert.equal(await page.locator('#lengths-instead button').count(), 0);
-  // Half a millimetre more is refused, so this one is the nearest.
+  // Half a millimetre more is refused, so the offered length is the nearest.
   await typeLength(page, 'links.l12', nearest + 0.5);
   await page.locator('#lengths-refusal', { hasText: `${nearest + 0.5} mm is too long` }).waitFor();
-  assert.equal(await lengthOf(page, 'links.l12'), nearest);
+  assert.equal(await readLength(page, 'links.l12'), nearest);
 });
 
-test('a button drops the gait that forbids a length, and the length is accepted', async () => {
+test('a length is accepted after a button drops the gait that forbids it', async () => {
   const page = await openLengths();
   assert.deepEqual(await typeRefusedLength(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
   await page.locator('#lengths-instead button', { hasText: 'Drop' }).click();
@@ -103,7 +103,7 @@ test('a button drops the gait that forbids a length, and the length is accepted'
   await page.waitForFunction(() => window.lizard.description.gaits.some(({ name }) => name === 'look'));
 });
 
-test('an unchanged file is downloaded unchanged', async () => {
+test('the download of an unchanged robot equals its file', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const originalToml = await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8');
@@ -129,7 +129,7 @@ test('a reload keeps the user\'s changes', async () => {
   assert.equal(await page.locator('#mass').inputValue(), '412');
 });
 
-test('stored changes to a file that has changed since are dropped, with a message', async () => {
+test('a newer robot file replaces the user\'s stored changes, and a message reports that', async () => {
   const page = await openWithChanges();
   await page.evaluate(() => {
     const key = Object.keys(localStorage)[0];
@@ -140,9 +140,9 @@ test('stored changes to a file that has changed since are dropped, with a messag
   await page.waitForFunction(() => location.hash.includes('robot='));
   await page.goto(address());
   await page.waitForFunction(() => window.lizard);
-  await page.locator('#problems', { hasText: 'robot.toml is not the file of last time' }).waitFor();
+  await page.locator('#problems', { hasText: 'robot.toml has changed since the last visit' }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), await readFile(new URL('../dist/files/robot.toml', import.meta.url), 'utf8'));
-  const lostToml = await downloadToml(page, 'Download what was changed');
+  const lostToml = await downloadToml(page, 'Download the changed robot');
   assert.deepEqual([readNumber(lostToml, 'leg', 'crank'), readNumber(lostToml, 'body', 'mass')], [40, 412], 'the changes are not lost');
 });
 
@@ -160,42 +160,42 @@ test('the pace slider shows the robot\'s pace after a typed line and after a res
   assert.match(await sendLine(page, 'status', 'ok gait=stand'), / speed=100( |$)/);
 });
 
-test("the share of the servos' torque-speed line follows the robot's pace and the servos' supply", async () => {
+test("the servos' load follows the robot's pace and the servos' supply", async () => {
   const page = await openStanding();
   await unfold(page, '#power');
-  const readShare = async (pace) => {
-    const line = page.locator('#line-note', { hasText: `line at ${pace} % of its pace` });
-    await line.waitFor();
-    return Number((await line.innerText()).match(/, (\d\.\d\d) of/)[1]);
+  const readHighestLoad = async (pace) => {
+    const note = page.locator('#line-note', { hasText: `line at a pace of ${pace} %` });
+    await note.waitFor();
+    return Number((await note.innerText()).match(/ (\d\.\d\d) of/)[1]);
   };
   await advance(page, 3000);
-  const fullShare = await readShare(100);
+  const fullPaceLoad = await readHighestLoad(100);
   await sendLine(page, 'speed 50', 'ok speed 50');
-  const halfShare = await readShare(50);
-  // The shares of the hardest gait in docs/gaits.md.
-  assert.deepEqual([fullShare, halfShare], [0.82, 0.51]);
-  // Compares with the shares of docs/gaits.md to a hundredth; a share of 0.9 or more has a mark.
-  const assertShares = async (...expectedShares) => {
-    const lines = await page.locator('#gaits .line').allInnerTexts();
-    assert.equal(lines.length, expectedShares.length);
-    for (const [n, line] of lines.entries()) {
-      const share = Number(line.match(/line (\d\.\d\d)$/)[1]);
-      assert.ok(Math.abs(share - expectedShares[n]) < 0.011, `${line}, not ${expectedShares[n]}`);
-      assert.equal(line.startsWith('⚠'), share >= 0.9, line);
+  const halfPaceLoad = await readHighestLoad(50);
+  // The loads of the hardest gait in docs/gaits.md.
+  assert.deepEqual([fullPaceLoad, halfPaceLoad], [0.82, 0.51]);
+  // Compares with the loads in docs/gaits.md to a hundredth; a load of at least 0.9 has a mark.
+  const assertLoads = async (...expectedLoads) => {
+    const labels = await page.locator('#gaits .line').allInnerTexts();
+    assert.equal(labels.length, expectedLoads.length);
+    for (const [n, label] of labels.entries()) {
+      const load = Number(label.match(/load (\d\.\d\d)$/)[1]);
+      assert.ok(Math.abs(load - expectedLoads[n]) < 0.011, `${label}, expected load ${expectedLoads[n]}`);
+      assert.equal(label.startsWith('⚠'), load >= 0.9, label);
     }
   };
-  await assertShares(0.45, 0.49, 0.51, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
+  await assertLoads(0.45, 0.49, 0.51, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
   await sendLine(page, 'speed 100', 'ok speed 100');
   await setSlider(page, 'Supply of the servos', '4.2');
   await page.locator('#line-note.warning').waitFor();
-  await page.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'line 0.3');
-  await assertShares(0.83, 0.92, 0.93, 0.83, 0.93, 0.93, 0.82, 0.82, 0.33);
+  await page.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'load 0.3');
+  await assertLoads(0.83, 0.92, 0.93, 0.83, 0.93, 0.93, 0.82, 0.82, 0.33);
   // Another servo model sets its own supply.
   await page.locator('#servos').selectOption('MG90S');
   assert.equal(await page.getByLabel('Supply of the servos').inputValue(), '4.8');
 });
 
-test('sliders without an effect on rigid legs with ideal servos are disabled, with a note', async () => {
+test('with rigid legs and ideal servos, sliders without an effect are disabled, and a note gives the reason', async () => {
   const page = await openStanding();
   for (const panel of ['#world', '#power']) await unfold(page, panel);
   const note = page.getByText('The legs are rigid, the servos ideal, and the feet stand evenly: friction and mass cancel out');
@@ -217,7 +217,7 @@ test('sliders without an effect on rigid legs with ideal servos are disabled, wi
   for (const label of ['Pad friction', 'Mass', 'Pull in the strut']) assert.ok(await page.getByLabel(label).isEnabled(), label);
 });
 
-test('predictions come with the page for an unchanged robot, and are computed for any other', async () => {
+test('the page has stored predictions for unchanged robots, and computes new ones after a change', async () => {
   const page = await openStanding();
   const countWorkers = () => page.workers().filter((worker) => worker.url().includes('robot-worker')).length;
   const readNotes = () => page.locator('#gaits button[data-command] small').allInnerTexts();

@@ -2,9 +2,9 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { openWithBoard, runUntil, connect, waitForText } from './board.js';
-import { complaints, text, unfold, useBrowser } from './browser.js';
-import { imageOf } from './image.js';
+import { openWithBoard, runUntil, connect, readFlash, waitForText } from './board.js';
+import { complaints, readText, unfold, useBrowser } from './browser.js';
+import { makeImage, SECTION_START } from './image.js';
 
 useBrowser();
 
@@ -12,11 +12,8 @@ useBrowser();
 let seed = Number(process.env.SEED ?? 1);
 const random = () => ((seed = (seed * 1103515245 + 12345) % 2147483648) >> 8) / 8388608;
 /** Returns random moments, ms, one in each of `count` equal parts of a duration of `ms`. */
-const randomMomentsMs = (count, ms) => Array.from({ length: count }, (_, n) => Math.round(((n + random()) / count) * ms));
-/** Address of the robot's section in the flash. */
-const SECTION_START = 0x6e00;
-const readBytes = async (page, memory, from, to) => Buffer.from(await page.evaluate(([memory, from, to]) => Array.from(window.attachedBoard[memory].slice(from, to)), [memory, from, to]));
-const isConnected = async (page) => (await text(page, '#connect')) === 'Back to the simulation';
+const makeRandomMomentsMs = (count, ms) => Array.from({ length: count }, (_, n) => Math.round(((n + random()) / count) * ms));
+const isConnected = async (page) => (await readText(page, '#connect')) === 'Back to the simulation';
 
 /** Pulls the cable; the board also loses its power. */
 async function pullCable(page) {
@@ -30,46 +27,46 @@ async function plugIn(page, robotName) {
   await waitForText(page, '#where', /^on a board on USB/);
 }
 
-test('the page reports a robot as written only if its bytes are on the board, after any cut', async (t) => {
+test('after any cut, the page reports a robot as written only if its bytes are on the board', async (t) => {
   const page = await openWithBoard('large', 8000);
   await unfold(page, '#flash');
-  const robotBytes = (await imageOf('robot')).subarray(SECTION_START);
-  const largeBytes = await readBytes(page, 'flash', SECTION_START, SECTION_START + robotBytes.length);
-  const counts = { written: 0, part: 0, untouched: 0 };
-  for (const ms of randomMomentsMs(10, 1500)) {
+  const robotBytes = (await makeImage('robot')).subarray(SECTION_START);
+  const largeBytes = await readFlash(page, SECTION_START, SECTION_START + robotBytes.length);
+  const counts = { written: 0, partial: 0, untouched: 0 };
+  for (const ms of makeRandomMomentsMs(10, 1500)) {
     await page.locator('#flash-robot').click();
     await page.clock.runFor(ms);
     await pullCable(page);
     await waitForText(page, '#flash-said', /^(not )?written/);
-    const message = await text(page, '#flash-said');
-    const boardBytes = await readBytes(page, 'flash', SECTION_START, SECTION_START + robotBytes.length);
-    const outcome = boardBytes.equals(robotBytes) ? 'complete' : boardBytes.equals(largeBytes) ? 'untouched' : 'part';
-    t.diagnostic(`pulled after ${ms} ms: the bytes are ${outcome}, and the page says "${message}"`);
+    const message = await readText(page, '#flash-said');
+    const boardBytes = await readFlash(page, SECTION_START, SECTION_START + robotBytes.length);
+    const outcome = boardBytes.equals(robotBytes) ? 'complete' : boardBytes.equals(largeBytes) ? 'untouched' : 'partial';
+    t.diagnostic(`pulled after ${ms} ms: the bytes are ${outcome}, and the page reports "${message}"`);
     if (/^written and verified/.test(message)) {
       assert.equal(outcome, 'complete', message);
       counts.written += 1;
     } else {
-      assert.match(message, /^not written: (the board (is not connected any more|does not answer)|no boot loader answers)/);
-      if (/half a robot now/.test(message)) assert.notEqual(outcome, 'untouched', message);
+      assert.match(message, /^not written: (the board (is no longer connected|does not answer)|no boot loader answers)/);
+      if (/an incomplete robot/.test(message)) assert.notEqual(outcome, 'untouched', message);
       else assert.equal(outcome, 'untouched', message);
-      counts[/half a robot now/.test(message) ? 'part' : 'untouched'] += 1;
+      counts[/an incomplete robot/.test(message) ? 'partial' : 'untouched'] += 1;
     }
     await plugIn(page, 'large');
     await page.clock.runFor(1000);
   }
-  for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial ended as ${outcome}`);
+  for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial had the outcome ${outcome}`);
 });
 
-test('the page reports a calibration as saved only if the board starts with it, after any cut', async (t) => {
+test('after any cut, the page reports a calibration as saved only if the board starts with it', async (t) => {
   const page = await openWithBoard('robot', 8000);
   const setup = page.locator('#setup');
   const press = (name) => setup.getByRole('button', { name, exact: true }).click();
   const openStep = (name) => setup.getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
-  const readMessage = () => text(page, '#setup-said');
+  const readMessage = () => readText(page, '#setup-said');
   const readTrim = () => page.evaluate(async () => (await window.lizard.ask('cal')).notes.find((line) => line.startsWith('# A3 trim')).split(' ')[3]);
   const counts = { saved: 0, kept: 0 };
   await setup.scrollIntoViewIfNeeded();
-  for (const ms of randomMomentsMs(8, 300)) {
+  for (const ms of makeRandomMomentsMs(8, 300)) {
     await openStep('Trims');
     await press('A3 back right');
     await press('↺ 0.5°');
@@ -86,12 +83,12 @@ test('the page reports a calibration as saved only if the board starts with it, 
     const pendingTrim = readTrim();
     await page.clock.runFor(500);
     const boardTrim = Number(await pendingTrim);
-    t.diagnostic(`pulled after ${ms} ms: ${isReportedSaved ? 'reported as saved' : 'not reported as saved'}, and the board starts with ${boardTrim} deg of ${expectedTrim}`);
+    t.diagnostic(`pulled after ${ms} ms: ${isReportedSaved ? 'reported as saved' : 'not reported as saved'}, and the board starts with a trim of ${boardTrim} deg, set to ${expectedTrim} deg`);
     if (isReportedSaved) assert.equal(boardTrim, expectedTrim);
-    else assert.ok([expectedTrim, expectedTrim - 0.5].some((possibleTrim) => Math.abs(boardTrim - possibleTrim) < 0.01), `${boardTrim} deg is neither the old trim nor the new one`);
+    else assert.ok([expectedTrim, expectedTrim - 0.5].some((possibleTrim) => Math.abs(boardTrim - possibleTrim) < 0.01), `${boardTrim} deg is neither the old trim nor the new trim`);
     counts[isReportedSaved ? 'saved' : 'kept'] += 1;
   }
-  for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial ended as ${outcome}`);
+  for (const [outcome, count] of Object.entries(counts)) assert.ok(count > 0, `no trial had the outcome ${outcome}`);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -1,4 +1,4 @@
-// "Make it faster": the search finds the gait that `lizard tune` finds, can be stopped, and refuses what is impossible.
+// "Make it faster": the search finds the gait of `lizard tune`, can be stopped, and rejects impossible requests.
 import assert from 'node:assert/strict';
 import { execFile } from 'node:child_process';
 import { join, resolve } from 'node:path';
@@ -6,7 +6,7 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { findViolations } from './axe.js';
-import { advance, complaints, overflow, openStanding, text, unfold, withTimeout, useBrowser, typeLength } from './browser.js';
+import { advance, complaints, measureOverflow, openStanding, readText, unfold, withTimeout, useBrowser, typeLength } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
@@ -28,7 +28,7 @@ async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {
 
 const startSearch = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
 const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
-/** Waits until a number of gaits have been tried. */
+/** Waits until the search has tried `count` gaits. */
 const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
 async function stopSearch(page) {
@@ -36,14 +36,14 @@ async function stopSearch(page) {
   await waitForSearchEnd(page);
 }
 
-/** Searches until a number of gaits have been tried. */
+/** Searches until `count` gaits have been tried. */
 async function searchUntil(page, count) {
   await startSearch(page);
   await waitForTries(page, count);
   await stopSearch(page);
 }
 
-/** Waits until the robot walks with the gait that was found. */
+/** Waits until the robot walks with the found gait. */
 async function waitForFoundGait(page) {
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.mine]'));
   await advance(page, 3000);
@@ -54,10 +54,10 @@ async function waitForFoundGait(page) {
 async function stopAndCompare(page) {
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  return text(page, '#faster-ways');
+  return readText(page, '#faster-ways');
 }
 
-test('the search finds the same gait as lizard tune with the same seed, which can be tried and undone', async () => {
+test('the search finds the gait of lizard tune with the same seed, which the user can try and undo', async () => {
   const page = await openEditor();
   const loadedPaths = [];
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
@@ -70,18 +70,18 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
   const tuneResult = JSON.parse(stdout);
   const gainPercent = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
   assert.equal(
-    await text(page, '#faster-said'),
-    `Faster on ${tuneResult.faster} of 200 random robots and floors, and ${gainPercent} % faster where only 5 % are slower. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
+    await readText(page, '#faster-said'),
+    `Faster on ${tuneResult.faster} of 200 random robots and floors; the speed that 95 % of them exceed is ${gainPercent} % higher. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
   );
-  const previousTable = await text(page, '#gait-table');
-  const distanceText = await text(page, '#gait-way');
+  const previousTable = await readText(page, '#gait-table');
+  const distanceText = await readText(page, '#gait-way');
   const readRows = () => page.locator('#faster-rows tr').allInnerTexts();
   const [, distanceRow] = (await readRows()).map((row) => row.split('\t'));
   assert.deepEqual(distanceRow.slice(0, 2), ['distance per cycle', distanceText]);
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent !== previousTable, previousTable);
-  assert.equal(await text(page, '#gait-table'), tuneResult.fragment);
-  assert.equal(await text(page, '#gait-way'), distanceRow[2]);
+  assert.equal(await readText(page, '#gait-table'), tuneResult.fragment);
+  assert.equal(await readText(page, '#gait-way'), distanceRow[2]);
   // Undoes the change, and makes it again.
   await page.getByRole('button', { name: 'Back to the previous gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent === previousTable, previousTable);
@@ -98,7 +98,7 @@ test('the search finds the same gait as lizard tune with the same seed, which ca
 test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
   const page = await openEditor({ rounds: 200 });
   await searchUntil(page, 21);
-  const message = await text(page, '#faster-said');
+  const message = await readText(page, '#faster-said');
   const [, triedCount] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
   assert.ok(Number(triedCount) >= 21 && Number(triedCount) < 8040, message);
   assert.ok(await page.locator('#faster-progress').isHidden());
@@ -111,7 +111,7 @@ test('a search stopped midway returns the best gait so far, and the page can sea
   await stopSearch(page);
 });
 
-test('the found gait walks beside the previous one, and is faster by the promised ratio', async () => {
+test('the found gait walks beside the previous gait, and is faster by the promised ratio', async () => {
   const page = await openEditor({ rounds: 200 });
   await page.locator('#button-3d').click();
   await searchUntil(page, 21);
@@ -125,16 +125,16 @@ test('the found gait walks beside the previous one, and is faster by the promise
   await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
   const comparison = await stopAndCompare(page);
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
-  assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed} mm/s`);
+  assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} Predicted: ${foundSpeed} mm/s, before ${previousSpeed} mm/s`);
   assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
 });
 
-test('for a turn the page shows both angles, and the found gait turns faster by the promised ratio', async () => {
+test('the found turn is faster by the promised ratio, and the page shows both angles', async () => {
   const page = await openEditor({ gait: 'left', rounds: 200 });
-  // The robot's own turn cannot be made faster, so the search starts from one with half the stroke of the front legs.
-  for (const [leg, share] of [['LF', '-0.5'], ['RF', '0.5']]) {
-    await page.getByLabel(`${leg} share`).fill(share);
+  // The robot's own turn cannot be made faster, so the search starts with half the stroke of the front legs.
+  for (const [leg, gain] of [['LF', '-0.5'], ['RF', '0.5']]) {
+    await page.getByLabel(`${leg} gain`).fill(gain);
     await page.keyboard.press('Tab');
   }
   await searchUntil(page, 41);
@@ -148,11 +148,11 @@ test('for a turn the page shows both angles, and the found gait turns faster by 
   await advance(page, 40_000);
   const comparison = await stopAndCompare(page);
   const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
-  assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} ${foundSpeed} and ${previousSpeed}`);
+  assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} Predicted: ${foundSpeed}, before ${previousSpeed}`);
   assert.ok(Number(foundAngle) > 360, `${foundAngle} is not more than a full turn`);
 });
 
-test('changing the robot ends a search for the previous one', async () => {
+test('changing the robot ends the search for the previous robot', async () => {
   const page = await openEditor({ rounds: 200 });
   await startSearch(page);
   await waitForTries(page, 1);
@@ -160,16 +160,16 @@ test('changing the robot ends a search for the previous one', async () => {
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
   await waitForSearchEnd(page);
-  assert.equal(await text(page, '#faster-said'), 'The robot has changed, so the search for the previous one has ended.');
+  assert.equal(await readText(page, '#faster-said'), 'The robot has changed; the search for the previous robot has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 
-test('the page says so if a gait cannot be made faster', async () => {
+test('the page reports a gait that cannot be made faster', async () => {
   // With servos this slow no stride is better than that of `left`.
   const page = await openEditor({ gait: 'left', rate: 200, seed: 1 });
   await startSearch(page);
   await waitForSearchEnd(page);
-  assert.equal(await text(page, '#faster-said'), 'No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.');
+  assert.equal(await readText(page, '#faster-said'), 'No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.');
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
@@ -177,31 +177,31 @@ test('an impossible search is refused with a message, and a number out of range 
   const page = await openEditor({ gait: 'arc-left' });
   await startSearch(page);
   await waitForSearchEnd(page);
-  assert.match(await text(page, '#faster-said'), /^This gait cannot be made faster: the gait `mine` goes ahead and turns; /);
+  assert.match(await readText(page, '#faster-said'), /^This gait cannot be made faster: the gait `mine` walks along a curve; /);
   await page.locator('#gait-from').selectOption({ label: 'walk' });
   const rate = page.getByLabel('Servos at most');
   await rate.fill('900');
   await startSearch(page);
   await page.waitForFunction(() => document.querySelector('#faster-said').textContent.includes('900'));
-  assert.equal(await text(page, '#faster-said'), 'This gait cannot be made faster: servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml.');
+  assert.equal(await readText(page, '#faster-said'), 'This gait cannot be made faster: servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml).');
   await rate.fill('5');
   assert.equal(await rate.getAttribute('aria-invalid'), 'true');
   await page.keyboard.press('Tab');
   assert.equal(await rate.inputValue(), '900', 'the last valid number');
 });
 
-test('the room works by keyboard alone, fits a phone, and has no violations for axe-core', async () => {
+test('the search works by keyboard alone, fits a phone, and has no violations for axe-core', async () => {
   const page = await openEditor({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
   await page.getByLabel('Seed of the random numbers').focus();
   await page.keyboard.press('Tab');
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start');
   await page.keyboard.press('Enter');
   await page.locator('#faster-result').waitFor();
-  assert.equal(await overflow(page), 0);
+  assert.equal(await measureOverflow(page), 0);
   assert.deepEqual(await findViolations(page, '.faster'), []);
   await page.keyboard.press('Enter');
   await waitForSearchEnd(page);
-  assert.match(await text(page, '#faster-said'), /^Stopped after /);
+  assert.match(await readText(page, '#faster-said'), /^Stopped after /);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
 });
 

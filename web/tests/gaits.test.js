@@ -1,5 +1,5 @@
-// A gait is made by dragging bars: it walks as predicted, and a gait that violates a limit is refused with the nearest
-// valid value.
+// The gait editor: dragged bars make a gait that walks as predicted; a gait that violates a limit is refused with the
+// nearest valid value.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -21,7 +21,7 @@ async function reload(page) {
   await unfoldEditor(page);
 }
 
-const editorText = (page, id) => page.locator(`#gait-${id}`).innerText();
+const readEditorText = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until the prediction of the shown gait is displayed. */
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
 const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
@@ -31,11 +31,11 @@ async function drag(page, ring, fromPhase, toPhase) {
   await page.locator('#gait-circle').scrollIntoViewIfNeeded();
   const { x, y, width, height } = await page.locator('#gait-circle').boundingBox();
   const radius = ([104, 82, 60, 38][ring] * Math.min(width, height)) / 240;
-  const pointAt = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
-  await page.mouse.move(...pointAt(fromPhase));
+  const computePoint = (phase) => [x + width / 2 + radius * Math.sin(2 * Math.PI * phase), y + height / 2 - radius * Math.cos(2 * Math.PI * phase)];
+  await page.mouse.move(...computePoint(fromPhase));
   await page.mouse.down();
   const stepPhase = (toPhase - fromPhase) / 10;
-  for (let step = 1; step <= 10; step++) await page.mouse.move(...pointAt(fromPhase + stepPhase * step));
+  for (let step = 1; step <= 10; step++) await page.mouse.move(...computePoint(fromPhase + stepPhase * step));
   await page.mouse.up();
 }
 
@@ -43,13 +43,13 @@ test('for an unchanged gait, the editor predicts the distance shown on its butto
   const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
-  assert.equal(await editorText(page, 'way'), await button.innerText());
-  assert.match(await editorText(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
+  assert.equal(await readEditorText(page, 'way'), await button.innerText());
+  assert.match(await readEditorText(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
 });
 
-test('a bar and its end are dragged, and the numbers follow', async () => {
+test('the numbers follow a bar and its end while they are dragged', async () => {
   const page = await openEditor();
-  const previousDistance = await editorText(page, 'way');
+  const previousDistance = await readEditorText(page, 'way');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
   assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
@@ -62,29 +62,29 @@ test('a bar and its end are dragged, and the numbers follow', async () => {
   await page.waitForFunction((distance) => document.querySelector('#gait-way').textContent === distance, previousDistance);
 });
 
-test('an edited gait survives a reload, and an invalid stored one is dropped', async () => {
+test('an edited gait survives a reload, and an invalid stored gait is dropped', async () => {
   const page = await openEditor();
   await page.locator('#gait-name').fill('waddle');
   await page.getByLabel('LF starts at').fill('0.35');
   await reload(page);
   assert.equal(await page.locator('#gait-name').inputValue(), 'waddle');
   assert.equal(await page.getByLabel('LF starts at').inputValue(), '0.35');
-  assert.match(await editorText(page, 'table'), /^\[gait\.waddle\]/);
+  assert.match(await readEditorText(page, 'table'), /^\[gait\.waddle\]/);
   for (const stored of ['{', '3', '{"name":"x","held":false,"period":1,"duty":0.5,"amplitude":20,"start":[0,0,0],"gain":[1,1,1,1]}']) {
     await page.evaluate((stored) => localStorage.setItem(`lizard ${location.pathname} gait`, stored), stored);
     await reload(page);
-    assert.match(await editorText(page, 'table'), /^\[gait\.mine\]/);
+    assert.match(await readEditorText(page, 'table'), /^\[gait\.mine\]/);
   }
 });
 
-test('a value that violates a limit is refused, and a button offers the nearest valid one', async () => {
+test('a value that violates a limit is refused, and a button offers the nearest valid value', async () => {
   const page = await openEditor();
   await page.locator('#gait-amplitude').fill('40');
-  const button = page.locator('#gait-instead button', { hasText: 'Amplitude' });
+  const button = page.locator('#gait-instead button', { hasText: 'amplitude' });
   await button.waitFor();
-  assert.match(await editorText(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
+  assert.match(await readEditorText(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
   assert.ok(await page.locator('#gait-try').isDisabled());
-  const value = Number(/Amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
+  const value = Number(/amplitude ([0-9.]+)°/.exec(await button.innerText())[1]);
   await button.click();
   await waitForPrediction(page);
   assert.equal(Number(await page.locator('#gait-amplitude').inputValue()), value);
@@ -94,73 +94,73 @@ test('a value that violates a limit is refused, and a button offers the nearest 
   await button.waitFor();
 });
 
-test('a number out of range is marked and ignored, and restored when the box is left', async () => {
+test('a number out of range is marked and ignored, and the box restores its value when it loses the focus', async () => {
   const page = await openEditor();
-  const table = await editorText(page, 'table');
+  const table = await readEditorText(page, 'table');
   for (const [input, wrongValue, validValue] of [
     [page.locator('#gait-amplitude'), '61', '20'],
     [page.locator('#gait-period'), '0.05', '1'],
     [page.getByLabel('LF starts at'), '1.5', '0.25'],
-    [page.getByLabel('RH share'), '-3', '1'],
+    [page.getByLabel('RH gain'), '-3', '1'],
   ]) {
     await input.fill(wrongValue);
     assert.equal(await input.getAttribute('aria-invalid'), 'true', wrongValue);
     await page.keyboard.press('Tab');
     assert.deepEqual([await input.inputValue(), await input.getAttribute('aria-invalid')], [validValue, null]);
   }
-  // The worker answers in order, so after this change it has answered all the earlier ones.
+  // The worker answers in order; after this answer, it has therefore answered all earlier changes.
   await page.locator('#gait-name').fill('other');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.other]'));
-  assert.equal(await editorText(page, 'table'), table.replace('mine', 'other'));
+  assert.equal(await readEditorText(page, 'table'), table.replace('mine', 'other'));
 });
 
-test('an edited gait walks as far as predicted, and is written into robot.toml', async () => {
+test('an edited gait is added to robot.toml and walks as far as predicted', async () => {
   const page = await openEditor();
-  const previousDistance = await editorText(page, 'way');
+  const previousDistance = await readEditorText(page, 'way');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
   await waitForChange(page, 'way', previousDistance);
-  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await editorText(page, 'way'))[1]);
+  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await readEditorText(page, 'way'))[1]);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'stride');
   await advance(page, 5000);
   const walkedMm = await page.evaluate(() => window.lizard.measured().forward);
-  assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `${walkedMm} mm of ${predictedMm}`);
+  assert.ok(Math.abs(walkedMm - predictedMm) < 0.03 * predictedMm, `distance per cycle: ${walkedMm} mm, predicted ${predictedMm} mm`);
   const toml = await page.evaluate(() => window.lizard.toml);
-  assert.ok(toml.includes(await editorText(page, 'table')), toml.slice(-400));
+  assert.ok(toml.includes(await readEditorText(page, 'table')), toml.slice(-400));
   // The reset button of the lengths restores the previous robot.
   await unfold(page, '#lengths-panel');
   await page.locator('#lengths-reset').click();
   await page.waitForFunction(() => !window.lizard.toml.includes('[gait.stride]'));
 });
 
-test('a backward gait can be edited, and any gait reversed', async () => {
+test('a backward gait can be edited, and any gait can be reversed', async () => {
   const page = await openEditor();
-  const forwardMm = Number.parseFloat(await editorText(page, 'way'));
+  const forwardMm = Number.parseFloat(await readEditorText(page, 'way'));
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
-  assert.ok(Math.abs(forwardMm + Number.parseFloat(await editorText(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(forwardMm + Number.parseFloat(await readEditorText(page, 'way'))) < 0.3);
   assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
-  assert.equal(await page.getByLabel('LF share').inputValue(), '-1');
+  assert.equal(await page.getByLabel('LF gain').inputValue(), '-1');
   // `back` of robot.toml is walk in reverse.
   await page.getByRole('button', { name: 'Reverse' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) > 1);
   await page.locator('#gait-from').selectOption({ label: 'back' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
   const backMm = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
-  assert.ok(Math.abs(backMm - Number.parseFloat(await editorText(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(backMm - Number.parseFloat(await readEditorText(page, 'way'))) < 0.3);
 });
 
-test('left and right are exchanged', async () => {
+test('Exchange left and right mirrors a gait', async () => {
   const page = await openEditor();
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
-  const turn = Number.parseFloat(await editorText(page, 'turn'));
+  const turn = Number.parseFloat(await readEditorText(page, 'turn'));
   await page.getByRole('button', { name: 'Exchange left and right' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) < -1);
-  assert.ok(Math.abs(turn + Number.parseFloat(await editorText(page, 'turn'))) < 0.2);
+  assert.ok(Math.abs(turn + Number.parseFloat(await readEditorText(page, 'turn'))) < 0.2);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

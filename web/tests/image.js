@@ -1,8 +1,11 @@
 // Makes flash images of robots as the page does, from the page's own files.
 import { readPageFile, Robot } from './wasm.js';
 
+/** Address of the robot's section in the flash. */
+export const SECTION_START = 0x6e00;
+
 /** Makes the flash image for a robot file of the page. */
-export async function imageOf(robotName) {
+export async function makeImage(robotName) {
   const robot = new Robot();
   const { start } = robot.read(await readPageFile(`${robotName}.toml`, 'utf8'));
   const section = robot.section();
@@ -13,7 +16,7 @@ export async function imageOf(robotName) {
 }
 
 /** Formats bytes from address 0 on as an Intel HEX file. */
-export function hexOf(bytes) {
+export function formatHex(bytes) {
   const lines = [];
   for (let address = 0; address < bytes.length; address += 16) {
     const data = bytes.subarray(address, address + 16);

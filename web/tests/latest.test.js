@@ -6,7 +6,7 @@ import { importSource } from './source.js';
 
 const { LatestQuestion } = await importSource('latest-question.ts');
 
-/** A worker that answers when a test says so. */
+/** A worker that answers when a test calls `answer`. */
 class FakeWorker {
   receivedQuestions = [];
 
@@ -21,7 +21,7 @@ class FakeWorker {
   }
 }
 
-test('of the questions asked while the worker is busy only the last is answered', async () => {
+test('a busy worker answers only the last of the waiting questions', async () => {
   const worker = new FakeWorker();
   const answers = [];
   const questions = new LatestQuestion(worker.ask, (answer) => answers.push(answer));
@@ -33,7 +33,7 @@ test('of the questions asked while the worker is busy only the last is answered'
   assert.deepEqual(answers, ['answer to first', 'answer to third']);
 });
 
-test('a question asked when an answer arrives replaces the waiting one, or is answered after it', async () => {
+test('the newest question is answered last, even if it is asked when an answer arrives', async () => {
   const worker = new FakeWorker();
   const answers = [];
   const questions = new LatestQuestion(worker.ask, (answer) => {
@@ -44,5 +44,5 @@ test('a question asked when an answer arrives replaces the waiting one, or is an
   questions.ask('older');
   for (let n = 0; n < 2; n++) await worker.answer();
   assert.deepEqual(answers.at(-1), 'answer to newest', `${worker.receivedQuestions}`);
-  assert.equal(worker.receivedQuestions.at(-1), 'newest', 'and nothing older is asked after it');
+  assert.equal(worker.receivedQuestions.at(-1), 'newest', 'no older question is asked after the newest question');
 });

@@ -8,7 +8,7 @@ import { address, advance, openBlank, openStanding, complaints, useBrowser } fro
 useBrowser();
 
 /** Returns left, top, width and height of the main elements, CSS pixels. */
-const boundsOf = (page) =>
+const readBounds = (page) =>
   page.evaluate(() =>
     [...document.querySelectorAll('header, section, details, canvas, button, select, input')].map((node) => {
       const { left, top, width, height } = node.getBoundingClientRect();
@@ -25,33 +25,33 @@ function setLetterHeight(height) {
 
 for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
   for (const [width, viewHeight] of [[1400, 700], [1280, 800], [390, 844]]) {
-    test(`nothing moves after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
+    test(`the layout stays after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
       const page = await openBlank({ viewport: { width, height: viewHeight } });
       await page.addInitScript(setLetterHeight, height);
-      // Without the predictions that come with the page, as for a user's own robot.
+      // Without the stored predictions, as for a user's own robot.
       await page.route(/predictions/, (route) => route.fulfill({ status: 404 }));
       let allowPredictions;
       const predictionsAllowed = new Promise((resolve) => (allowPredictions = resolve));
       await page.route(/robot-worker/, (route) => predictionsAllowed.then(() => route.continue()));
       await page.goto(`${address()}#room=drive`);
       await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
-      const firstBounds = await boundsOf(page);
+      const firstBounds = await readBounds(page);
       assert.ok(firstBounds.length > 100);
       await advance(page, 2500);
       await page.waitForFunction(() => /^on a simulated UNO/.test(document.querySelector('#where').textContent));
-      assert.deepEqual(await boundsOf(page), firstBounds, 'the robot has started');
+      assert.deepEqual(await readBounds(page), firstBounds, 'the robot has started');
       allowPredictions();
       await page.waitForFunction(() => {
-        const distanceTextOf = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
-        return window.lizard.description.gaits.filter(({ moves }) => moves).every(distanceTextOf);
+        const getDistanceText = (gait) => document.querySelector(`#gaits button[data-command="${gait.command}"] small`).textContent;
+        return window.lizard.description.gaits.filter(({ moves }) => moves).every(getDistanceText);
       });
-      assert.deepEqual(await boundsOf(page), firstBounds, 'the predictions are shown');
+      assert.deepEqual(await readBounds(page), firstBounds, 'the predictions are shown');
     });
   }
 }
 
 /** Returns the view's zoom, CSS pixels per mm, and the zoom at which 420 mm of the floor fit. */
-const zoomsOf = (page) =>
+const readZooms = (page) =>
   page.evaluate(async () => {
     // The next frame is drawn with the current size.
     for (let n = 0; n < 3; n++) await new Promise(requestAnimationFrame);
@@ -62,20 +62,20 @@ const zoomsOf = (page) =>
 test('the view follows the size of the floor until the user zooms, and again after Back to start', async () => {
   const [large, small] = [{ width: 1400, height: 700 }, { width: 390, height: 568 }];
   const page = await openStanding({ viewport: large });
-  const [firstZoom, largeFit] = await zoomsOf(page);
+  const [firstZoom, largeFit] = await readZooms(page);
   assert.equal(firstZoom, largeFit);
   await page.setViewportSize(small);
-  const [smallZoom, smallFit] = await zoomsOf(page);
+  const [smallZoom, smallFit] = await readZooms(page);
   assert.equal(smallZoom, smallFit);
   assert.notEqual(smallFit, largeFit);
   await page.getByRole('button', { name: 'Zoom in' }).click();
-  const [chosenZoom] = await zoomsOf(page);
+  const [chosenZoom] = await readZooms(page);
   assert.equal((chosenZoom / smallFit).toFixed(2), '1.25');
   await page.setViewportSize(large);
-  assert.deepEqual(await zoomsOf(page), [chosenZoom, largeFit], 'what the user has chosen stays');
+  assert.deepEqual(await readZooms(page), [chosenZoom, largeFit], 'the zoom that the user has chosen stays');
   await page.getByRole('button', { name: 'Back to start' }).click();
   await page.setViewportSize(small);
-  assert.deepEqual(await zoomsOf(page), [smallFit, smallFit]);
+  assert.deepEqual(await readZooms(page), [smallFit, smallFit]);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -3,11 +3,11 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, waitForText, sendToBoard } from './board.js';
-import { advance, complaints, openStanding, text, useBrowser, hidePage } from './browser.js';
+import { advance, complaints, openStanding, readText, useBrowser, hidePage } from './browser.js';
 
 useBrowser();
 
-const receivedTextOf = (page) => page.evaluate(() => window.receivedText);
+const readReceivedText = (page) => page.evaluate(() => window.receivedText);
 const isStopping = (page) => page.evaluate(() => document.body.classList.contains('stopping'));
 
 /** Drops the lines of the page that contain one of these words, or all its lines if the list is empty. */
@@ -35,33 +35,33 @@ async function openWalking() {
   return page;
 }
 
-test('"stop" is sent at once, and a line that waits for a lost answer is not sent after it', async () => {
+test('"stop" is sent at once, and drops a line that waits for a lost answer', async () => {
   const page = await openWalking();
   await dropLines(page, ['status']);
   await runUntil(page, 'a status request is lost', () => page.evaluate(() => window.droppedCount > 0), 20);
   await page.locator('#gaits button[data-command="left"]').click();
-  const receivedLength = (await receivedTextOf(page)).length;
+  const receivedLength = (await readReceivedText(page)).length;
   await page.keyboard.press('Escape');
   await page.clock.runFor(40);
-  assert.ok((await receivedTextOf(page)).slice(receivedLength).startsWith('stop\n'));
+  assert.ok((await readReceivedText(page)).slice(receivedLength).startsWith('stop\n'));
   await page.clock.runFor(4000);
-  assert.ok(!(await receivedTextOf(page)).slice(receivedLength).includes('left'), 'no line is sent after "stop"');
-  assert.equal(await text(page, '#doing'), 'stop');
+  assert.ok(!(await readReceivedText(page)).slice(receivedLength).includes('left'), 'no line is sent after "stop"');
+  assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('a lost "stop" is sent again until the robot answers, and the page is red until then', async () => {
+test('a lost "stop" is repeated until the robot answers, and the page is red until then', async () => {
   const page = await openWalking();
   await dropLines(page, []);
   await page.keyboard.press('Escape');
   await page.clock.runFor(600);
   assert.ok(await isStopping(page));
-  assert.equal(await text(page, '#doing'), 'walk', 'the robot has not reported anything else');
+  assert.equal(await readText(page, '#doing'), 'walk', 'the robot has reported no other gait');
   await page.clock.runFor(700);
-  await page.locator('#alarm', { hasText: /^No answer: it may walk on\. "stop" is sent until it answers\. 1\.\d s$/ }).waitFor();
+  await page.locator('#alarm', { hasText: /^No answer: the robot may still walk\. The page repeats "stop" until it answers\. 1\.\d s$/ }).waitFor();
   await restoreLink(page);
   await runUntil(page, 'the stop is answered', async () => (await page.locator('#log div', { hasText: /^ok stop$/ }).count()) > 0);
   await page.clock.runFor(100);
-  assert.equal(await text(page, '#doing'), 'stop');
+  assert.equal(await readText(page, '#doing'), 'stop');
   assert.equal(await isStopping(page), false);
   assert.equal(await page.locator('#alarm').isVisible(), false);
 });
@@ -69,10 +69,10 @@ test('a lost "stop" is sent again until the robot answers, and the page is red u
 test('a robot that rests gets no repeated "stop"', async () => {
   const page = await openWithBoard('robot', 8000);
   await sendToBoard(page, 'rest');
-  const receivedLength = (await receivedTextOf(page)).length;
+  const receivedLength = (await readReceivedText(page)).length;
   await page.keyboard.press('Escape');
   await page.clock.runFor(1500);
-  const sentLines = (await receivedTextOf(page)).slice(receivedLength).split('\n');
+  const sentLines = (await readReceivedText(page)).slice(receivedLength).split('\n');
   assert.equal(sentLines.filter((line) => line === 'stop').length, 1);
   assert.equal(await isStopping(page), false);
 });
@@ -82,7 +82,7 @@ test('a refusal that the radio has truncated is not mistaken for the answer to "
   await dropLines(page, ['stop']);
   await page.keyboard.press('Escape');
   await page.evaluate(() => {
-    for (const letter of 'err 7 servos are resting, senok walk\r\n') window.attachedBoard.onByte(letter.charCodeAt(0));
+    for (const letter of 'err 7 the servos are resting; senok walk\r\n') window.attachedBoard.onByte(letter.charCodeAt(0));
   });
   await page.clock.runFor(600);
   assert.ok(await isStopping(page));
@@ -100,15 +100,15 @@ test('answers to repeated stops are not mistaken for answers to the next lines',
   });
   await page.keyboard.press('Escape');
   await page.clock.runFor(1100);
-  assert.ok((await receivedTextOf(page)).split('stop').length > 4, '"stop" was sent again');
+  assert.ok((await readReceivedText(page)).split('stop').length > 4, '"stop" was sent again');
   await page.locator('#gaits button[data-command="left"]').click();
   await waitForText(page, '#doing', /^left$/);
   await page.keyboard.press('Escape');
   await page.clock.runFor(3000);
-  assert.equal(await text(page, '#doing'), 'stop');
+  assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('a robot that is silent for 0.8 s is reported, with the time', async () => {
+test('the page reports a silence of 0.8 s with its duration', async () => {
   const page = await openWalking();
   await dropLines(page, []);
   await page.evaluate(() => (window.attachedBoard.onByte = () => {}));
@@ -129,10 +129,10 @@ test('a gait that ended during a silence is shown as ended', async () => {
     setTimeout(() => (board.onByte = onByte), 2000);
   });
   await page.clock.runFor(4000);
-  assert.equal(await text(page, '#doing'), 'stop');
+  assert.equal(await readText(page, '#doing'), 'stop');
 });
 
-test('the simulated UNO is stopped in the same way', async () => {
+test('"stop" is repeated for the simulated UNO, too', async () => {
   const page = await openStanding();
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 400);
@@ -144,7 +144,7 @@ test('the simulated UNO is stopped in the same way', async () => {
   });
   await page.keyboard.press('Escape');
   await advance(page, 2500);
-  assert.equal(await text(page, '#doing'), 'stop');
+  assert.equal(await readText(page, '#doing'), 'stop');
 });
 
 /** Records the times between the lines that the board receives, ms of page time. */
@@ -159,7 +159,7 @@ const recordLineGaps = (page) =>
     window.readLineGapsMs = () => times.slice(1).map((time, n) => time - times[n]);
   });
 
-/** True if a servo turns within some ms, that is, if a pulse changes by more than 1 us. */
+/** Returns true if a servo turns within `ms`, that is, if a pulse changes by more than 1 us. */
 async function isMoving(page, ms) {
   const observedWidths = [];
   for (let remainingMs = ms; remainingMs > 0; remainingMs -= 20) {
@@ -170,16 +170,16 @@ async function isMoving(page, ms) {
   return observedWidths.some((widths) => widths.some((width, servo) => Math.abs(width - observedWidths[0][servo]) > 1));
 }
 
-test('while a user drives, deadman is set, and a line is sent at least in every third of its time', async () => {
+test('while a user drives, the page sets deadman and sends a line at least three times in that period', async () => {
   const page = await openWalking();
-  const lines = (await receivedTextOf(page)).split('\n');
-  assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'before the walk');
+  const lines = (await readReceivedText(page)).split('\n');
+  assert.ok(lines.indexOf('deadman 901') > 0 && lines.indexOf('deadman 901') < lines.indexOf('walk'), 'deadman is set before the walk');
   await recordLineGaps(page);
   await page.clock.runFor(5000);
   const longestGap = Math.max(...(await page.evaluate(() => window.readLineGapsMs())));
-  assert.ok(longestGap <= 310, `${longestGap} ms without a line`);
-  assert.equal(await text(page, '#doing'), 'walk');
-  assert.ok(!(await text(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
+  assert.ok(longestGap <= 310, `longest time without a line: ${longestGap} ms`);
+  assert.equal(await readText(page, '#doing'), 'walk');
+  assert.ok(!(await readText(page, '#log')).includes('deadman 901'), 'the log does not show the page\'s own lines');
 });
 
 test('a robot out of range stops, and reports the reason when it is in range again', async () => {
@@ -190,8 +190,8 @@ test('a robot out of range stops, and reports the reason when it is in range aga
   assert.equal(await isMoving(page, 500), false);
   await restoreLink(page);
   await page.clock.runFor(3000);
-  assert.equal(await text(page, '#doing'), 'stop');
-  await page.locator('#log div', { hasText: '# fault: no line for as long as deadman says' }).waitFor();
+  assert.equal(await readText(page, '#doing'), 'stop');
+  await page.locator('#log div', { hasText: '# fault: no command within the deadman time' }).waitFor();
 });
 
 test('stopping the robot restores its own deadman', async () => {
@@ -203,10 +203,10 @@ test('stopping the robot restores its own deadman', async () => {
   await sendToBoard(page, 'save');
   await sendToBoard(page, 'cal');
   await page.locator('#log div', { hasText: /^# deadman 5000$/ }).waitFor();
-  assert.equal(await text(page, '#doing'), 'walk');
+  assert.equal(await readText(page, '#doing'), 'walk');
   await page.keyboard.press('Escape');
   await page.clock.runFor(1500);
-  assert.match(await receivedTextOf(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
+  assert.match(await readReceivedText(page), /deadman 901\n[^]*save\n[^]*deadman 901\n[^]*stop\n[^]*deadman 5000\n(status\n)*$/);
 });
 
 test('a deadman left behind by a page is not mistaken for the robot\'s own', async () => {
@@ -217,15 +217,15 @@ test('a deadman left behind by a page is not mistaken for the robot\'s own', asy
   await page.clock.runFor(1000);
   await page.keyboard.press('Escape');
   await page.clock.runFor(1000);
-  assert.match(await receivedTextOf(page), /stop\n[^]*deadman 0\n(status\n)*$/);
+  assert.match(await readReceivedText(page), /stop\n[^]*deadman 0\n(status\n)*$/);
 });
 
-test('an HC-05 at 9600 baud, which the system knows as a serial port, is driven as a radio', async () => {
+test('the page treats an HC-05 at a serial port with 9600 baud as a radio', async () => {
   const bluetoothService = '00001101-0000-1000-8000-00805f9b34fb';
   const page = await openWithBoard('robot', 0, { boardKeepsRunning: true, moduleBaud: 9600, bluetoothService });
   await waitForText(page, '#where', /^on a board on Bluetooth that has not restarted/);
   assert.deepEqual(await page.evaluate(() => window.portRequest.allowedBluetoothServiceClassIds), [bluetoothService]);
-  assert.match(await receivedTextOf(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
+  assert.match(await readReceivedText(page), /^(status\n)+watch 10\n/, 'the page does not wait for a reset');
   const baudRate = await page.evaluate(() => window.attachedBoard.uno.usart.baudRate);
   assert.ok(Math.abs(baudRate / 9600 - 1) < 0.03, `the chip has not found the baud rate: ${baudRate} baud`);
   assert.ok(await page.locator('#flash-write').isDisabled());

@@ -1,4 +1,4 @@
-// The measuring room, with a rendered film as the browser's camera, so that the true motion is known.
+// Tests of the measuring room. The browser's camera is a rendered video, so the true motion is known.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -13,20 +13,20 @@ import { makeFolder } from './folder.js';
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
 const folder = await makeFolder();
-/** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/film. */
+/** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/video. */
 const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
-/** Renders a film into a folder; the arguments are its width, its number of cycles and the ids of hidden tags. */
-function renderFilm(name, ...args) {
-  const filmFolder = join(folder, name);
-  execFileSync(join(dirname(LIZARD), 'studio'), [filmFolder, ...args.map(String)]);
-  return filmFolder;
+/** Renders a video into a folder; `args` are its width, its number of cycles and the ids of hidden tags. */
+function renderVideo(name, ...args) {
+  const videoFolder = join(folder, name);
+  execFileSync(join(dirname(LIZARD), 'studio'), [videoFolder, ...args.map(String)]);
+  return videoFolder;
 }
 
 let walkFolder;
 let truth;
 before(() => {
-  walkFolder = renderFilm('walk', 640, 14);
+  walkFolder = renderVideo('walk', 640, 14);
   truth = JSON.parse(readFileSync(join(walkFolder, 'truth.json'), 'utf8'));
 });
 afterEach(async () => {
@@ -42,42 +42,42 @@ async function openRoom() {
   return page;
 }
 
-/** Opens the room in a browser with a film as its camera, or without a camera if there is no film. */
-async function openRoomWithFilm(filmFolder) {
-  await openBrowserWithCamera(filmFolder && join(filmFolder, 'film.y4m'));
+/** Opens the room in a browser with a video as its camera, or without a camera if there is no video. */
+async function openRoomWithVideo(videoFolder) {
+  await openBrowserWithCamera(videoFolder && join(videoFolder, 'video.y4m'));
   return openRoom();
 }
 
 const waitForMessage = (page, id, words) => page.locator(`#measure-${id}`, { hasText: words }).waitFor();
 
-async function switchCameraOn(page, words = 'All five tags are seen.') {
+async function switchCameraOn(page, words = 'All five tags are visible.') {
   await page.getByRole('button', { name: 'Camera' }).click();
   await waitForMessage(page, 'seen', words);
 }
 
-/** Types a number into a box of the room. */
+/** Types a number into an input of the room. */
 async function typeNumber(page, id, number) {
   const box = page.locator(`#measure-${id}`);
   await box.press('Control+a');
   await box.pressSequentially(String(number));
 }
 
-/** Selects gaits, switches the camera on, and lets the page drive after `filmMs` of the film. */
-async function startDriving(page, gaits, cycleCount, filmMs = 0) {
+/** Selects gaits, switches the camera on, and lets the page drive after the first `videoMs` of the video. */
+async function startDriving(page, gaits, cycleCount, videoMs = 0) {
   await page.locator('#measure-driver').selectOption('page');
   for (const box of await page.locator('#measure-gaits input').all()) await box.setChecked(gaits.includes(await box.getAttribute('name')));
   await typeNumber(page, 'cycles', cycleCount);
   await typeNumber(page, 'pause', 0.5);
   await switchCameraOn(page);
-  await page.waitForTimeout(filmMs);
+  await page.waitForTimeout(videoMs);
   await page.locator('#measure-start').click();
 }
 
 /** Downloads the results in a format and returns the content of the file. */
 const downloadResults = async (page, format) => (await download(page, page.locator(`#measured-${format}`))).bytes;
 
-/** Measures the same pictures with `lizard measure` and returns the report. */
-const measureWithCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'pictures'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
+/** Measures the same frames with `lizard measure` and returns the report. */
+const measureWithCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'frames'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
 
 function assertNearTruth(report) {
   for (const [quantity, tolerance] of Object.entries(TOLERANCES)) {
@@ -86,8 +86,8 @@ function assertNearTruth(report) {
   }
 }
 
-test('the page drives the simulated robot in front of a camera, and measures the gait in the film as lizard measure does', async () => {
-  const page = await openRoomWithFilm(walkFolder);
+test('the page drives the simulated robot in front of a camera, and its measurement of the gait matches lizard measure', async () => {
+  const page = await openRoomWithVideo(walkFolder);
   await startDriving(page, ['walk'], 5);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.locator('#measure-results').waitFor();
@@ -98,7 +98,7 @@ test('the page drives the simulated robot in front of a camera, and measures the
   for (const quantity of Object.keys(TOLERANCES)) {
     // The sine functions of the two programs may differ in the last bits.
     assert.ok(Math.abs(report[quantity].predicted - expected[quantity].predicted) < 1e-9, quantity);
-    // The browser shows the pictures at other times, and may miss some cycles.
+    // The browser shows the frames at other times, and may miss some cycles.
     assert.ok(Math.abs(report[quantity].mean - expected[quantity].mean) < 2 * (report[quantity].error + expected[quantity].error), quantity);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
@@ -112,8 +112,8 @@ test('the page drives the simulated robot in front of a camera, and measures the
   assert.deepEqual([...(await downloadResults(page, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
-test('the gait in a film file recorded by the browser is found by its path; with another gait it is not measured', async () => {
-  await openBrowserWithCamera(join(walkFolder, 'film.y4m'));
+test('the gait in a recorded video file is recognized by its path, and rejected as another gait', async () => {
+  await openBrowserWithCamera(join(walkFolder, 'video.y4m'));
   const recorderPage = await openBlank();
   await recorderPage.goto(address());
   const bytes = await recorderPage.evaluate(async () => {
@@ -131,24 +131,24 @@ test('the gait in a film file recorded by the browser is found by its path; with
     await loading;
     return reader.result.split(',')[1];
   });
-  writeFileSync(join(folder, 'film.webm'), Buffer.from(bytes, 'base64'));
+  writeFileSync(join(folder, 'video.webm'), Buffer.from(bytes, 'base64'));
   const page = await openRoom();
-  await page.locator('#measure-file').setInputFiles(join(folder, 'film.webm'));
+  await page.locator('#measure-file').setInputFiles(join(folder, 'video.webm'));
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
   assertNearTruth(report);
   assert.equal(report.gait, 'walk');
   await page.locator('#measure-gait').selectOption('left');
   await page.getByRole('button', { name: 'Measure again' }).click();
-  await waitForMessage(page, 'said', /^left: the path is not that of this gait.*; it is like walk\./);
+  await waitForMessage(page, 'said', /^left: the path does not match this gait.*; it resembles walk\./);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
-  // A file that is not a film.
+  // A file that is not a video.
   await page.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
-  await waitForMessage(page, 'said', /^words\.mp4 is no film that this browser can play/);
+  await waitForMessage(page, 'said', /^words\.mp4 is not a video that this browser can play/);
 });
 
-test('if another program drives, the film that is recorded until Done is measured', async () => {
-  const page = await openRoomWithFilm(walkFolder);
+test('a video that is recorded until Done while another program drives is measured', async () => {
+  const page = await openRoomWithVideo(walkFolder);
   await switchCameraOn(page);
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(6000);
@@ -158,31 +158,31 @@ test('if another program drives, the film that is recorded until Done is measure
 });
 
 test('a hidden tag is named while the camera is on, and no result is computed', async () => {
-  const page = await openRoomWithFilm(renderFilm('hidden', 640, 1, 2));
-  await switchCameraOn(page, 'Not seen: the left tag of strip 2.');
+  const page = await openRoomWithVideo(renderVideo('hidden', 640, 1, 2));
+  await switchCameraOn(page, 'Not visible: the left tag of strip 2.');
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(1000);
   await page.getByRole('button', { name: 'Done' }).click();
-  await waitForMessage(page, 'said', /tag 2 of the floor is not completely visible/);
+  await waitForMessage(page, 'said', /floor tag 2 is not completely visible/);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 
-test('the page says so if a film shows no tag', async () => {
-  const page = await openRoomWithFilm(renderFilm('none', 640, 1, 0, 1, 2, 3, 4));
-  await switchCameraOn(page, 'No tag of the sheet is seen');
+test('a video without tags is reported', async () => {
+  const page = await openRoomWithVideo(renderVideo('none', 640, 1, 0, 1, 2, 3, 4));
+  await switchCameraOn(page, 'No tag of the sheet is visible');
 });
 
-test('if there is no camera, or the browser may not use it, the page offers to open a film', async () => {
-  const page = await openRoomWithFilm(null);
+test('the page offers to open a video if there is no camera or the browser may not use it', async () => {
+  const page = await openRoomWithVideo(null);
   await page.getByRole('button', { name: 'Camera' }).click();
   await waitForMessage(page, 'said', /This machine has no camera|not allowed to use the camera/);
   await page.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
   await page.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(page, 'said', /not allowed to use the camera.*take a film and open it here/);
+  await waitForMessage(page, 'said', /not allowed to use the camera.*record a video and open it here/);
 });
 
-test('Stop ends the protocol and stops the robot; leaving the room also does so, and switches the camera off', async () => {
-  const page = await openRoomWithFilm(walkFolder);
+test('Stop and leaving the room end the protocol and stop the robot, and leaving switches the camera off', async () => {
+  const page = await openRoomWithVideo(walkFolder);
   await startDriving(page, ['walk', 'left'], 20);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.keyboard.press('Escape');
@@ -198,13 +198,13 @@ test('Stop ends the protocol and stops the robot; leaving the room also does so,
   assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
-test('a board whose link is cut is no longer driven, the room reports it, and the recorded cycles are measured', async () => {
-  const page = await openRoomWithFilm(walkFolder);
+test('after a cut link, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', async () => {
+  const page = await openRoomWithVideo(walkFolder);
   await page.evaluate(installFakeSerial);
-  // For a robot at a Bluetooth module the page does not open the dialog of the first connection.
+  // For a robot with a Bluetooth module, the page does not open the dialog of the first connection.
   await connect(page, { flashedRobot: 'paper', boardKeepsRunning: true, bluetoothService: '00001101-0000-1000-8000-00805f9b34fb' });
   await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
-  // At the start of the film the robot is near the end of the sheet, and the page would first drive it back.
+  // At the start of the video the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
   await waitForMessage(page, 'said', '1 of 2: walk');
   await page.waitForTimeout(6000);
@@ -215,8 +215,8 @@ test('a board whose link is cut is no longer driven, the room reports it, and th
   assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'nor to the simulated board that follows');
 });
 
-test('the printed sheet equals that of lizard measure sheet, for both paper sizes', async () => {
-  const page = await openRoomWithFilm(null);
+test('the printed sheet equals the output of lizard measure sheet for both paper sizes', async () => {
+  const page = await openRoomWithVideo(null);
   for (const [name, paper] of [['A4', 'a4'], ['letter', 'letter']]) {
     await page.locator('#measure-paper').selectOption(name);
     const { bytes } = await download(page, page.getByRole('button', { name: 'Print the sheet' }));
@@ -226,8 +226,8 @@ test('the printed sheet equals that of lizard measure sheet, for both paper size
   }
 });
 
-test('a worker that cannot be loaded is reported, and the next press loads it', async () => {
-  const page = await openRoomWithFilm(null);
+test('a worker that cannot be loaded is reported, and the next press of the button loads it', async () => {
+  const page = await openRoomWithVideo(null);
   const previousCount = complaints.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
   await page.getByRole('button', { name: 'Print the sheet' }).click();

@@ -9,7 +9,7 @@ useBrowser();
 
 const toml = await readPageFile('robot.toml', 'utf8');
 
-/** Measures the growth of the memory by `count` repetitions of an action, bytes, after a warm-up. */
+/** Measures by how many bytes `count` repetitions of an action enlarge the memory, after a warm-up. */
 function measureGrowth(count, action) {
   const robot = new Robot();
   robot.read(toml);
@@ -20,8 +20,8 @@ function measureGrowth(count, action) {
   return memory.buffer.byteLength - startBytes;
 }
 
-test('ten thousand robots with different lengths use no more memory', async () => {
-  // With `stand` alone, because other gaits would only take time.
+test('ten thousand robots with different lengths do not enlarge the memory', async () => {
+  // Only with `stand`, because other gaits would only take time.
   const standingToml = toml.slice(0, toml.indexOf('[gait.walk]'));
   const growthBytes = measureGrowth(10_000, (_, n) => {
     const { text, refusal } = Robot.lengths(standingToml, [['links.l0', 20 + n / 5000]], false);
@@ -31,20 +31,20 @@ test('ten thousand robots with different lengths use no more memory', async () =
   assert.equal(growthBytes, 0);
 });
 
-test('gaits that are refused, and those tried for an offer, use no more memory', async () => {
+test('refused gaits, and gaits tried for an offer, do not enlarge the memory', async () => {
   let bars;
   const growthBytes = measureGrowth(100, (robot, n) => {
     bars ??= robot.bars(1);
     const { refused, alternatives } = robot.trial({ ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
-    assert.equal(alternatives[0].what, 'amplitude');
+    assert.equal(alternatives[0].parameter, 'amplitude');
   });
   assert.equal(growthBytes, 0);
 });
 
-test('an argument of a wrong form is refused and changes nothing', () => {
+test('an invalid argument is refused and changes nothing', () => {
   const robot = new Robot();
-  assert.equal(robot.predict(1), null, 'without a robot there is no answer');
+  assert.equal(robot.predict(1), null, 'no prediction without a robot');
   const { floor } = robot.read(toml);
   const firstPrediction = robot.predict(1);
   assert.ok(firstPrediction.forward > 10);
@@ -66,7 +66,7 @@ const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
 /** Growth that is allowed without a leak: a kilobyte that leaks in each frame would be 3 MB in a round. */
 const ALLOWED_BYTES = 2_000_000;
 
-test('while a robot walks, a second round through the rooms takes no more memory than the first', async (t) => {
+test('while a robot walks, a second visit to every room takes no more memory than the first visit', async (t) => {
   const page = await openPage({ reducedMotion: 'no-preference' });
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   const devTools = await page.context().newCDPSession(page);
@@ -80,8 +80,8 @@ test('while a robot walks, a second round through the rooms takes no more memory
       await page.waitForTimeout(SECONDS_IN_ROOM * 1000);
       await devTools.send('HeapProfiler.collectGarbage');
       const { metrics } = await devTools.send('Performance.getMetrics');
-      const metricOf = (metricName) => metrics.find(({ name }) => name === metricName).value;
-      measurements.push({ room, heap: metricOf('JSHeapUsedSize'), nodes: metricOf('Nodes'), listeners: metricOf('JSEventListeners') });
+      const getMetric = (metricName) => metrics.find(({ name }) => name === metricName).value;
+      measurements.push({ room, heap: getMetric('JSHeapUsedSize'), nodes: getMetric('Nodes'), listeners: getMetric('JSEventListeners') });
     }
     return measurements;
   };

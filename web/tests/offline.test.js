@@ -1,4 +1,5 @@
-// A page that was opened once works without a network, is updated as a whole, and contacts no other server.
+// A page that was opened once works without a network, is updated completely or not at all, and contacts no other
+// server.
 import assert from 'node:assert/strict';
 import { cp, readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -21,7 +22,7 @@ async function serveCopy() {
 
 const waitUntilStarted = (page) => page.waitForFunction(() => window.lizard);
 
-/** Makes a newer page of a copy: its heading differs. Returns the index.html of the older page. */
+/** Makes a copy a newer page, with another heading. Returns the index.html of the older page. */
 async function makeNewer(copyFolder) {
   const indexHtml = await readFile(join(copyFolder, 'index.html'), 'utf8');
   assert.ok(indexHtml.includes('>lizard</a>'));
@@ -30,7 +31,7 @@ async function makeNewer(copyFolder) {
   return indexHtml;
 }
 
-test('once opened, the page works without a server, with any of its robots', async () => {
+test('the page works without a server, with any of its robots, once it was opened', async () => {
   const { server } = await serveCopy();
   const page = await openStored(server);
   await stopServer(server);
@@ -44,7 +45,7 @@ test('once opened, the page works without a server, with any of its robots', asy
   assert.equal(await page.locator('#problems').isVisible(), false);
 });
 
-test('a newer page is offered, loaded as a whole on request, and replaces the older one', async () => {
+test('a newer page replaces all files of the older page, but only on request', async () => {
   const { copyFolder, server } = await serveCopy();
   const page = await openStored(server);
   const readCacheNames = () => page.evaluate(() => window.caches.keys());
@@ -60,12 +61,12 @@ test('a newer page is offered, loaded as a whole on request, and replaces the ol
   assert.equal((await readCacheNames()).length, 1);
 });
 
-test('a new page with a missing file is rejected, and the stored one stays in use', async () => {
+test('an incomplete newer page is rejected, and the stored page stays in use', async () => {
   const { copyFolder, server, requestedPaths } = await serveCopy();
   const page = await openStored(server);
   const previousCaches = await page.evaluate(() => window.caches.keys());
   const indexHtml = await makeNewer(copyFolder);
-  // A half-finished update of the server: the list is new, the page is not.
+  // The server is updated by half: its list of files is new, but index.html is old.
   await writeFile(join(copyFolder, 'index.html'), indexHtml);
   requestedPaths.length = 0;
   await page.reload();

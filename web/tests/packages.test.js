@@ -1,4 +1,4 @@
-// While another program installs packages, `make web` waits for it, but not forever.
+// `make web` waits while another program installs packages, but only for a limited time.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { readFile, writeFile } from 'node:fs/promises';
@@ -29,14 +29,14 @@ test('the update waits while another program holds the lock', async () => {
   const { status, stdout, tryCount } = await updateLists(2, LOCK_MESSAGE, 60);
   assert.equal(status, 0, stdout);
   assert.equal(tryCount, 3);
-  assert.match(stdout, /^setup: another program installs packages; waiting for it, up to 60 s$/m);
+  assert.match(stdout, /^setup: another program is installing packages; waiting up to 60 s$/m);
 });
 
-test('waiting for a lock ends after the given time', async () => {
+test('the wait for a lock ends after the given time', async () => {
   const { status, stdout, tryCount } = await updateLists(1000, LOCK_MESSAGE, 3);
   assert.notEqual(status, 0);
   assert.match(stdout, /held by process 4711/);
-  assert.ok(tryCount <= 4, `${tryCount}`);
+  assert.ok(tryCount <= 4, `${tryCount} tries`);
 });
 
 test('any other problem is reported at once', async () => {

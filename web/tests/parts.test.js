@@ -24,12 +24,12 @@ useBrowser();
 before(() => runLizard('parts', folder, '--robot', join(ROOT, 'robot.toml')));
 
 /** Returns the paths of the files in a folder, relative to the folder. */
-async function pathsIn(root) {
+async function listPaths(root) {
   const entries = await readdir(root, { recursive: true, withFileTypes: true });
   return entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => relative(root, join(parentPath, name)));
 }
 
-const messageOf = (page) => page.locator('#parts-said');
+const findMessage = (page) => page.locator('#parts-said');
 
 async function openParts(options) {
   const page = await openStanding(options);
@@ -40,10 +40,10 @@ async function openParts(options) {
 }
 
 /** Clicks on the picture at a fraction of its width and height, and returns the message. */
-async function clickAt(page, xShare, yShare) {
+async function clickAt(page, xFraction, yFraction) {
   const { x, y, width, height } = await page.locator('#canvas-3d').boundingBox();
-  await page.mouse.click(x + xShare * width, y + yShare * height);
-  return messageOf(page).innerText();
+  await page.mouse.click(x + xFraction * width, y + yFraction * height);
+  return findMessage(page).innerText();
 }
 
 /** Turns the view to look from straight above. */
@@ -51,7 +51,7 @@ async function lookFromAbove(page) {
   for (let n = 0; n < 12; n++) await page.locator('#canvas-3d').press('ArrowUp');
 }
 
-test('an unprintable length is reported at once with the nearest printable one, as by lizard parts', async () => {
+test('the page reports an unprintable length with the nearest length that lizard parts accepts', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const length = await typeLength(page, 'leg.crank', 46);
@@ -83,7 +83,7 @@ test('an unprintable length is reported at once with the nearest printable one, 
   assert.equal(await useButton.isHidden(), true);
 
   // The marks of the slider are at the shortest and the longest length that can be printed.
-  const printedNote = page.locator('#length-printed', { hasText: /^Can be printed from [\d.]+ to [\d.]+ mm\.$/ });
+  const printedNote = page.locator('#length-printed', { hasText: /^Printable from [\d.]+ to [\d.]+ mm\.$/ });
   await printedNote.waitFor();
   const [, shortestMm, longestMm] = /from ([\d.]+) to ([\d.]+) mm/.exec(await printedNote.innerText());
   assert.equal(Number(longestMm), nearestMm);
@@ -92,12 +92,12 @@ test('an unprintable length is reported at once with the nearest printable one, 
     const { style } = document.querySelector('#length-marks');
     return { endsMm: [Number(slide.min), Number(slide.max)], marks: ['--from', '--to'].map((name) => Number.parseFloat(style.getPropertyValue(name))) };
   });
-  const lengthAt = (share) => endsMm[0] + ((endsMm[1] - endsMm[0]) * share) / 100;
-  assert.deepEqual(marks.map(lengthAt).map((mm) => Math.round(mm * 100) / 100), [Number(shortestMm), nearestMm]);
+  const computeLength = (percent) => endsMm[0] + ((endsMm[1] - endsMm[0]) * percent) / 100;
+  assert.deepEqual(marks.map(computeLength).map((mm) => Math.round(mm * 100) / 100), [Number(shortestMm), nearestMm]);
   assert.ok(endsMm[0] <= Number(shortestMm) && endsMm[1] > nearestMm, `the slider: ${endsMm} mm`);
 });
 
-test('while a length is dragged, the two parts that collide are red in 3D, and their overlap is shown in mm', async () => {
+test('colliding parts are red in 3D while a length is dragged, and the page shows their overlap in mm', async () => {
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   await page.locator('#button-3d').click();
@@ -122,7 +122,7 @@ test('while a length is dragged, the two parts that collide are red in 3D, and t
       return redCount;
     }, picture);
   };
-  const restingRedCount = await countRedPixels();
+  const initialRedCount = await countRedPixels();
   const previousToml = await page.evaluate(() => window.lizard.toml);
   const dragTo = (mm) => slider.evaluate((slider, mm) => ((slider.value = String(mm)), slider.dispatchEvent(new Event('input'))), mm);
   await dragTo(52);
@@ -132,7 +132,7 @@ test('while a length is dragged, the two parts that collide are red in 3D, and t
   await page.locator('#parts-said', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
   // The stop button is red, too. The picture follows the slider after a moment.
-  const hasRedParts = async () => (await countRedPixels()) > restingRedCount + 50;
+  const hasRedParts = async () => (await countRedPixels()) > initialRedCount + 50;
   await repeatUntil('red parts', hasRedParts, () => page.waitForTimeout(200));
   // At the old length the parts fit again.
   await dragTo(45);
@@ -140,7 +140,7 @@ test('while a length is dragged, the two parts that collide are red in 3D, and t
   await repeatUntil('no red parts', async () => !(await hasRedParts()), () => page.waitForTimeout(200));
 });
 
-test('the files that a changed length affects are listed, and can be downloaded alone', async () => {
+test('the page lists the files that a changed length affects, and downloads only these files', async () => {
   const page = await openStanding();
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
@@ -152,7 +152,7 @@ test('the files that a changed length affects are listed, and can be downloaded 
   const path = join(changedFolder, 'robot.toml');
   await writeFile(path, await page.evaluate(() => window.lizard.toml));
   await runLizard('parts', join(changedFolder, 'parts'), '--robot', path);
-  const paths = await pathsIn(join(changedFolder, 'parts'));
+  const paths = await listPaths(join(changedFolder, 'parts'));
   const isSame = async (name) => {
     const [changedBytes, originalBytes] = await Promise.all([join(changedFolder, 'parts', name), join(folder, name)].map((file) => readFile(file).catch(() => Buffer.alloc(0))));
     return changedBytes.equals(originalBytes);
@@ -162,7 +162,7 @@ test('the files that a changed length affects are listed, and can be downloaded 
   assert.deepEqual(Object.keys(archive).sort(), changedNames.sort());
   assert.ok(changedNames.length > 5 && changedNames.length < paths.length - 20, `${changedNames.length} of ${paths.length}`);
   assert.deepEqual((await page.locator('#files-list li').allInnerTexts()).sort(), changedNames.sort());
-  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from those of robot\\.toml:`));
+  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from the files of robot\\.toml:`));
 });
 
 test('opening the page loads no parts, and less than 500 KB compressed', async () => {
@@ -201,20 +201,20 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   const savedFile = await download(page, page.getByRole('button', { name: 'Download all files' }));
   const progress = await page.evaluate(() => window.shownMessages);
   assert.ok((await page.evaluate(() => window.delayedReports.map((report) => report()).length)) > 10);
-  assert.ok(progress.some((text) => /^Proving that no two parts meet: [0-9]+ of [0-9]+\.$/.test(text)), progress.join(' '));
+  assert.ok(progress.some((text) => /^Proving that no two parts collide: [0-9]+ of [0-9]+\.$/.test(text)), progress.join(' '));
   assert.equal(savedFile.name, 'robot-parts.zip');
   const archive = unzipSync(savedFile.bytes);
-  const paths = await pathsIn(folder);
+  const paths = await listPaths(folder);
   assert.deepEqual(Object.keys(archive).sort(), paths.sort());
   for (const path of paths) assert.ok(Buffer.from(archive[path]).equals(await readFile(join(folder, path))), `${path} differs`);
   assert.ok(paths.length > 100, `${paths.length} files`);
-  // The nearest two parts, as `lizard fit` prints them.
+  // The smallest distance between two parts that `lizard fit` prints.
   const { stdout } = await runLizard('fit', '--robot', join(ROOT, 'robot.toml'));
-  const leastMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
-  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${leastMm} mm`));
+  const smallestMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
+  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${smallestMm} mm`));
 });
 
-test('making the files can be stopped, and then nothing is saved', async () => {
+test('the page saves nothing if making the files is stopped', async () => {
   const page = await openStanding();
   let downloadCount = 0;
   page.on('download', () => (downloadCount += 1));
@@ -223,7 +223,7 @@ test('making the files can be stopped, and then nothing is saved', async () => {
   await page.evaluate(() => {
     const box = document.querySelector('#files-said');
     const observer = new MutationObserver(() => {
-      if (!box.textContent.startsWith('Proving that no two parts meet')) return;
+      if (!box.textContent.startsWith('Proving that no two parts collide')) return;
       observer.disconnect();
       document.querySelector('#parts-save').click();
     });
@@ -243,7 +243,7 @@ test('a clicked part shows its name and its file', async () => {
   assert.match(await clickAt(page, 0.02, 0.98), /^Click a part/);
   // The list, for the keyboard, has all parts.
   await page.locator('#part').selectOption({ label: 'link A1' });
-  const [, file] = /stl\/(.*)\.stl/.exec(await messageOf(page).innerText());
+  const [, file] = /stl\/(.*)\.stl/.exec(await findMessage(page).innerText());
   assert.ok((await readdir(join(folder, 'stl'))).includes(`${file}.stl`), file);
 });
 
@@ -304,11 +304,11 @@ test('the parts move with the robot', async () => {
   assert.ok(sideways > 15, `${straightPlace} to ${bentPlace}`);
 });
 
-test('the page says why a robot cannot be built', async () => {
+test('the page gives the reason why a robot cannot be built', async () => {
   const page = await openParts();
   const lowPartsToml = '\n[parts]\nheight = 10.0\n';
   assert.equal(await page.evaluate((lowPartsToml) => window.lizard.change(window.lizard.toml + lowPartsToml), lowPartsToml), null);
-  await page.getByText('The parts of this robot cannot be made: parts.height is 10 mm').waitFor();
+  await page.getByText(/Cannot make the parts of this robot: parts\.height must be at least .* but is 10 mm/).waitFor();
 });
 
 test('3D rendering takes less than a core on a machine without a graphics chip', async (t) => {
@@ -318,18 +318,18 @@ test('3D rendering takes less than a core on a machine without a graphics chip',
     const { processInfo } = await withTimeout('the processes', browserSession.send('SystemInfo.getProcessInfo'));
     return processInfo.find(({ type }) => type === 'GPU').cpuTime;
   };
-  const measureShare = async () => {
+  const measureCoreFraction = async () => {
     const [startMs, startSeconds] = [performance.now(), await readGpuSeconds()];
     await page.waitForTimeout(4000);
     return (1000 * ((await readGpuSeconds()) - startSeconds)) / (performance.now() - startMs);
   };
   await sendLine(page, 'walk', 'ok walk');
   await page.locator('#parts').evaluate((panel) => panel.scrollIntoView());
-  const shownShare = await measureShare();
+  const shownFraction = await measureCoreFraction();
   await page.locator('#parts').evaluate((panel) => (panel.open = false));
-  const hiddenShare = await measureShare();
-  t.diagnostic(`${(100 * (shownShare - hiddenShare)).toFixed(0)} % of a core`);
-  assert.ok(shownShare - hiddenShare < 0.8, `${shownShare} of a core with the robot in 3D, ${hiddenShare} without`);
+  const hiddenFraction = await measureCoreFraction();
+  t.diagnostic(`${(100 * (shownFraction - hiddenFraction)).toFixed(0)} % of a core`);
+  assert.ok(shownFraction - hiddenFraction < 0.8, `fraction of a core: ${shownFraction} with the robot in 3D, ${hiddenFraction} without`);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

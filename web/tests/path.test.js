@@ -1,15 +1,15 @@
-// A gesture is drawn: the point of the head or the tail follows the line, and a line out of reach is refused with a
-// valid size.
+// Drawing a gesture: the point of the head or the tail follows the line; a line out of reach is refused with a valid
+// size.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, overflow, openStanding, unfold, useBrowser } from './browser.js';
+import { advance, complaints, measureOverflow, openStanding, unfold, useBrowser } from './browser.js';
 
 useBrowser();
 
-const panelText = (page, id) => page.locator(`#path-${id}`).innerText();
+const readPanelText = (page, id) => page.locator(`#path-${id}`).innerText();
 const waitForValue = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
-/** Waits until the table has the circle that `draw` draws with a radius of 6 mm. */
+/** Waits until the table has the circle of 6 mm radius that `draw` has drawn. */
 const waitForCircle = (page) => page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
 const waitForOtherTable = (page, table) => page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
 
@@ -21,7 +21,7 @@ async function openPanel(options) {
 }
 
 /** Returns the screen position of a point in the head's own frame, mm. */
-const screenPoint = (page, [x, y]) =>
+const computeScreenPoint = (page, [x, y]) =>
   page.evaluate(([x, y]) => {
     const point = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
     return [point.x, point.y];
@@ -34,22 +34,22 @@ async function draw(page, radiusMm, cornerCount = 40) {
   for (let n = 0; n <= cornerCount; n++) {
     const angle = (2 * Math.PI * n) / cornerCount;
     const corner = [x + radiusMm * Math.cos(angle), y + radiusMm * Math.sin(angle)];
-    await page.mouse.move(...(await screenPoint(page, corner)));
+    await page.mouse.move(...(await computeScreenPoint(page, corner)));
     if (n === 0) await page.mouse.down();
   }
   await page.mouse.up();
 }
 
 /** Returns the head's point relative to the middle of the chassis, mm, as the page draws it. */
-const headPointOf = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
+const readHeadPoint = (page) => page.evaluate(() => window.lizard.last.scene.points[0]);
 
-test('a drawn circle is the path of the head, and is written into robot.toml', async () => {
+test('a drawn circle is added to robot.toml as the path of the head', async () => {
   const page = await openPanel();
   await draw(page, 6);
   await waitForCircle(page);
   assert.equal(await page.locator('#path-shape').inputValue(), 'own');
-  assert.match(await panelText(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
-  const neutral = await headPointOf(page);
+  assert.match(await readPanelText(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
+  const neutral = await readHeadPoint(page);
   await page.locator('#path-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.gesture.head]'));
   await advance(page, 3000);
@@ -58,21 +58,21 @@ test('a drawn circle is the path of the head, and is written into robot.toml', a
   const distances = [];
   for (let n = 0; n < 20; n++) {
     await advance(page, 200);
-    const point = await headPointOf(page);
+    const point = await readHeadPoint(page);
     distances.push(Math.hypot(point[0] - neutral[0], point[1] - neutral[1]));
   }
   // A servo's dead band is a fraction of a mm there.
-  for (const mm of distances) assert.ok(Math.abs(mm - 6) < 0.8, `${distances.map((mm) => mm.toFixed(2))} mm from the middle of a circle of 6 mm`);
+  for (const mm of distances) assert.ok(Math.abs(mm - 6) < 0.8, `${distances.map((mm) => mm.toFixed(2))} mm from the centre of a circle with a radius of 6 mm`);
 });
 
 test('a line that is too large is refused, and a button offers the largest valid size', async () => {
   const page = await openPanel();
   await draw(page, 45);
-  const button = page.locator('#path-instead button', { hasText: 'A size of' });
+  const button = page.locator('#path-instead button', { hasText: 'a size of' });
   await button.waitFor();
-  assert.notEqual(await panelText(page, 'refusal'), '');
+  assert.notEqual(await readPanelText(page, 'refusal'), '');
   for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
-  const size = Number(/A size of (\d+) %/.exec(await button.innerText())[1]);
+  const size = Number(/a size of (\d+) %/.exec(await button.innerText())[1]);
   await button.click();
   await waitForValue(page, 'least');
   await page.waitForFunction(() => document.querySelector('#path-no').hidden);
@@ -81,27 +81,27 @@ test('a line that is too large is refused, and a button offers the largest valid
   await button.waitFor();
 });
 
-test('a shape can be chosen by the keyboard, for the tail as well', async () => {
+test('the keyboard can choose every shape, also for the tail', async () => {
   const page = await openPanel();
-  const previousTable = await panelText(page, 'table');
+  const previousTable = await readPanelText(page, 'table');
   await page.locator('#path-end').selectOption('tail');
   await waitForOtherTable(page, previousTable);
-  assert.match(await panelText(page, 'table'), /\[gait\.gesture\.tail\]/);
+  assert.match(await readPanelText(page, 'table'), /\[gait\.gesture\.tail\]/);
   for (const shape of ['circle', 'side', 'nod', 'eight']) {
-    const table = await panelText(page, 'table');
+    const table = await readPanelText(page, 'table');
     await page.locator('#path-shape').selectOption(shape);
     await waitForOtherTable(page, table);
-    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await panelText(page, 'refusal')}`);
+    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await readPanelText(page, 'refusal')}`);
   }
 });
 
 test('a tap is refused with the message that it is not a line', async () => {
   const page = await openPanel();
-  const previousTable = await panelText(page, 'table');
+  const previousTable = await readPanelText(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
-  assert.equal(await panelText(page, 'said'), 'A tap is not a line: hold and draw it.');
-  assert.equal(await panelText(page, 'table'), previousTable);
+  assert.equal(await readPanelText(page, 'said'), 'A tap is not a line: press, hold and draw.');
+  assert.equal(await readPanelText(page, 'table'), previousTable);
 });
 
 test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {
@@ -109,7 +109,7 @@ test('a finger draws on a phone, and the page does not scroll meanwhile', async 
   assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
   await draw(page, 6);
   await waitForCircle(page);
-  assert.equal(await overflow(page), 0);
+  assert.equal(await measureOverflow(page), 0);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

@@ -1,19 +1,19 @@
-// A problem is shown where the user looks, and stays until it is solved.
+// A problem is shown near the user's last action, and stays until it is solved.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, complaints, openBlank, openForbidden, openStanding, openPage, text, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, complaints, openBlank, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 useBrowser();
 
-const problemsOf = (page) => page.locator('#problems');
+const findProblems = (page) => page.locator('#problems');
 
 test('the message about an unreadable robot file stays while the previous robot walks on', async () => {
   const page = await openStanding();
   await page.route('**/files/large.toml', (route) => route.fulfill({ status: 404 }));
   await page.locator('#robot').selectOption('large');
-  const message = problemsOf(page).getByText('files/large.toml is not there (404)');
+  const message = findProblems(page).getByText('files/large.toml is missing (status 404)');
   await message.waitFor();
   assert.equal(await page.locator('#robot').inputValue(), 'robot', 'the list shows the robot in use');
   await sendLine(page, 'walk', 'ok walk');
@@ -24,21 +24,21 @@ test('the message about an unreadable robot file stays while the previous robot 
   assert.equal(await page.evaluate(() => window.lizard.file), 'robot');
   await page.unroute('**/files/large.toml');
   await chooseRobot(page, 'large');
-  assert.equal(await problemsOf(page).isVisible(), false, 'a readable robot file removes the message');
+  assert.equal(await findProblems(page).isVisible(), false, 'a readable robot file removes the message');
   // The browser also reports the missing file, as expected.
   complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
 });
 
-test('if the first robot cannot be read, the page says so and accepts another robot', async () => {
+test('the page reports an unreadable first robot and accepts another robot', async () => {
   const page = await openBlank();
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
-  await problemsOf(page).getByText('files/robot.toml is not there (404)').waitFor();
-  assert.equal(await text(page, '#where'), 'No robot could be read.');
+  await findProblems(page).getByText('files/robot.toml is missing (status 404)').waitFor();
+  assert.equal(await readText(page, '#where'), 'No robot is loaded.');
   await chooseRobot(page, 'paper');
   await advance(page, 2500);
-  assert.match(await text(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
-  assert.equal(await problemsOf(page).isVisible(), false);
+  assert.match(await readText(page, '#where'), /^on a simulated UNO, robot paper [0-9a-f]{8}$/);
+  assert.equal(await findProblems(page).isVisible(), false);
 });
 
 test('the message about a busy port stays until the user dismisses it', async () => {
@@ -49,17 +49,17 @@ test('the message about a busy port stays until the user dismisses it', async ()
     };
   });
   await page.locator('#connect').click();
-  const message = problemsOf(page).getByText('No board is connected: Failed to open serial port.');
+  const message = findProblems(page).getByText('No board is connected: Failed to open serial port.');
   await message.waitFor();
   await unfold(page, '#power');
   await page.clock.runFor(8000);
   await page.locator('#health dd', { hasText: 'power' }).waitFor();
   assert.ok(await message.isVisible());
   await page.getByRole('button', { name: 'Dismiss' }).click();
-  assert.equal(await problemsOf(page).isVisible(), false);
+  assert.equal(await findProblems(page).isVisible(), false);
 });
 
-test('picking no port reports no problem', async () => {
+test('cancelling the choice of a port reports no problem', async () => {
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
     window.onPortPick = () => {
@@ -70,31 +70,31 @@ test('picking no port reports no problem', async () => {
   await page.locator('#connect').click();
   await page.waitForFunction(() => window.isPickCancelled);
   await page.clock.runFor(500);
-  assert.equal(await problemsOf(page).isVisible(), false);
-  assert.match(await text(page, '#where'), /simulated UNO/);
+  assert.equal(await findProblems(page).isVisible(), false);
+  assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('if ports are forbidden, the page says why, and the simulation continues', async () => {
+test('the page gives the reason why ports are forbidden, and the simulation continues', async () => {
   const page = await openForbidden('serial');
   await page.locator('#connect').click();
-  await problemsOf(page).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
-  assert.match(await problemsOf(page).innerText(), /^No board is connected: /);
-  assert.match(await text(page, '#where'), /simulated UNO/);
+  await findProblems(page).getByText('Access to the feature "serial" is disallowed by permissions policy.').waitFor();
+  assert.match(await findProblems(page).innerText(), /^No board is connected: /);
+  assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
-test('without Web Serial the page says so before anything is pressed', async () => {
+test('the page reports a browser without Web Serial at once', async () => {
   const page = await openPage({}, () => Object.defineProperty(navigator, 'serial', { value: undefined }));
-  await page.getByText('This browser cannot reach a board on USB').waitFor();
+  await page.getByText('This browser cannot connect to a board on USB').waitFor();
 });
 
-test('a refusal is shown beside the buttons, also on a phone', async () => {
+test('a refusal is on the screen beside the buttons, also on a phone', async () => {
   const page = await openStanding({ viewport: { width: 390, height: 844 }, hasTouch: true });
   await page.locator('[data-command="rest"]').click();
   await advance(page, 300);
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 300);
   const message = page.locator('#drive-said');
-  await message.getByText('walk: servos are resting, send stand first').waitFor();
+  await message.getByText('walk: the servos are resting; send stand first').waitFor();
   const { y, height } = await message.boundingBox();
   assert.ok(y >= 0 && y + height <= 844, `the message is on the screen: ${y} to ${y + height}`);
   await page.locator('#gaits button[data-command="stand"]').click();

@@ -12,7 +12,7 @@ const STEPS_PER_SECOND = 20;
 const TAG_DISTANCE = 210;
 /** Distance from the tags at which a robot is near the end of the sheet, mm. */
 const NEAR_MARGIN = 50;
-/** Distance from the tags up to which a film is measured, mm. */
+/** Distance from the tags up to which a video is measured, mm. */
 const END_MARGIN = 200;
 /** Time after which a robot that receives nothing stops. */
 const DEADMAN_SECONDS = 0.9;
@@ -72,7 +72,7 @@ class World {
     return new Promise((resolve) => this.timers.push({ dueSeconds: this.seconds + seconds, resolve }));
   }
 
-  /** Path from the robot to the middle of the sheet, in the robot's own frame, mm. */
+  /** Path from the robot to the middle of the sheet, mm, in the robot's own coordinates. */
   get pathBack() {
     const { x, y, heading } = this.place;
     const [forward, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];

@@ -5,8 +5,8 @@ import { setTimeout as sleep } from 'node:timers/promises';
 
 import { openDevTools, openForbidden, openPage, repeatUntil, withTimeout } from './browser.js';
 
-const uuidOf = (shortId) => `0000${shortId}-0000-1000-8000-00805f9b34fb`;
-export const HM10 = { name: 'HMSoft', service: uuidOf('ffe0'), characteristics: { [uuidOf('ffe1')]: ['notify', 'writeWithoutResponse'] } };
+const makeUuid = (shortId) => `0000${shortId}-0000-1000-8000-00805f9b34fb`;
+export const HM10 = { name: 'HMSoft', service: makeUuid('ffe0'), characteristics: { [makeUuid('ffe1')]: ['notify', 'writeWithoutResponse'] } };
 export const NORDIC = {
   name: 'Bluefruit',
   service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',

@@ -10,7 +10,7 @@ useBrowser();
 const PHONE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 /** A thumb's reach from its corner of the screen, CSS pixels. */
 const REACH_PX = 220;
-/** Size of a target that a thumb hits without looking, CSS pixels. */
+/** Smallest size of a button that a thumb hits without looking, CSS pixels. */
 const TARGET_PX = 120;
 
 async function openRemote() {
@@ -44,7 +44,7 @@ test('a phone can install the page, with its icons, for use without a network', 
   assert.deepEqual(installabilityErrors.filter(({ errorId }) => errorId !== 'in-incognito'), []);
 });
 
-test('stick and stop are under the thumbs, and the robot fills the screen', async () => {
+test('stick and stop are in reach of the thumbs, and the robot fills the screen', async () => {
   const page = await openRemote();
   const { width, height } = PHONE.viewport;
   const [stick, stop, floor] = await Promise.all(['#stick', 'button.stop', 'section.floor'].map((name) => page.locator(name).boundingBox()));

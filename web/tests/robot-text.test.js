@@ -1,4 +1,5 @@
-// The robot as text: a mistake is reported with its line, and a file, a drop and a link load the same robot.
+// The robot as text: a mistake is reported with its line; opening a file, dropping a file and following a link load the
+// same robot.
 import assert from 'node:assert/strict';
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -14,13 +15,13 @@ const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 
 useBrowser();
 
-const textBoxOf = (page) => page.locator('#robot-text');
-const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
+const findTextBox = (page) => page.locator('#robot-text');
+const readToml = (page) => page.evaluate(() => window.lizard.toml);
 const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
 
 /** Types a robot.toml and makes it the page's robot. */
 async function takeText(page, toml) {
-  await textBoxOf(page).fill(toml);
+  await findTextBox(page).fill(toml);
   await page.locator('#robot-take').click();
 }
 
@@ -32,22 +33,22 @@ async function openTextEditor(options) {
 
 test('a text with a mistake is refused with its line, and the previous robot stays', async () => {
   const page = await openTextEditor();
-  const firstToml = await tomlOf(page);
-  assert.equal(await textBoxOf(page).inputValue(), firstToml);
+  const firstToml = await readToml(page);
+  assert.equal(await findTextBox(page).inputValue(), firstToml);
   const wrongToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
   await takeText(page, wrongToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   assert.match(await page.locator('#robot-refusal').innerText(), new RegExp(`^robot\\.toml:${line}: links\\.l1`));
-  const readSelection = () => textBoxOf(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
+  const readSelection = () => findTextBox(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
   assert.match(await readSelection(), /^l1 = "long"/);
-  assert.equal(await tomlOf(page), firstToml);
-  assert.equal(await textBoxOf(page).inputValue(), wrongToml, 'nothing that was typed is lost');
+  assert.equal(await readToml(page), firstToml);
+  assert.equal(await findTextBox(page).inputValue(), wrongToml, 'the typed text stays');
 });
 
-test('a refused gait is explained by its effect on the robot, then by its line', async () => {
+test('the message about a refused gait names its effect on the robot, then its line', async () => {
   const page = await openTextEditor();
-  const wrongToml = (await tomlOf(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
+  const wrongToml = (await readToml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
   const line = wrongToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
   await takeText(page, wrongToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
@@ -56,14 +57,14 @@ test('a refused gait is explained by its effect on the robot, then by its line',
   assert.ok(refusalText.endsWith(`(robot.toml:${line}: gait.walk)`), refusalText);
 });
 
-test('a valid text becomes the robot, and is undone and redone step by step', async () => {
+test('a valid text becomes the robot, and undo and redo work step by step', async () => {
   const page = await openTextEditor();
-  const firstToml = await tomlOf(page);
+  const firstToml = await readToml(page);
   const secondToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
   const thirdToml = secondToml.replace('period = 1.25', 'period = 1.5');
   for (const text of [secondToml, thirdToml]) {
-    await textBoxOf(page).fill(text);
-    await textBoxOf(page).press('Control+Enter');
+    await findTextBox(page).fill(text);
+    await findTextBox(page).press('Control+Enter');
     await waitForRobot(page, text);
   }
   assert.equal(await page.evaluate(() => window.lizard.description.gaits.find(({ name }) => name === 'trot').period), 1.5);
@@ -82,15 +83,15 @@ test('a valid text becomes the robot, and is undone and redone step by step', as
   await page.locator('#robot-undo').click();
   await waitForRobot(page, secondToml);
   assert.ok(await redo.isEnabled());
-  await textBoxOf(page).fill(firstToml);
-  await textBoxOf(page).press('Control+Enter');
+  await findTextBox(page).fill(firstToml);
+  await findTextBox(page).press('Control+Enter');
   await waitForRobot(page, firstToml);
   assert.ok(await redo.isDisabled());
   await page.locator('#robot-undo').click();
   await waitForRobot(page, secondToml);
 });
 
-test('a file is opened, or dropped anywhere on the page', async () => {
+test('a file can be opened, or dropped anywhere on the page', async () => {
   const page = await openTextEditor();
   const largeToml = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
@@ -106,7 +107,7 @@ test('a file is opened, or dropped anywhere on the page', async () => {
   await writeFile(pictureFile, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
   await page.locator('#robot-open').setInputFiles(pictureFile);
   await page.getByText('x.toml is not a robot.toml.').waitFor();
-  assert.equal(await tomlOf(page), droppedToml);
+  assert.equal(await readToml(page), droppedToml);
 });
 
 /** Copies a link to the page's robot, and returns it. */
@@ -120,7 +121,7 @@ async function copyLink(page) {
 /** Waits until the page has the robot of a text; the comments may differ, because a link has none. */
 async function waitForSameRobot(page, expectedToml) {
   await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expectedToml).name);
-  assert.deepEqual(parse(await tomlOf(page)), parse(expectedToml));
+  assert.deepEqual(parse(await readToml(page)), parse(expectedToml));
 }
 
 /** Reads the shown QR code as a camera would, and returns its text. */
@@ -141,15 +142,15 @@ async function scanQrCode(page) {
   return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
 }
 
-test('a link contains the robot, survives a reload, and is read by a phone from a QR code', async () => {
+test('a link contains the robot, survives a reload, and equals the text of the QR code', async () => {
   const page = await openTextEditor();
   const largeToml = await readFile(LARGE, 'utf8');
   await page.locator('#robot-open').setInputFiles(LARGE);
   await waitForRobot(page, largeToml);
   const link = await copyLink(page);
-  assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} letters`);
+  assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} characters`);
   const otherPage = await openPage();
-  assert.notEqual(await tomlOf(otherPage), largeToml);
+  assert.notEqual(await readToml(otherPage), largeToml);
   await otherPage.goto(link);
   await waitForSameRobot(otherPage, largeToml);
   await otherPage.reload();
@@ -162,7 +163,7 @@ test('a link contains the robot, survives a reload, and is read by a phone from 
   await qrButton.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
   assert.equal(await scanQrCode(page), link);
-  await page.getByText('a phone reaches the page only where a web server serves it').waitFor();
+  await page.getByText('a phone needs the page’s address on a web server').waitFor();
   await qrButton.click();
   assert.equal(await page.locator('#robot-drawn svg').count(), 0);
   // Another robot removes the code.
@@ -172,21 +173,21 @@ test('a link contains the robot, survives a reload, and is read by a phone from 
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
-test('a link drops comments, and keeps everything else', async () => {
+test('a link contains everything except comments', async () => {
   const page = await openTextEditor();
-  const toml = `# one\n${(await tomlOf(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
+  const toml = `# one\n${(await readToml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
   await takeText(page, toml);
   await waitForRobot(page, toml);
   const link = await copyLink(page);
   const otherPage = await openPage();
   await otherPage.goto(link);
   await waitForSameRobot(otherPage, toml);
-  assert.doesNotMatch(await tomlOf(otherPage), /one|three/);
+  assert.doesNotMatch(await readToml(otherPage), /one|three/);
 });
 
-test('after every change the address is that of the shown robot', async () => {
+test('after every change the address contains the shown robot', async () => {
   const page = await openTextEditor();
-  const firstToml = await tomlOf(page);
+  const firstToml = await readToml(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the page\'s own robot is not in the address');
   const changedToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
   await takeText(page, changedToml);
@@ -207,7 +208,7 @@ test('after every change the address is that of the shown robot', async () => {
     location.hash = '#file=nothing';
     history.replaceState(null, '', '#file=large');
   });
-  await otherPage.locator('#problems', { hasText: 'This page has no nothing.toml' }).waitFor();
+  await otherPage.locator('#problems', { hasText: 'The page has no robot nothing.toml' }).waitFor();
 });
 
 test('a hostile file runs no script', async () => {
@@ -215,16 +216,16 @@ test('a hostile file runs no script', async () => {
   const dialogs = [];
   page.on('dialog', (dialog) => dialog.dismiss().then(() => dialogs.push(dialog.message())));
   const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
-  const hostileToml = `${await tomlOf(page)}\n${hostileGait}`;
+  const hostileToml = `${await readToml(page)}\n${hostileGait}`;
   await takeText(page, hostileToml);
   await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
   assert.equal(await page.locator('img').count(), 0);
   assert.deepEqual(dialogs, []);
 });
 
-test('opening a link or another robot stores the user\'s own robot, and a button restores it', async () => {
+test('a button restores the user\'s own robot after a link or another robot was opened', async () => {
   const page = await openTextEditor();
-  const ownToml = (await tomlOf(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
+  const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
   await takeText(page, ownToml);
   await waitForRobot(page, ownToml);
   const backButton = page.locator('#problems').getByRole('button', { name: 'Back to my own robot' });
@@ -249,34 +250,34 @@ test('opening a link or another robot stores the user\'s own robot, and a button
   assert.equal(await page.locator('#robot optgroup[label="your own"]').count(), 0, 'no stored robot is left');
 });
 
-test('the user\'s own robots are listed by their names, and each is restored unchanged', async () => {
+test('the list has the names of the user\'s own robots, and restores each unchanged', async () => {
   const page = await openTextEditor();
-  const firstToml = await tomlOf(page);
-  const tomlNamed = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);
+  const firstToml = await readToml(page);
+  const makeToml = (name) => firstToml.replace('name = "paper"', `name = "${name}"`);
   const list = page.locator('#robot');
   const readNames = () => page.locator('#robot optgroup[label="your own"] option').allInnerTexts();
   for (const name of ['anna', 'bert']) {
     await chooseRobot(page, 'large');
     await chooseRobot(page, 'robot');
-    await takeText(page, tomlNamed(name));
-    await waitForRobot(page, tomlNamed(name));
+    await takeText(page, makeToml(name));
+    await waitForRobot(page, makeToml(name));
   }
   assert.deepEqual(await readNames(), ['anna']);
   await list.selectOption({ label: 'anna' });
-  await waitForRobot(page, tomlNamed('anna'));
+  await waitForRobot(page, makeToml('anna'));
   // The address takes priority over the stored robot, so the test waits until the address is updated.
   await waitUntil(page, async (expectedText) => {
     const encoded = new URLSearchParams(location.hash.slice(1)).get('robot') ?? '';
     const bytes = Uint8Array.from(atob(encoded.replaceAll('-', '+').replaceAll('_', '/')), (letter) => letter.charCodeAt(0));
     const text = new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw'))).text();
     return (await text.catch(() => '')) === expectedText;
-  }, tomlNamed('anna'));
+  }, makeToml('anna'));
   assert.deepEqual(await readNames(), ['bert'], 'the previous robot is stored');
   await page.reload();
-  await waitForRobot(page, tomlNamed('anna'));
+  await waitForRobot(page, makeToml('anna'));
   assert.deepEqual(await readNames(), ['bert']);
   await list.selectOption({ label: 'bert' });
-  await waitForRobot(page, tomlNamed('bert'));
+  await waitForRobot(page, makeToml('bert'));
   assert.deepEqual(await readNames(), ['anna']);
 });
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { findViolations } from './axe.js';
-import { address, complaints, openPage, overflow, openStanding, unfold, useBrowser, typeLength } from './browser.js';
+import { address, complaints, openPage, measureOverflow, openStanding, readBox, unfold, useBrowser, typeLength } from './browser.js';
 
 useBrowser();
 
@@ -22,11 +22,10 @@ const THEMES = ['light', 'dark'];
 /** A thumb's reach from the corner of a phone, CSS pixels. */
 const REACH_PX = 120;
 
-const linkTo = (page, room) => page.locator(`nav a[href="#room=${room}"]`);
+const findTab = (page, room) => page.locator(`nav a[href="#room=${room}"]`);
 const waitForRoom = (page, room) => page.waitForFunction((room) => [...document.querySelectorAll('.room:not([hidden])')].map(({ id }) => id).join() === `room-${room}`, room);
-const boxOf = (page, selector) => page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
-// Colours do not change the layout, so each size is tested with one of the two themes.
+// Colours do not change the layout, so each size is tested with only one theme.
 for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n % 2] }))) {
   const { width, height } = options.viewport;
   test(`every room fits ${width} x ${height} pixels in ${options.colorScheme} colours, shows its main element and Stop, and has no violations for axe-core`, async () => {
@@ -35,10 +34,10 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
       await page.evaluate((room) => (location.hash = `room=${room}`), room);
       await waitForRoom(page, room);
       await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
-      assert.equal(await overflow(page), 0, room);
-      const [mainElement, stop, navigation] = await Promise.all([MAIN_ELEMENTS[room], '.stop', 'nav'].map((selector) => boxOf(page, selector)));
+      assert.equal(await measureOverflow(page), 0, room);
+      const [mainElement, stop, navigation] = await Promise.all([MAIN_ELEMENTS[room], '.stop', 'nav'].map((selector) => readBox(page, selector)));
       const bottom = options.hasTouch ? navigation.top : height;
-      assert.ok(mainElement.top >= 0 && mainElement.bottom <= bottom + 1, `${room}: ${MAIN_ELEMENTS[room]} ends at ${mainElement.bottom} of ${bottom}`);
+      assert.ok(mainElement.top >= 0 && mainElement.bottom <= bottom + 1, `${room}: ${MAIN_ELEMENTS[room]} ends at ${mainElement.bottom} of ${bottom} pixels`);
       assert.ok(stop.right <= width && stop.bottom <= height && Math.min(stop.width, stop.height) >= 44, room);
       if (options.hasTouch) assert.ok(Math.max(width - stop.left, height - stop.top) <= REACH_PX, JSON.stringify(stop));
       // Nothing covers Stop at the bottom of the page either.
@@ -49,22 +48,22 @@ for (const options of SIZES.map((size, n) => ({ ...size, colorScheme: THEMES[n %
   });
 }
 
-test('an address opens its room, with the robot that it names, and the tabs, the title and Back follow', async () => {
+test('an address opens its room and its robot, and the tabs, the title and Back follow', async () => {
   const page = await openPage();
   await waitForRoom(page, 'start');
   await page.goto(`${address()}#room=build&file=large`);
   await waitForRoom(page, 'build');
   await page.waitForFunction(() => window.lizard.file === 'large');
-  await linkTo(page, 'gaits').focus();
+  await findTab(page, 'gaits').focus();
   await page.keyboard.press('Enter');
   await waitForRoom(page, 'gaits');
-  assert.equal(await linkTo(page, 'gaits').getAttribute('aria-current'), 'page');
-  assert.equal(await linkTo(page, 'build').getAttribute('aria-current'), null);
+  assert.equal(await findTab(page, 'gaits').getAttribute('aria-current'), 'page');
+  assert.equal(await findTab(page, 'build').getAttribute('aria-current'), null);
   assert.equal(await page.title(), 'Gaits and routines, lizard');
   await page.waitForFunction(() => location.hash === '#room=gaits&file=large');
   await page.goBack();
   await waitForRoom(page, 'build');
-  assert.equal(await linkTo(page, 'build').getAttribute('aria-current'), 'page');
+  assert.equal(await findTab(page, 'build').getAttribute('aria-current'), 'page');
   await page.goForward();
   await waitForRoom(page, 'gaits');
   // An unknown room.
@@ -72,13 +71,13 @@ test('an address opens its room, with the robot that it names, and the tabs, the
   await waitForRoom(page, 'start');
 });
 
-test('a robot that was changed stays when the browser goes back a room', async () => {
+test('a changed robot stays when the browser goes back to the previous room', async () => {
   const page = await openPage();
-  await linkTo(page, 'build').click();
+  await findTab(page, 'build').click();
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   const firstHash = await page.evaluate(() => location.hash);
-  await linkTo(page, 'drive').click();
+  await findTab(page, 'drive').click();
   await waitForRoom(page, 'drive');
   await typeLength(page, 'links.l12', 47);
   await page.waitForFunction((firstHash) => location.hash.startsWith('#room=build&robot=') && location.hash !== firstHash, firstHash);
@@ -107,7 +106,7 @@ test('a closed room renders nothing, even if its panels are unfolded', async () 
   await page.locator('#button-3d').click();
   // The parts fill their lists when they are loaded.
   await page.waitForFunction(() => document.querySelector('#part').length > 10);
-  await linkTo(page, 'board').click();
+  await findTab(page, 'board').click();
   await waitForRoom(page, 'board');
   await page.evaluate(() => window.lizard.ask('walk'));
   await page.waitForFunction(() => document.querySelector('#cycle').textContent.endsWith('mm'));
@@ -130,11 +129,11 @@ test('a closed room renders nothing, even if its panels are unfolded', async () 
   assert.deepEqual(drawnNames, []);
 });
 
-test('one press changes between 3D and the drawing from above, and three.js is loaded only for 3D', async () => {
+test('one press switches between 3D and the plan view, and three.js is loaded only for 3D', async () => {
   const loadedPaths = [];
   const page = await openStanding();
   page.on('request', (request) => loadedPaths.push(new URL(request.url()).pathname));
-  for (const room of ROOMS.slice(1)) await linkTo(page, room).click();
+  for (const room of ROOMS.slice(1)) await findTab(page, room).click();
   assert.deepEqual(loadedPaths.filter((path) => /robot-view|parts/.test(path)), []);
   await page.locator('#button-3d').click();
   await page.waitForFunction(() => document.querySelector('#part').length > 10);

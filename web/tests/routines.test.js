@@ -1,21 +1,21 @@
-// Routines: a drive is recorded as steps, the steps are a view of robot.toml, and the robot repeats them.
+// Routines: the page records a drive as steps, the steps are a view of robot.toml, and the robot repeats them.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, reconnect, waitForText } from './board.js';
-import { address, advance, complaints, openStanding, text, unfold, useBrowser, hidePage } from './browser.js';
+import { address, advance, complaints, openStanding, readText, unfold, useBrowser, hidePage } from './browser.js';
 
 useBrowser();
 
 const PATROL = ['stand 1 s', 'walk 2', 'left 3', 'look 1'];
 
-const gaitOf = (page) => page.evaluate(() => window.lizard.gait);
-/** Waits until the robot on a board does a gait. */
-const waitForBoardGait = (page, name) => runUntil(page, `the robot does ${name}`, async () => (await gaitOf(page)) === name, 20);
-const tomlOf = (page) => page.evaluate(() => window.lizard.toml);
-const gaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
-const stepsOf = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
-const stepInput = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
+const readGait = (page) => page.evaluate(() => window.lizard.gait);
+/** Waits until the robot on a board walks with a gait. */
+const waitForBoardGait = (page, name) => runUntil(page, `the robot does ${name}`, async () => (await readGait(page)) === name, 20);
+const readToml = (page) => page.evaluate(() => window.lizard.toml);
+const findGaitButton = (page, name) => page.locator(`#gaits button[data-command="${name}"]`);
+const readShownSteps = (page) => page.locator('#routine-steps input').evaluateAll((inputs) => inputs.map(({ value }) => value));
+const findStepInput = (page, number) => page.getByLabel(`Step ${number}`, { exact: true });
 const press = async (page, name) => {
   await unfold(page, '#routines');
   await page.locator('#routines').getByRole('button', { name, exact: true }).click();
@@ -29,7 +29,7 @@ const waitForSteps = (page, expected) =>
 /** Reads the steps in the text of the robot. */
 const readSteps = (page) => page.evaluate(() => window.lizard.robot.constructor.routines(window.lizard.toml).at(-1)?.steps);
 const waitForPrediction = (page) => page.waitForFunction(() => document.querySelector('#routine-round').textContent !== '');
-const trackPathOf = (page) => page.locator('#routine-path .track').getAttribute('d');
+const readTrackPath = (page) => page.locator('#routine-path .track').getAttribute('d');
 
 /** Puts a routine into the page's robot, at the end of its text. */
 async function putRoutine(page, steps, name = 'patrol') {
@@ -64,12 +64,12 @@ async function runSeconds(page, seconds) {
   }
 }
 
-test('a drive is recorded by the robot\'s motions, and its replay ends where predicted', async () => {
+test('a recorded drive has the robot\'s motions, and its replay ends at the predicted place', async () => {
   const page = await openRoutine(null);
   await page.waitForFunction(() => ['walk', 'left'].every((name) => document.querySelector(`#gaits button[data-command="${name}"] small`).textContent));
   await page.getByText('This robot has no routine yet.').waitFor();
   await press(page, 'Record a drive');
-  await page.getByText('Recording: drive now').waitFor();
+  await page.getByText('Recording: drive the robot now').waitFor();
   const readPlace = () => page.evaluate(() => window.lizard.last.place);
   const startPlace = await readPlace();
   await page.keyboard.down('ArrowUp');
@@ -87,28 +87,28 @@ test('a drive is recorded by the robot\'s motions, and its replay ends where pre
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   await runSeconds(page, 1);
   await press(page, 'Stop recording');
-  const message = await text(page, '#routine-said');
+  const message = await readText(page, '#routine-said');
   const [, walkCycles, pauseSeconds, turnCycles] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(message) ?? assert.fail(message)).map(Number);
-  assert.ok(walkCycles >= 3 && walkCycles < cycles + 0.2 && walkCycles > cycles - 1.2, `${message}, ${cycles} cycles`);
+  assert.ok(walkCycles >= 3 && walkCycles < cycles + 0.2 && walkCycles > cycles - 1.2, `${message}, but the robot has walked ${cycles} cycles`);
   // The page also advances by itself, so this is a lower bound.
   assert.ok(pauseSeconds >= 1.9, message);
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol');
   await press(page, 'Keep it');
   const recordedSteps = [`walk ${walkCycles}`, `stand ${pauseSeconds} s`, `left ${turnCycles}`];
   await waitForSteps(page, recordedSteps);
-  assert.ok((await tomlOf(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recordedSteps.join('", "')}"]\n`));
+  assert.ok((await readToml(page)).endsWith(`\n[routine.patrol]\nsteps = ["${recordedSteps.join('", "')}"]\n`));
   await waitForPrediction(page);
   const [, seconds, forwardMm, , , turnedDeg] = /^A round takes ([\d.]+) s and ends (-?\d+) mm ahead and (\d+) mm to the (right|left) of its start, turned by (-?\d+)°\.$/
-    .exec(await text(page, '#routine-round'));
-  assert.ok(Math.abs(forwardMm - 33.2 * walkCycles) < 15 && Math.abs(turnedDeg - 14.1 * turnCycles) < 10, `${forwardMm} mm, ${turnedDeg} deg`);
+    .exec(await readText(page, '#routine-round'));
+  assert.ok(Math.abs(forwardMm - 33.2 * walkCycles) < 15 && Math.abs(turnedDeg - 14.1 * turnCycles) < 10, `${forwardMm} mm ahead, turned by ${turnedDeg} deg`);
   await advance(page, 2500);
   await press(page, 'Start it');
   await advance(page, 100);
   await page.waitForFunction(() => window.lizard.gait === 'patrol');
-  assert.equal(await gaitButton(page, 'patrol').getAttribute('aria-pressed'), 'true');
+  assert.equal(await findGaitButton(page, 'patrol').getAttribute('aria-pressed'), 'true');
   await advance(page, seconds * 1000 + 200);
   await page.locator('#log div', { hasText: '# done' }).waitFor();
-  assert.equal(await gaitOf(page), 'stop');
+  assert.equal(await readGait(page), 'stop');
   const { y, heading } = await readPlace();
   assert.ok(Math.abs(y - forwardMm) < 0.03 * forwardMm + 1, `${y} mm ahead, predicted ${forwardMm}`);
   assert.ok(Math.abs(heading - turnedDeg) < 0.03 * turnedDeg + 1, `turned by ${heading} deg, predicted ${turnedDeg}`);
@@ -123,7 +123,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
     await runSeconds(page, seconds);
   }
   await press(page, 'Stop recording');
-  const message = await text(page, '#routine-said');
+  const message = await readText(page, '#routine-said');
   // The page also advances by itself, so these times are lower bounds.
   const [, rest, stand, look] = (/^Recorded: walk 3, stand [\d.]+ s, rest ([\d.]+) s, stand ([\d.]+) s, look ([\d.]+) s$/.exec(message) ?? assert.fail(message)).map(Number);
   assert.ok(rest >= 2.9 && stand >= 1.4 && look >= 0.7, message);
@@ -132,10 +132,10 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
   await press(page, 'Record a drive');
   await runSeconds(page, 1);
   await press(page, 'Stop recording');
-  await page.getByText('Nothing is recorded: the robot has not walked.').waitFor();
+  await page.getByText('Nothing was recorded, because the robot did not walk.').waitFor();
 });
 
-test('the recorded number of cycles is that of the walk, whatever the phase of the previous gait at its start', async () => {
+test('the recorded number of cycles does not depend on the phase of the previous gait', async () => {
   const page = await openRoutine(null);
   for (let tenth = 0; tenth < 10; tenth++) {
     await press(page, 'Record a drive');
@@ -146,20 +146,20 @@ test('the recorded number of cycles is that of the walk, whatever the phase of t
     await page.evaluate(() => void window.lizard.status());
     await runSeconds(page, 3);
     await press(page, 'Stop recording');
-    assert.match(await text(page, '#routine-said'), /^Recorded: walk 2$/, `after ${tenth} tenths`);
+    assert.match(await readText(page, '#routine-said'), /^Recorded: walk 2$/, `after ${0.5 + 0.1 * tenth} s`);
     await press(page, 'Drop it');
   }
 });
 
-test('the drive of a board is recorded by the board\'s own phase, even if its link was cut', async () => {
+test('the recording uses the board\'s own phase, even after its link was cut', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#routines');
   await press(page, 'Record a drive');
-  await gaitButton(page, 'walk').click();
+  await findGaitButton(page, 'walk').click();
   await waitForBoardGait(page, 'walk');
   // A walk begins with 0.25 s to its first pose, so less than four cycles have passed.
   await page.clock.runFor(4100);
-  await gaitButton(page, 'back').click();
+  await findGaitButton(page, 'back').click();
   await waitForBoardGait(page, 'back');
   await page.clock.runFor(2600);
   // The link is lost: the robot stops by itself after 0.9 s.
@@ -173,10 +173,10 @@ test('the drive of a board is recorded by the board\'s own phase, even if its li
   await waitForBoardGait(page, 'stop');
   await page.clock.runFor(500);
   await press(page, 'Stop recording');
-  assert.match(await text(page, '#routine-said'), /^Recorded: walk 3, back [23]$/);
+  assert.match(await readText(page, '#routine-said'), /^Recorded: walk 3, back [23]$/);
 });
 
-test('steps are changed, moved, copied and deleted by keys alone, and each is undone', async () => {
+test('keys alone can change, move, copy and delete steps, and undo each change', async () => {
   const page = await openRoutine();
   const history = [PATROL];
   const assertSteps = async (edit, expected) => {
@@ -187,7 +187,7 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
   };
   const readFocus = () => page.evaluate(() => document.activeElement?.getAttribute('aria-label'));
   await assertSteps(async () => {
-    await stepInput(page, 2).fill(' walk 5 ');
+    await findStepInput(page, 2).fill(' walk 5 ');
     await page.keyboard.press('Enter');
   }, ['stand 1 s', 'walk 5', 'left 3', 'look 1']);
   const pressButton = async (label) => {
@@ -210,10 +210,10 @@ test('steps are changed, moved, copied and deleted by keys alone, and each is un
   assert.deepEqual(await readSteps(page), PATROL);
 });
 
-test('the list follows the text, and the text follows the list and keeps its other lines', async () => {
+test('the list of steps follows the text, and the text follows the list and keeps its other lines', async () => {
   const page = await openRoutine();
   await unfold(page, '#robot-editor');
-  const editedToml = `${await tomlOf(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
+  const editedToml = `${await readToml(page)}repeat = 3 # rounds\n\n[routine.about]\nsteps = [\n  "left 12", # half a turn\n]\n`;
   await page.locator('#robot-text').fill(editedToml);
   await unfold(page, '#routines');
   assert.deepEqual(await page.locator('#routine option').allInnerTexts(), ['patrol', 'about'], 'before it is used');
@@ -223,34 +223,34 @@ test('the list follows the text, and the text follows the list and keeps its oth
   await page.locator('#routine').selectOption('patrol');
   await press(page, 'Delete step 4');
   await page.waitForFunction((expected) => window.lizard.toml === expected, editedToml.replace('"left 3", "look 1"', '"left 3"'));
-  assert.equal(await page.locator('#robot-text').inputValue(), await tomlOf(page));
+  assert.equal(await page.locator('#robot-text').inputValue(), await readToml(page));
   assert.deepEqual(await page.locator('#gaits button').allInnerTexts().then((names) => names.slice(-2).map((name) => name.trim())), ['patrol', 'about']);
 });
 
-test('while a step is dragged the new path is drawn, and the text changes when the step is released', async () => {
+test('the page draws the new path while a step is dragged, and changes the text when it is released', async () => {
   const page = await openRoutine(['walk 3', 'left 6', 'walk 1']);
   await waitForPrediction(page);
-  const [previousToml, firstTrack] = [await tomlOf(page), await trackPathOf(page)];
+  const [previousToml, firstTrack] = [await readToml(page), await readTrackPath(page)];
   const waitForOtherTrack = () => page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') !== firstTrack, firstTrack);
-  const gripOf = (number) => page.locator('#routine-steps .grip').nth(number - 1);
-  const middleOf = async (number) => {
-    await gripOf(number).scrollIntoViewIfNeeded();
-    const { x, y, width, height } = await gripOf(number).boundingBox();
+  const findGrip = (number) => page.locator('#routine-steps .grip').nth(number - 1);
+  const computeMiddle = async (number) => {
+    await findGrip(number).scrollIntoViewIfNeeded();
+    const { x, y, width, height } = await findGrip(number).boundingBox();
     return [x + width / 2, y + height / 2];
   };
-  await page.mouse.move(...(await middleOf(1)));
+  await page.mouse.move(...(await computeMiddle(1)));
   await page.mouse.down();
-  await page.mouse.move(...(await middleOf(3)), { steps: 5 });
+  await page.mouse.move(...(await computeMiddle(3)), { steps: 5 });
   await waitForOtherTrack();
-  assert.deepEqual(await stepsOf(page), ['left 6', 'walk 1', 'walk 3'], 'the order after a release');
-  assert.equal(await tomlOf(page), previousToml);
-  await page.mouse.move(...(await middleOf(1)), { steps: 5 });
+  assert.deepEqual(await readShownSteps(page), ['left 6', 'walk 1', 'walk 3'], 'the order after a release');
+  assert.equal(await readToml(page), previousToml);
+  await page.mouse.move(...(await computeMiddle(1)), { steps: 5 });
   await page.waitForFunction((firstTrack) => document.querySelector('#routine-path .track').getAttribute('d') === firstTrack, firstTrack);
   await page.mouse.up();
-  assert.equal(await tomlOf(page), previousToml, 'the step is where it was');
-  await page.mouse.move(...(await middleOf(1)));
+  assert.equal(await readToml(page), previousToml, 'the step is back at its place');
+  await page.mouse.move(...(await computeMiddle(1)));
   await page.mouse.down();
-  await page.mouse.move(...(await middleOf(2)), { steps: 5 });
+  await page.mouse.move(...(await computeMiddle(2)), { steps: 5 });
   await page.mouse.up();
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3", "walk 1"]'));
   await waitForOtherTrack();
@@ -264,27 +264,27 @@ test('a finger drags a step, too', async () => {
   const [fromBox, toBox] = [await grip.nth(0).boundingBox(), await grip.nth(1).boundingBox()];
   const x = fromBox.x + fromBox.width / 2;
   await session.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ x, y: fromBox.y + 10 }] });
-  for (let share = 0; share <= 1; share += 0.1) await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: fromBox.y + 10 + share * (toBox.y - fromBox.y + 5) }] });
+  for (let fraction = 0; fraction <= 1; fraction += 0.1) await session.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ x, y: fromBox.y + 10 + fraction * (toBox.y - fromBox.y + 5) }] });
   await session.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
   await page.waitForFunction(() => window.lizard.toml.includes('steps = ["left 6", "walk 3"]'));
 });
 
-test('a mistake is shown at its block with its line and its step, and the previous robot stays in use', async () => {
+test('a mistake is shown at its step with its line, and the previous robot stays in use', async () => {
   const page = await openRoutine();
-  const previousToml = await tomlOf(page);
+  const previousToml = await readToml(page);
   const line = previousToml.split('\n').findIndex((text) => text.startsWith('steps = ')) + 1;
-  await stepInput(page, 2).fill('wolk 4');
+  await findStepInput(page, 2).fill('wolk 4');
   await page.keyboard.press('Enter');
-  const block = page.locator('#routine-steps li', { has: stepInput(page, 2) });
+  const block = page.locator('#routine-steps li', { has: findStepInput(page, 2) });
   const message = `robot.toml:${line}: routine.patrol.steps: step 2, "wolk 4", names the gait "wolk", which does not exist; did you mean "walk"?`;
   await block.getByText(message).waitFor();
   assert.deepEqual(await page.locator('#routine-steps input[aria-invalid="true"]').evaluateAll((inputs) => inputs.map(({ value }) => value)), ['wolk 4']);
-  assert.equal(await tomlOf(page), previousToml);
+  assert.equal(await readToml(page), previousToml);
   assert.ok((await page.locator('#routine-start').isDisabled()) && (await page.locator('#routine-write').isDisabled()));
   assert.equal(await page.locator('#robot-editor').getAttribute('open'), null, 'the text editor stays closed');
   // An invalid step moves unchanged.
   await press(page, 'Move down step 2');
-  await page.locator('#routine-steps li', { has: stepInput(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
+  await page.locator('#routine-steps li', { has: findStepInput(page, 3) }).getByText(message.replace('step 2', 'step 3')).waitFor();
   await waitForSteps(page, ['stand 1 s', 'left 3', 'wolk 4', 'look 1']);
   await page.locator('#routine-undo').click();
   await waitForSteps(page, PATROL);
@@ -293,7 +293,7 @@ test('a mistake is shown at its block with its line and its step, and the previo
   await putRoutine(page, ['walk 1']);
   await waitForSteps(page, ['walk 1']);
   await press(page, 'Delete step 1');
-  await page.getByText('routine.patrol.steps has 0 steps; it must have 1 to 99').first().waitFor();
+  await page.getByText('routine.patrol.steps has 0 steps; it must have between 1 and 99').first().waitFor();
   await press(page, 'Add a step');
   await waitForSteps(page, ['stand 1 s']);
 });
@@ -306,10 +306,10 @@ test('an invalid or existing name is refused, and the recorded steps stay', asyn
   await press(page, 'Stop recording');
   assert.equal(await page.locator('#routine-name').inputValue(), 'patrol-2', 'the name patrol is in use');
   for (const [name, refusal] of [
-    ['walk', 'routine.walk has the name of a gait; give it another one'],
-    ['stop', 'routine.stop is not a routine name: "stop" is a command of the console'],
-    ['a"b', 'it must be lower-case letters, digits and dashes, a letter first'],
-    ['patrol', 'patrol is there already: give it another name.'],
+    ['walk', 'routine.walk has the name of a gait; choose another name'],
+    ['stop', 'routine.stop is not a routine name: "stop" is a console command'],
+    ['a"b', 'it must consist of lower-case letters, digits and dashes, and begin with a letter'],
+    ['patrol', 'The routine patrol already exists; choose another name.'],
   ]) {
     await page.locator('#routine-name').fill(name);
     await press(page, 'Keep it');
@@ -329,22 +329,22 @@ test('a step that waits forever, or a large number of steps, does not block the 
 
 test('a routine is written to a board, started by its name, and reports its end', async () => {
   const page = await openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']);
-  // Until it is written, the board has the robot without it.
+  // Until the routine is written, the board's robot does not have it.
   await press(page, 'Start it');
-  await runUntil(page, 'the command is refused', async () => (await text(page, '#drive-said')) === 'patrol: unknown command, send help for the list');
+  await runUntil(page, 'the command is refused', async () => (await readText(page, '#drive-said')) === 'patrol: unknown command; send help for the list');
   await press(page, 'Write it to the board');
   await waitForText(page, '#routine-said', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(6000);
   await page.evaluate(() => (window.receivedText = ''));
-  await gaitButton(page, 'patrol').click();
+  await findGaitButton(page, 'patrol').click();
   await waitForBoardGait(page, 'patrol');
-  // While the robot rests, the routine is still under way, and the page keeps sending lines.
+  // The routine is not over while the robot rests, so the page keeps sending lines.
   await page.clock.runFor(3500);
-  assert.equal(await gaitOf(page), 'patrol');
+  assert.equal(await readGait(page), 'patrol');
   assert.ok(!(await page.evaluate(() => window.receivedText)).includes('deadman 0'));
   await runUntil(page, 'the routine is done', async () => (await page.locator('#log div', { hasText: /^# done$/ }).count()) === 1, 20);
   await page.clock.runFor(600);
-  assert.equal(await gaitOf(page), 'stop');
+  assert.equal(await readGait(page), 'stop');
   assert.match(await page.evaluate(() => window.receivedText), /deadman 901\n[^]*patrol\n[^]*deadman 0\n/);
 });
 
@@ -354,7 +354,7 @@ test('a resting routine is stopped when the page is hidden', async () => {
   await page.locator('#flash-robot').evaluate((button) => button.click());
   await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
   await page.clock.runFor(6000);
-  await gaitButton(page, 'patrol').click();
+  await findGaitButton(page, 'patrol').click();
   await waitForBoardGait(page, 'patrol');
   await page.clock.runFor(3500);
   await page.evaluate(() => (window.receivedText = ''));
@@ -363,36 +363,36 @@ test('a resting routine is stopped when the page is hidden', async () => {
   assert.match(await page.evaluate(() => window.receivedText), /^stop\n/);
 });
 
-test('unplugging a board while a routine is written is reported, and the board gets the routine later', async () => {
+test('the page reports a board that is unplugged while a routine is written, and writes the routine later', async () => {
   const page = await openBoardWithRoutine(['walk 1']);
   await press(page, 'Write it to the board');
   await waitForText(page, '#routine-said', /^writing/, 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
-  await waitForText(page, '#routine-said', /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/);
+  await waitForText(page, '#routine-said', /^not written: .*\. The board now has an incomplete robot: its firmware reports fault=robot and moves no servo\. Write the robot again$/);
   assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
   await reconnect(page);
-  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await runUntil(page, 'the board sends its banner', async () => (await readText(page, '#where')) === 'on a board on USB with this firmware but no robot: write this robot');
   await press(page, 'Write it to the board');
   await waitForText(page, '#routine-said', /^written and verified/);
 });
 
-test('with a firmware for another robot format the page says what to write', async () => {
+test('a robot whose format the firmware does not read is reported as missing', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => {
     const { start } = window.lizard.description;
     window.attachedBoard.flash[start + 4] ^= 1;
     window.attachedBoard.reset('external');
   });
-  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
-  await page.locator('#log div', { hasText: '# fault: the robot in the flash is for another version, write it again' }).waitFor();
+  await runUntil(page, 'the board sends its banner', async () => (await readText(page, '#where')) === 'on a board on USB with this firmware but no robot: write this robot');
+  await page.locator('#log div', { hasText: '# fault: the robot in the flash is for another version; write it again' }).waitFor();
 });
 
 test('two pages in one browser each keep their own routine', async () => {
   const firstPage = await openRoutine();
   const [secondPage] = await Promise.all([firstPage.waitForEvent('popup'), firstPage.evaluate((address) => void window.open(address), address())]);
   await secondPage.waitForFunction(() => window.lizard);
-  // The second page begins with the robot that the first page has stored, and then has its own changes.
+  // The second page starts with the robot that the first page has stored, and then has its own changes.
   assert.deepEqual(await readSteps(secondPage), PATROL);
   const ownRoutines = [[firstPage, ['right 2']], [secondPage, ['left 2']]];
   for (const [page, expected] of ownRoutines) {

@@ -3,36 +3,31 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlank, complaints, openPage, overflow, openStanding, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, openBlank, complaints, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
 
 useBrowser();
 
 const PORTRAIT = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 const LANDSCAPE = { viewport: { width: 844, height: 390 }, hasTouch: true, isMobile: true };
 
-/** Returns the screen position of an element, CSS pixels. */
-const boxOf = (page, selector) =>
-  page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
-const screenSize = (page) => page.evaluate(() => ({ width: innerWidth, height: innerHeight }));
-
 async function isOnScreen(page, selector) {
-  const [{ top, bottom, left, right }, { width, height }] = [await boxOf(page, selector), await screenSize(page)];
+  const [{ top, bottom, left, right }, { width, height }] = [await readBox(page, selector), await page.evaluate(() => ({ width: innerWidth, height: innerHeight }))];
   return top >= 0 && left >= 0 && bottom <= height && right <= width;
 }
 
 /** Moves a finger from the middle of an element, some pixels to the right and down. */
 async function swipe(page, selector, rightPx, downPx) {
-  const { left, top, width, height } = await boxOf(page, selector);
+  const { left, top, width, height } = await readBox(page, selector);
   const session = await withTimeout('the touch screen', page.context().newCDPSession(page));
   const sendTouch = (type, touchPoints) => withTimeout('a finger', session.send('Input.dispatchTouchEvent', { type, touchPoints }));
-  const touchesAt = (share) => [{ x: left + width / 2 + share * rightPx, y: top + height / 2 + share * downPx }];
-  await sendTouch('touchStart', touchesAt(0));
-  for (let step = 1; step <= 20; step++) await sendTouch('touchMove', touchesAt(step / 20));
+  const makeTouches = (fraction) => [{ x: left + width / 2 + fraction * rightPx, y: top + height / 2 + fraction * downPx }];
+  await sendTouch('touchStart', makeTouches(0));
+  for (let step = 1; step <= 20; step++) await sendTouch('touchMove', makeTouches(step / 20));
   await sendTouch('touchEnd', []);
 }
 
-for (const [name, options] of [['upright', PORTRAIT], ['on its side', LANDSCAPE]]) {
-  test(`Stop is on the screen of a phone ${name}, wherever the page is scrolled to`, async () => {
+for (const [name, options] of [['held upright', PORTRAIT], ['held sideways', LANDSCAPE]]) {
+  test(`Stop stays on the screen of a phone ${name} while the page scrolls`, async () => {
     const page = await openStanding(options);
     for (const panel of ['#world', '#power', '#keep']) await unfold(page, panel);
     await page.evaluate(() => scrollTo(0, 0));
@@ -53,8 +48,8 @@ for (const [name, options] of [['upright', PORTRAIT], ['on its side', LANDSCAPE]
     for (const selector of ['#floor', '#gaits', '#reset', '#speed']) {
       assert.ok(await isOnScreen(page, selector), selector);
     }
-    const { height } = await boxOf(page, '#floor');
-    assert.ok(height > 280, `${height} pixels of floor`);
+    const { height } = await readBox(page, '#floor');
+    assert.ok(height > 280, `height of the floor: ${height} pixels`);
   });
 }
 
@@ -73,22 +68,22 @@ test('a finger that moves up over the floor scrolls the page', async () => {
 });
 
 /** Returns the zoom of the floor, CSS pixels per mm. */
-const zoomOf = (page) => page.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
+const readZoom = (page) => page.evaluate(() => Number(document.querySelector('#floor').dataset.zoom));
 
 test('the wheel scrolls the page, and zooms with Ctrl as long as the robot stays visible', async () => {
   const page = await openStanding({ viewport: { width: 1400, height: 700 } });
   await page.goto(`${address()}#room=gaits`);
   await page.waitForFunction(() => document.querySelector('#floor').dataset.zoom);
-  const firstZoom = await zoomOf(page);
-  const { left, top } = await boxOf(page, '#floor');
+  const firstZoom = await readZoom(page);
+  const { left, top } = await readBox(page, '#floor');
   await page.mouse.move(left + 200, top + 200);
   await page.mouse.wheel(0, 300);
   await page.waitForFunction(() => scrollY > 100);
-  assert.equal(await zoomOf(page), firstZoom);
+  assert.equal(await readZoom(page), firstZoom);
   await page.evaluate(() => scrollTo(0, 0));
   await page.locator('#floor').dispatchEvent('wheel', { deltaY: 5000, ctrlKey: true, offsetX: 200, offsetY: 200 });
   await page.waitForFunction((firstZoom) => Number(document.querySelector('#floor').dataset.zoom) < firstZoom, firstZoom);
-  assert.ok(250 * (await zoomOf(page)) > 60, 'pixels for a robot of 250 mm');
+  assert.ok(250 * (await readZoom(page)) > 60, 'pixels for a robot of 250 mm');
   // The button resets the view, wherever it was.
   const follow = page.getByRole('button', { name: 'Follow' });
   await page.locator('#floor').press('ArrowLeft');
@@ -102,20 +97,20 @@ test('forced colours show which button is pressed and how long a bar is', async 
   const page = await openStanding({ forcedColors: 'active' });
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 300);
-  const colourOf = (selector) =>
+  const readColour = (selector) =>
     page.evaluate((selector) => getComputedStyle(document.querySelector(selector)).backgroundColor, selector);
-  const [pressedColour, otherColour] = ['walk', 'trot'].map((name) => colourOf(`#gaits button[data-command="${name}"]`));
+  const [pressedColour, otherColour] = ['walk', 'trot'].map((name) => readColour(`#gaits button[data-command="${name}"]`));
   assert.notEqual(await pressedColour, await otherColour);
-  const barColours = await Promise.all(['.bar .track', '.bar .fill', '.bar .limit'].map(colourOf));
+  const barColours = await Promise.all(['.bar .track', '.bar .fill', '.bar .limit'].map(readColour));
   assert.equal(new Set(barColours).size, 3, barColours.join());
 });
 
 for (const [name, viewport] of [
-  ['320 pixels', { width: 320, height: 568 }],
+  ['a narrow phone', { width: 320, height: 568 }],
   ['a tablet', { width: 768, height: 1024 }],
-  ['a large desk', { width: 3840, height: 2160 }],
+  ['a large desktop', { width: 3840, height: 2160 }],
 ]) {
-  test(`at a width of ${name} with every panel open, nothing is outside the screen`, async () => {
+  test(`with every panel open, everything fits the width of ${name}`, async () => {
     const page = await openStanding({ viewport });
     for (const panel of ['#lengths-panel', '#calibrate', '#flash', '#world', '#gait-editor', '#maps']) {
       await unfold(page, panel);
@@ -125,13 +120,13 @@ for (const [name, viewport] of [
           .filter((node) => node.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
           .map(({ id, textContent }) => id || textContent),
       );
-      assert.equal(await overflow(page), 0);
+      assert.equal(await measureOverflow(page), 0);
       assert.deepEqual(outsideTexts, []);
     }
   });
 }
 
-test('on a touch screen no keys are mentioned, and the list of robots shows full names', async () => {
+test('a touch screen shows no keys, and the list of robots shows full names', async () => {
   for (const viewport of [{ width: 360, height: 640 }, { width: 844, height: 390 }, { width: 1024, height: 1366 }]) {
     const page = await openStanding({ viewport, hasTouch: true, isMobile: true });
     for (const room of ['drive', 'build', 'board']) {
@@ -145,14 +140,14 @@ test('on a touch screen no keys are mentioned, and the list of robots shows full
       pen.font = getComputedStyle(list).font;
       const textWidth = Math.max(...['robot', 'large', 'paper'].map((name) => pen.measureText(name).width));
       const { paddingLeft, paddingRight } = getComputedStyle(list);
-      // The arrow of the list is as wide as a letter is high.
+      // The arrow of the list is about 18 pixels wide.
       return list.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - 18 - textWidth;
     });
-    assert.ok(sparePixels >= 0, `${sparePixels} pixels of ${viewport.width}`);
+    assert.ok(sparePixels >= 0, `${sparePixels} spare pixels at a width of ${viewport.width}`);
   }
 });
 
-test('without JavaScript the page says what it needs', async () => {
+test('without JavaScript the page states its requirements', async () => {
   const page = await openBlank({ javaScriptEnabled: false });
   await page.goto(address());
   const message = page.locator('noscript p');
@@ -160,7 +155,7 @@ test('without JavaScript the page says what it needs', async () => {
   assert.match(await message.innerText(), /which are switched off here/);
 });
 
-test('a page that was opened as a file says what it needs', async () => {
+test('a page that was opened as a file states its requirement', async () => {
   const page = await openBlank();
   await page.goto(new URL('../dist/index.html', import.meta.url).href);
   await page.locator('#where', { hasText: 'it needs a web server' }).waitFor();
@@ -181,7 +176,7 @@ test('long names of gaits fit on their buttons', async () => {
   }
 });
 
-test('robots for tests are listed last, under a heading', async () => {
+test('the list of robots ends with the robots for tests, under a heading', async () => {
   const page = await openPage();
   const [plainNames, testNames] = await page.evaluate(() =>
     ['#robot > option', '#robot > optgroup[label="for tests"] > option'].map((selector) =>
@@ -192,17 +187,17 @@ test('robots for tests are listed last, under a heading', async () => {
   assert.deepEqual(testNames, ['own-gaits', 'unequal']);
 });
 
-test('a word of the page that the core does not know is reported', async () => {
+test('the page reports a word that the core does not have', async () => {
   const page = await openBlank();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
   const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');
   await page.route('**/lizard.wasm', (route) => route.fulfill({ body, contentType: 'application/wasm' }));
   await page.goto(address());
-  await page.locator('#problems', { hasText: 'The core does not know these words of the page: factory.' }).waitFor();
+  await page.locator('#problems', { hasText: 'The page sends words that the core does not have: factory.' }).waitFor();
 });
 
-test('the core knows every word that a button sends', async () => {
+test('the core has every word that a button sends', async () => {
   const page = await openStanding();
   assert.equal(await page.locator('#problems').isVisible(), false);
   const sentCommands = await page.locator('[data-command]').evaluateAll((buttons) => buttons.map(({ dataset }) => dataset.command));

@@ -8,39 +8,39 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, connect, waitForText, sendToBoard } from './board.js';
-import { advance, complaints, openStanding, overflow, openPage, TIMEOUT_MS, text, unfold, useBrowser, download } from './browser.js';
+import { advance, complaints, openStanding, measureOverflow, openPage, TIMEOUT_MS, readText, unfold, useBrowser, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeFolder } from './folder.js';
 
 useBrowser();
 
-/** Arduino pins of A1 to A4, as robot.toml has them. */
+/** Arduino pins of A1 to A4 in robot.toml. */
 const PINS = [9, 10, 11, 3];
-const dialogOf = (page) => page.locator('#setup');
+const findDialog = (page) => page.locator('#setup');
 const press = async (page, name) => {
-  await dialogOf(page).scrollIntoViewIfNeeded();
-  await dialogOf(page).getByRole('button', { name, exact: true }).click();
+  await findDialog(page).scrollIntoViewIfNeeded();
+  await findDialog(page).getByRole('button', { name, exact: true }).click();
 };
 const goToStep = async (page, name) => {
-  await dialogOf(page).scrollIntoViewIfNeeded();
-  await dialogOf(page).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
+  await findDialog(page).scrollIntoViewIfNeeded();
+  await findDialog(page).getByRole('list', { name: 'Steps' }).getByRole('button', { name: new RegExp(`${name}$`) }).click();
 };
-const pulseWidthsOf = (page) => page.evaluate((pins) => pins.map((pin) => window.pulseWidthsUs[pin]), PINS);
+const readPulseWidths = (page) => page.evaluate((pins) => pins.map((pin) => window.pulseWidthsUs[pin]), PINS);
 
 /** Advances the clock until the dialog shows this message. */
 const waitForMessage = (page, pattern) => waitForText(page, '#setup-said', pattern);
-/** Advances the clock until the dialog says that the board has this firmware and this robot. */
+/** Advances the clock until the dialog reports that the board has this firmware and this robot. */
 const waitForThisRobot = (page) =>
-  runUntil(page, 'the board greets', async () => (await dialogOf(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
+  runUntil(page, 'the board sends its banner', async () => (await findDialog(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
 /** Types a number into a box of the dialog. */
 async function typeNumber(page, label, number) {
-  await dialogOf(page).getByLabel(label).fill(number);
-  await dialogOf(page).getByLabel(label).press('Enter');
+  await findDialog(page).getByLabel(label).fill(number);
+  await findDialog(page).getByLabel(label).press('Enter');
 }
 /** Leaves the dialog, and waits until it is closed. */
 async function leave(page) {
   await press(page, 'Leave');
-  await runUntil(page, 'the dialog is closed', async () => !(await dialogOf(page).isVisible()));
+  await runUntil(page, 'the dialog is closed', async () => !(await findDialog(page).isVisible()));
 }
 
 /** Presses a button and waits for a message. */
@@ -59,58 +59,58 @@ async function readCalibration(page) {
   return (await page.locator('#log div', { hasText: /^# A\d trim/ }).allInnerTexts()).slice(-4);
 }
 
-test('a new UNO becomes a calibrated robot that walks, and lizard calibrate restore accepts its file', async () => {
+test('the first connection turns a new UNO into a calibrated robot, and lizard calibrate restore accepts its file', async () => {
   const page = await openWithErasedBoard();
-  await dialogOf(page).getByText('2 of 9: Write the firmware').waitFor();
-  await dialogOf(page).getByText('The board on USB is a UNO by its boot loader, and this firmware is not on it.').waitFor();
+  await findDialog(page).getByText('2 of 9: Write the firmware').waitFor();
+  await findDialog(page).getByText('The board on USB is a UNO according to its boot loader, without this firmware.').waitFor();
   await pressAndWait(page, 'Write firmware and robot', /^written and verified in [\d.]+ s$/);
   await waitForThisRobot(page);
-  await press(page, 'Go on');
+  await press(page, 'Continue');
 
   // The servos get power now, so there must be no pulses.
-  await pressAndWait(page, 'Let the servos rest', /^No pulses now/);
+  await pressAndWait(page, 'Let the servos rest', /^The pulses have ended/);
   await page.clock.runFor(200);
   await page.evaluate(() => (window.pulseWidthsUs = {}));
   await page.clock.runFor(500);
-  assert.deepEqual(await pulseWidthsOf(page), [undefined, undefined, undefined, undefined]);
+  assert.deepEqual(await readPulseWidths(page), [undefined, undefined, undefined, undefined]);
 
-  // Horns: the pulse at each pin is that of the servo's middle.
+  // Horns: each pin has the pulse width of the middle position.
   await pressAndWait(page, 'Turn all servos to their middle', /1500 µs/);
-  assertNear(await pulseWidthsOf(page), [1500, 1500, 1500, 1500], 0.5, 'pulse width of the middle, us');
+  assertNear(await readPulseWidths(page), [1500, 1500, 1500, 1500], 0.5, 'pulse widths in the middle position, us');
 
   // Signs: A2 is mounted upside down, so the user answers no.
   await goToStep(page, 'Signs');
   for (const [servo, isReversed] of [[1, false], [2, true], [3, false], [4, false]]) {
-    await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-    assertNear(await pulseWidthsOf(page), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'one servo alone');
+    await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} received the command to turn by 10° counter-clockwise`));
+    assertNear(await readPulseWidths(page), [1, 2, 3, 4].map((n) => (n === servo ? 1600 : 1500)), 0.6, 'pulse widths with one turned servo, us');
     if (isReversed) {
-      await pressAndWait(page, 'No, the other way', new RegExp(`^The sign of A${servo} is "-" now`));
-      await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} was told to turn 10° counter-clockwise`));
-      assertNear(await pulseWidthsOf(page), [1500, 1400, 1500, 1500], 0.6, 'the other direction');
+      await pressAndWait(page, 'No, in the other direction', new RegExp(`^The sign of A${servo} is now "-"`));
+      await pressAndWait(page, `Turn A${servo}`, new RegExp(`^A${servo} received the command to turn by 10° counter-clockwise`));
+      assertNear(await readPulseWidths(page), [1500, 1400, 1500, 1500], 0.6, 'pulse widths after the reversal, us');
     }
     await press(page, 'Yes');
   }
-  await waitForMessage(page, /^All four turn the right way/);
-  await dialogOf(page).getByText('5 of 9: Straighten the cranks').waitFor();
+  await waitForMessage(page, /^All four servos turn in the right direction/);
+  await findDialog(page).getByText('5 of 9: Straighten the cranks').waitFor();
 
   await press(page, 'A3 back right');
   await pressAndWait(page, '↻ 0.5°', /^The trim of A3 is -0\.50°/);
   await pressAndWait(page, '↺ 0.1°', /^The trim of A3 is -0\.40°/);
 
   await goToStep(page, 'Scale');
-  await pressAndWait(page, 'Turn A1', /^A1 was told to turn 30°/);
-  assertNear(await pulseWidthsOf(page), [1200, 1500, 1496, 1500], 0.6, 'thirty degrees in the safe direction');
-  await typeNumber(page, 'It turned by, degrees', '27.75');
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 30°/);
+  assertNear(await readPulseWidths(page), [1200, 1500, 1496, 1500], 0.6, 'pulse widths after 30 deg in the safe direction, us');
+  await typeNumber(page, 'Measured angle, degrees', '27.75');
   // 10 us per degree, times 30, divided by 27.75.
   await waitForMessage(page, /^The scale of A1 is 10\.81 µs per degree/);
   // A new scale does not move the horn, so the trim in degrees changes.
   await press(page, 'A3 back right');
-  await pressAndWait(page, 'Turn A3', /^A3 was told to turn 30°/);
-  await typeNumber(page, 'It turned by, degrees', '27.75');
+  await pressAndWait(page, 'Turn A3', /^A3 received the command to turn by 30°/);
+  await typeNumber(page, 'Measured angle, degrees', '27.75');
   await waitForMessage(page, /^The scale of A3 is 10\.81 µs per degree/);
   await waitForText(page, '#doing', /^stand$/);
   await page.clock.runFor(500);
-  assertNear(await pulseWidthsOf(page), [1500, 1500, 1496, 1500], 0.6, 'the neutral pose is unchanged');
+  assertNear(await readPulseWidths(page), [1500, 1500, 1496, 1500], 0.6, 'pulse widths in the neutral pose, us');
 
   await goToStep(page, 'Limits');
   await waitForText(page, '#doing', /^stand$/);
@@ -118,22 +118,22 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   await pressAndWait(page, '↻ 5°', /^A4 points to 216\.41°/);
   await press(page, 'A4 back left');
   await typeNumber(page, 'From, degrees', '150');
-  await waitForMessage(page, /^A4 goes from 150\.00° to 311\.41°/);
+  await waitForMessage(page, /^A4 travels from 150\.00° to 311\.41°/);
 
   await goToStep(page, 'First walk');
-  assert.equal(await dialogOf(page).getByText('Not proven yet').count(), 0);
+  assert.equal(await findDialog(page).getByText('Not checked yet').count(), 0);
   await waitForText(page, '#doing', /^stand$/);
-  await pressAndWait(page, 'Let it walk', /^The robot does "walk"/);
+  await pressAndWait(page, 'Walk', /^The robot has started "walk"/);
   const startY = await page.evaluate(() => window.lizard.last.place.y);
   await page.clock.runFor(3000);
   assert.ok((await page.evaluate(() => window.lizard.last.place.y)) - startY > 10, 'the robot walks');
-  await pressAndWait(page, 'Let it stand', /^The robot stands/);
+  await pressAndWait(page, 'Stand', /^The robot stands/);
 
-  await dialogOf(page).getByRole('button', { name: 'Save it before', exact: true }).waitFor();
+  await findDialog(page).getByRole('button', { name: 'Save first', exact: true }).waitFor();
   await goToStep(page, 'Keep');
-  await dialogOf(page).getByText('Not saved yet.').waitFor();
-  await pressAndWait(page, 'Save in the board', /^Saved: the board begins with it/);
-  const { bytes } = await download(page, dialogOf(page).getByRole('button', { name: 'Save as a file', exact: true }));
+  await findDialog(page).getByText('Not saved yet.').waitFor();
+  await pressAndWait(page, 'Save in the board', /^Saved: the board starts with it/);
+  const { bytes } = await download(page, findDialog(page).getByRole('button', { name: 'Save as a file', exact: true }));
 
   // The restarted board has the calibration, and the host's program accepts the saved file.
   await page.evaluate(() => window.attachedBoard.reset('external'));
@@ -149,36 +149,36 @@ test('a new UNO becomes a calibrated robot that walks, and lizard calibrate rest
   const root = new URL('../..', import.meta.url).pathname;
   const robotArgs = ['--sim', '--robot', 'robot.toml'];
   const { stdout } = await promisify(execFile)(process.env.LIZARD, ['calibrate', 'restore', calibrationFile, ...robotArgs], { cwd: root, timeout: TIMEOUT_MS });
-  assert.match(stdout, /has accepted and saved the calibration of .*/);
+  assert.match(stdout, /has accepted and saved the calibration from .*/);
 });
 
-test('a board with another robot is recognized, and gets only the page\'s robot written', async () => {
+test('a board with another robot is recognized, and gets only the page\'s robot', async () => {
   const page = await openWithBoard('large', 5000);
-  await dialogOf(page).getByText('has this firmware and another robot, large ').waitFor();
+  await findDialog(page).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(page, 'Write this robot alone', /^written and verified in [\d.]+ s$/);
   await waitForThisRobot(page);
 });
 
-test('a board that does not answer is reported, and no step is a dead end', async () => {
+test('the dialog reports a board that does not answer, and every step leads back to the board', async () => {
   const page = await openWithDeafBoard();
-  await runUntil(page, 'the dialog reports it', () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
+  await runUntil(page, 'the dialog reports it', () => findDialog(page).getByText('answers neither like this firmware nor like a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: no boot loader answers/);
   await goToStep(page, 'Horns');
-  await dialogOf(page).getByText('No robot with this firmware answers').waitFor();
+  await findDialog(page).getByText('No robot with this firmware answers').waitFor();
   await press(page, 'To the board');
   await press(page, 'Disconnect');
   await waitForText(page, '#where', /simulated UNO/);
 });
 
-test('a board that sends random bytes is not mistaken for a robot', async () => {
+test('the page does not mistake a board that sends random bytes for a robot', async () => {
   const page = await openWithBoard('robot', 0, { boardSendsGarbage: true });
-  await runUntil(page, 'the page asks about the board', async () => dialogOf(page).getByText('answers neither as this firmware nor as a boot loader').isVisible());
+  await runUntil(page, 'the page asks about the board', async () => findDialog(page).getByText('answers neither like this firmware nor like a boot loader').isVisible());
   await pressAndWait(page, 'Write firmware and robot', /^not written: /);
   const lengths = await page.locator('#log div').evaluateAll((lines) => lines.map(({ textContent }) => textContent.length));
-  assert.ok(Math.max(0, ...lengths) < 1000, 'a line that never ends is cut');
+  assert.ok(Math.max(0, ...lengths) < 1000, 'an endless line is truncated');
 });
 
-test('unplugging the board is reported at any step, and the dialog continues where it was', async () => {
+test('the dialog reports an unplugged board at any step, and keeps the step', async () => {
   const page = await openPage({}, installFakeSerial);
   const names = await page.locator('#setup-steps button').allTextContents();
   assert.equal(names.length, 9);
@@ -188,30 +188,30 @@ test('unplugging the board is reported at any step, and the dialog continues whe
     await goToStep(page, name);
     await page.clock.runFor(400);
     // The cable is pulled during the step's action, if it has one.
-    const mainButtons = dialogOf(page).locator('#setup-what button.main');
+    const mainButtons = findDialog(page).locator('#setup-what button.main');
     const mainButton = (await mainButtons.count()) > 0 && !['Board', 'Firmware'].includes(name) ? mainButtons.first() : null;
     if (mainButton) await mainButton.click();
     await page.clock.runFor(60);
     await page.evaluate(() => window.unplug());
-    await waitForMessage(page, /is not connected any more/);
-    assert.match(await text(page, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
-    assert.equal(await dialogOf(page).getAttribute('aria-busy'), 'false', 'no action waits forever');
+    await waitForMessage(page, /is no longer connected/);
+    assert.match(await readText(page, '#setup-step'), new RegExp(`^${names.indexOf(name) + 1} of 9`), 'the step is kept');
+    assert.equal(await findDialog(page).getAttribute('aria-busy'), 'false', 'no action is pending');
   }
 });
 
-test('a board that is unplugged while it is written is reported, and can be written when it is back', async () => {
+test('a board that was unplugged during writing can be written after it is connected again', async () => {
   const page = await openWithErasedBoard();
   await press(page, 'Write firmware and robot');
   await page.clock.runFor(1500);
   await page.evaluate(() => window.unplug());
-  await waitForMessage(page, /is not connected any more|not written/);
+  await waitForMessage(page, /is no longer connected|not written/);
   await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
   await connect(page, { attachedBoard: undefined });
   await page.clock.runFor(8000);
   await pressAndWait(page, 'Write firmware and robot', /^written and verified/);
 });
 
-test('an action that began on a board does not continue in the simulation when the board is unplugged', async () => {
+test('an action on a board does not continue in the simulation after the board is unplugged', async () => {
   const page = await openWithBoard('robot', 4500);
   await goToStep(page, 'Trims');
   await page.clock.runFor(500);
@@ -219,16 +219,16 @@ test('an action that began on a board does not continue in the simulation when t
   for (const name of ['Trims', 'Keep', 'Firmware']) {
     await goToStep(page, name);
     await page.clock.runFor(500);
-    await dialogOf(page).locator('#setup-what').getByText('The board is not connected any more.').waitFor();
-    assert.deepEqual(await dialogOf(page).locator('#setup-what button').allInnerTexts(), ['Connect it again…', 'Try this step on the simulated UNO'], name);
+    await findDialog(page).locator('#setup-what').getByText('The board is no longer connected.').waitFor();
+    assert.deepEqual(await findDialog(page).locator('#setup-what button').allInnerTexts(), ['Connect it again…', 'Try this step on the simulated UNO'], name);
   }
   await press(page, 'Try this step on the simulated UNO');
-  await dialogOf(page).getByText('to the simulated UNO').waitFor();
+  await findDialog(page).getByText('to the simulated UNO').waitFor();
 });
 
 test('the robot does not walk while it is being assembled', async () => {
   const page = await openWithBoard('robot', 8000);
-  await runUntil(page, 'the gaits are predicted', async () => (await text(page, '#gaits button[data-command="walk"] small')) !== '');
+  await runUntil(page, 'the gaits are predicted', async () => (await readText(page, '#gaits button[data-command="walk"] small')) !== '');
   await goToStep(page, 'Trims');
   await page.clock.runFor(500);
   const previousLength = (await page.evaluate(() => window.receivedText)).length;
@@ -249,18 +249,18 @@ test('the robot does not walk while it is being assembled', async () => {
   await runUntil(page, 'the robot is stopped', async () => (await page.evaluate(() => window.lizard.gait)) !== 'walk');
 });
 
-test('a restart of the board is reported, with the loss of unsaved settings', async () => {
+test('the dialog reports a restarted board and the loss of unsaved settings', async () => {
   const page = await openWithBoard('robot', 4500);
-  await dialogOf(page).getByText('3 of 9: Fit the horns').waitFor();
+  await findDialog(page).getByText('3 of 9: Fit the horns').waitFor();
   await goToStep(page, 'Trims');
   await page.clock.runFor(500);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   await page.evaluate(() => window.attachedBoard.reset('external'));
-  await waitForMessage(page, /^The board has restarted\. What was not saved is lost\.$/);
+  await waitForMessage(page, /^The board has restarted\. Unsaved settings are lost\.$/);
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
 });
 
-test('leaving restores the robot, and the dialog opens again at the same step', async () => {
+test('leaving restores the calibration, and the dialog opens again at the same step', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Trims');
@@ -268,21 +268,21 @@ test('leaving restores the robot, and the dialog opens again at the same step', 
   await pressAndWait(page, '↺ 0.5°', /^The trim of A1 is 0\.50°/);
   assert.notDeepEqual(await readCalibration(page), previousCalibration);
   await leave(page);
-  await page.getByText('the robot has the calibration that it had before').waitFor();
+  await page.getByText('the robot has its previous calibration').waitFor();
   assert.deepEqual(await readCalibration(page), previousCalibration);
   await page.locator('#setup-open').click();
-  await dialogOf(page).getByText('5 of 9: Straighten the cranks').waitFor();
-  // A sign that is proven stays proven when the dialog opens again.
+  await findDialog(page).getByText('5 of 9: Straighten the cranks').waitFor();
+  // A checked sign stays checked when the dialog opens again.
   await goToStep(page, 'Signs');
-  await pressAndWait(page, 'Turn A1', /^A1 was told to turn 10°/);
+  await pressAndWait(page, 'Turn A1', /^A1 received the command to turn by 10°/);
   await press(page, 'Yes');
   await leave(page);
   await page.locator('#setup-open').click();
   await goToStep(page, 'First walk');
-  await dialogOf(page).getByText('Not proven yet: the sign of A2, A3, A4.').waitFor();
+  await findDialog(page).getByText('Not checked yet: the sign of A2, A3, A4.').waitFor();
 });
 
-test('leaving reverts a setting whose answer was lost, and saving stores the settings that the step shows', async () => {
+test('leaving reverts a setting whose answer was lost, and saving stores the shown settings', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
   const setTrimWithoutAnswer = async () => {
@@ -292,7 +292,7 @@ test('leaving reverts a setting whose answer was lost, and saving stores the set
       window.originalOnByte = window.attachedBoard.onByte;
       window.attachedBoard.onByte = () => {};
     });
-    await pressAndWait(page, '↺ 0.5°', /^The robot has not answered "trim 1 0\.50"\.$/);
+    await pressAndWait(page, '↺ 0.5°', /^The robot did not answer "trim 1 0\.50"\.$/);
     await page.evaluate(() => (window.attachedBoard.onByte = window.originalOnByte));
   };
   await setTrimWithoutAnswer();
@@ -303,19 +303,19 @@ test('leaving reverts a setting whose answer was lost, and saving stores the set
   await page.locator('#setup-open').click();
   await setTrimWithoutAnswer();
   await goToStep(page, 'Keep');
-  await pressAndWait(page, 'Save in the board', /^Saved: the board begins with it/);
-  await dialogOf(page).getByRole('row', { name: /^A1, front left \+ 0\.50°/ }).waitFor();
+  await pressAndWait(page, 'Save in the board', /^Saved: the board starts with it/);
+  await findDialog(page).getByRole('row', { name: /^A1, front left \+ 0\.50°/ }).waitFor();
   assert.match((await readCalibration(page))[0], /^# A1 trim 0\.50 /);
 });
 
-test('a refusal by the robot is shown in its own words, and changes nothing', async () => {
+test('the dialog quotes a refusal by the robot and keeps the calibration', async () => {
   const page = await openWithBoard('robot', 4500);
   const previousCalibration = await readCalibration(page);
   await goToStep(page, 'Limits');
   await page.clock.runFor(1000);
   await typeNumber(page, 'From, degrees', '125');
-  await waitForMessage(page, /^The robot refuses "limit 1 125\.00 228\.59": A1 would not reach what the gaits need/);
-  assert.equal(await dialogOf(page).getByLabel('From, degrees').inputValue(), '48.59');
+  await waitForMessage(page, /^The robot refuses "limit 1 125\.00 228\.59": A1's travel must cover the gaits' range/);
+  assert.equal(await findDialog(page).getByLabel('From, degrees').inputValue(), '48.59');
   assert.deepEqual(await readCalibration(page), previousCalibration);
 });
 
@@ -324,20 +324,20 @@ boot = "stand"
 deadman = 0
 ${[1, 2, 3, 4].map((n) => `[servo.A${n}]\ntrim = ${n}.25\nlimit = [${[48.59, 311.41, 228.59, 131.41][n - 1]}, ${[228.59, 131.41, 48.59, 311.41][n - 1]}]\ndir = "+"\nscale = 10.0\n`).join('')}`;
 
-test('a saved calibration file is sent to the robot, and an invalid one is refused with its mistake', async () => {
+test('the page sends a valid calibration file to the robot and reports the error in an invalid file', async () => {
   const page = await openWithBoard('robot', 4500);
   await goToStep(page, 'Keep');
   await page.clock.runFor(1500);
   const openFile = (name, body) =>
-    dialogOf(page).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
+    findDialog(page).getByLabel('Open a saved file').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(body) });
   await openFile('mine.toml', SAVED_CALIBRATION);
-  await waitForMessage(page, /^The robot has the calibration of mine\.toml\. It is not saved yet\.$/);
+  await waitForMessage(page, /^The robot has the calibration of mine\.toml, which is not saved yet\.$/);
   assert.match((await readCalibration(page))[2], /^# A3 trim 3\.25 /);
   const previousCalibration = await readCalibration(page);
   const wrongFiles = [
-    ['<img src=x onerror="window.foreignScriptRan=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` lacks the = /],
+    ['<img src=x onerror="window.foreignScriptRan=1">.toml', 'hello', /^<img .*>\.toml:1: `hello` is missing the = /],
     ['a.toml', 'format = "lizard calibration 2"', /^a\.toml:1: format must be "lizard calibration 1"/],
-    ['b.toml', SAVED_CALIBRATION.replace('2.25', '400'), /^b\.toml:\d+: servo\.A2\.trim is 400; it must be within -360 to 360 deg/],
+    ['b.toml', SAVED_CALIBRATION.replace('2.25', '400'), /^b\.toml:\d+: servo\.A2\.trim is 400; it must be between -360 and 360 deg/],
     ['c.toml', SAVED_CALIBRATION.replace('"stand"', '"stand\\nsave"'), /^c\.toml:\d+: boot is not the name of a gait$/],
     ['d.toml', SAVED_CALIBRATION.replace('scale = 10.0', 'scale = 99.0'), /^The robot refuses "scale 1 99\.00": scale must be 5\.\.20/],
   ];
@@ -349,7 +349,7 @@ test('a saved calibration file is sent to the robot, and an invalid one is refus
   assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
 });
 
-test('without a board every step can be tried, by the keyboard alone', async () => {
+test('the keyboard alone can try every step without a board', async () => {
   const page = await openStanding();
   await page.locator('#setup-open').focus();
   await page.keyboard.press('Enter');
@@ -365,14 +365,14 @@ test('without a board every step can be tried, by the keyboard alone', async () 
   for (const title of ['Write the firmware', 'Fit the horns']) {
     await tabTo('Next step');
     await page.keyboard.press('Enter');
-    await dialogOf(page).getByText(title).first().waitFor();
+    await findDialog(page).getByText(title).first().waitFor();
   }
   await tabTo('Turn all servos to their middle');
   await page.keyboard.press('Enter');
-  // Keys must not drive the robot while the user's fingers may be in it.
+  // Keys must not drive the robot, since the user's fingers may be in it.
   await page.keyboard.down('ArrowUp');
-  for (let n = 0; n < 40 && (await text(page, '#setup-said')) === ''; n++) await advance(page, 250);
-  assert.match(await text(page, '#setup-said'), /^Every servo holds its middle now/);
+  for (let n = 0; n < 40 && (await readText(page, '#setup-said')) === ''; n++) await advance(page, 250);
+  assert.match(await readText(page, '#setup-said'), /^Every servo now holds its middle position/);
   assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'the focus stays');
   await advance(page, 500);
   await page.keyboard.up('ArrowUp');
@@ -394,9 +394,9 @@ for (const [name, options] of [
       const outsideTexts = await page.evaluate(() =>
         [...document.querySelectorAll('#setup :not(#setup-steps *):is(button, table, svg)')].filter((node) => node.getBoundingClientRect().right > innerWidth).map(({ textContent }) => textContent),
       );
-      assert.equal(await overflow(page), 0, await text(page, '#setup-step'));
+      assert.equal(await measureOverflow(page), 0, await readText(page, '#setup-step'));
       assert.deepEqual(outsideTexts, []);
-      // The row of steps scrolls, so that the current step's name is visible.
+      // The row of steps scrolls until the current step's name is visible.
       const currentStep = await page.locator('#setup-steps [aria-current]').evaluate((button) => {
         const { left, right } = button.getBoundingClientRect();
         return { isVisible: left >= 0 && right <= innerWidth, isComplete: button.scrollWidth <= button.clientWidth, size: Number.parseFloat(getComputedStyle(button).fontSize) };

@@ -1,9 +1,9 @@
-// Joints are dragged on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during
-// the drag.
+// Dragging joints on the drawing of the robot: its lengths follow, and a robot that cannot walk is refused during the
+// drag.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, overflow, openStanding, unfold, useBrowser, lengthOf, waitForLength } from './browser.js';
+import { advance, complaints, measureOverflow, openStanding, unfold, useBrowser, readLength, waitForLength } from './browser.js';
 
 useBrowser();
 
@@ -15,7 +15,7 @@ async function openSketch(options) {
   return page;
 }
 
-const jointOf = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
+const findJoint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
 /** Grabs a joint and moves it to the right and ahead in ten steps, without releasing it. */
 async function drag(page, name, [rightMm, aheadMm]) {
@@ -39,20 +39,20 @@ async function drag(page, name, [rightMm, aheadMm]) {
 const readMessage = (page) => page.locator('#sketch-said').innerText();
 const waitForMessage = (page, pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector('#sketch-said').textContent), pattern.source);
 
-test('the point of the head is dragged, and both couplers follow', async () => {
+test('both couplers follow the dragged point of the head', async () => {
   const page = await openSketch();
-  const previousLengths = [await lengthOf(page, 'links.l2'), await lengthOf(page, 'links.l3')];
+  const previousLengths = [await readLength(page, 'links.l2'), await readLength(page, 'links.l3')];
   assert.deepEqual(previousLengths, [50, 50]);
   // From the tip of a crank the coupler leads inward and ahead.
-  const positionOf = (name) => jointOf(page, name).evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
-  const [tip, point] = [await positionOf("end of the head's left crank"), await positionOf('point of the head')];
+  const readPosition = (name) => findJoint(page, name).evaluate((mark) => [Number(mark.getAttribute('cx')), -Number(mark.getAttribute('cy'))]);
+  const [tip, point] = [await readPosition("end of the head's left crank"), await readPosition('point of the head')];
   const expectedMm = Math.round(2 * Math.hypot(point[0] - tip[0], point[1] - 4 - tip[1])) / 2;
   await drag(page, 'point of the head', [0, -4]);
   await waitForMessage(page, new RegExp(`^l2 = l3 = ${expectedMm} mm\\.$`));
-  assert.equal(await lengthOf(page, 'links.l2'), 50, 'not before the release');
+  assert.equal(await readLength(page, 'links.l2'), 50, 'the length changes only at the release');
   await page.mouse.up();
   await waitForLength(page, 'links.l2', expectedMm);
-  assert.equal(await lengthOf(page, 'links.l3'), expectedMm);
+  assert.equal(await readLength(page, 'links.l3'), expectedMm);
   assert.equal(await page.locator('#lengths input[name="links.l2"]').inputValue(), String(expectedMm));
   // The simulated UNO walks with the new robot.
   await advance(page, 3000);
@@ -64,17 +64,17 @@ test('the point of the head is dragged, and both couplers follow', async () => {
   await waitForLength(page, 'links.l2', 50);
 });
 
-test('a joint at an invalid place is refused during the drag, and goes to the nearest valid place', async () => {
+test('a joint released at an invalid place goes to the nearest valid place', async () => {
   const page = await openSketch();
   await drag(page, 'point of the head', [0, -40]);
   await waitForMessage(page, /^l2 = l3 = [0-9.]+ mm is too short: /);
   await page.mouse.up();
-  await waitForMessage(page, /(the nearest valid value|It stays as it was)\.$/);
-  const expectedMm = Number(/It is l2 = l3 = ([0-9.]+) mm, the nearest valid value\.$/.exec(await readMessage(page))[1]);
+  await waitForMessage(page, /(The nearest valid value is used: .*|The length stays unchanged)\.$/);
+  const expectedMm = Number(/The nearest valid value is used: l2 = l3 = ([0-9.]+) mm\.$/.exec(await readMessage(page))[1]);
   await waitForLength(page, 'links.l2', expectedMm);
 });
 
-test('a crank is lengthened on one side alone if the sides need not be equal', async () => {
+test('a crank becomes longer only on its own side if the sides need not be equal', async () => {
   const page = await openSketch();
   await page.locator('#alike').uncheck();
   const [from, to] = await page.evaluate(() => {
@@ -86,7 +86,7 @@ test('a crank is lengthened on one side alone if the sides need not be equal', a
   await waitForMessage(page, /^l1 = 35 mm\.$/);
   await page.mouse.up();
   await waitForLength(page, 'links.l1', 35);
-  assert.equal(await lengthOf(page, 'links.l4'), 30);
+  assert.equal(await readLength(page, 'links.l4'), 30);
 });
 
 test('a pressed bar selects its number', async () => {
@@ -95,14 +95,14 @@ test('a pressed bar selects its number', async () => {
   assert.equal(await page.evaluate(() => document.activeElement.name), 'links.l2');
 });
 
-test('every joint and bar of a robot is on the drawing, also on a phone, and a tap changes nothing', async () => {
+test('the drawing has every joint and bar, also on a phone, and a tap changes nothing', async () => {
   const page = await openSketch({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   assert.equal(await page.locator('#sketch circle').count(), 18);
   assert.equal(await page.locator('#sketch line').count(), 36);
   const toml = await page.evaluate(() => window.lizard.toml);
-  await jointOf(page, 'point of the tail').tap();
+  await findJoint(page, 'point of the tail').tap();
   assert.equal(await page.evaluate(() => window.lizard.toml), toml);
-  assert.equal(await overflow(page), 0);
+  assert.equal(await measureOverflow(page), 0);
 });
 
 test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));

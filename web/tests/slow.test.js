@@ -1,5 +1,5 @@
-// Times that a user waits, in real time; no other test runs beside this file. A busy machine can only make these times
-// longer, so one measurement within the limit is enough.
+// Waiting times of a user, in real time; no other test file runs at the same time. A busy machine can only make these
+// times longer, so one measurement within the limit is enough.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -38,7 +38,7 @@ test('the robot takes its first step within 1.5 s of the request for the page', 
   assert.ok(timeMs <= FIRST_STEP_LIMIT_MS, `${timeMs} ms`);
 });
 
-test('on a slow phone the opening walk begins, and Stop stops it in 0.3 s', async (t) => {
+test('on a slow phone Stop stops the opening walk within 0.3 s', async (t) => {
   const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, ...WITH_MOTION };
   const page = await openBlank(phone);
   await (await openDevToolsFor(page)).send('Emulation.setCPUThrottlingRate', { rate: CPU_SLOWDOWN });

@@ -1,4 +1,4 @@
-// Driving by hand: keys and the stick walk for as long as they are held.
+// Driving by hand: the robot walks as long as a key or the stick is held.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -74,7 +74,7 @@ test('the robot walks in the direction of the stick on the screen', async () => 
   await waitForGait(page, 'stop');
 });
 
-test('a stick that is deflected by half drives at half the pace, and its release restores the pace', async () => {
+test('a stick held half way halves the pace, and its release restores the pace', async () => {
   const page = await openPredicted();
   await page.evaluate(() => window.lizard.ask('speed 80').then(() => null));
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
@@ -99,7 +99,7 @@ test('a stick that is deflected by half drives at half the pace, and its release
   await deflectStick(0.5, true);
   await waitForGait(page, 'stop');
   await waitForPace(80);
-  // A pace that the robot has not confirmed yet is halved, too, and not replaced by the previous one.
+  // A pace that the robot has not confirmed yet is halved, too, and not replaced by the previous pace.
   await deflectStick(0);
   await advance(page, 100);
   await page.evaluate(() => {
@@ -139,7 +139,7 @@ test('a gamepad drives', async () => {
   await waitForGait(page, 'stop');
 });
 
-test('a button of a gamepad stops the robot once, and the stick drives again only after it was released', async () => {
+test('a gamepad button stops the robot once, and the stick drives again only after its release', async () => {
   const page = await openPredicted();
   await page.evaluate(() => {
     window.sentLines = [];
@@ -158,7 +158,7 @@ test('a button of a gamepad stops the robot once, and the stick drives again onl
   await waitForGait(page, 'walk');
 });
 
-test('a button of a gamepad stops a gait that was started by a button of the page', async () => {
+test('a gamepad button stops a gait that a button of the page has started', async () => {
   const page = await openPredicted();
   await page.locator('#gaits button[data-command="walk"]').click();
   await waitForGait(page, 'walk');
@@ -189,14 +189,14 @@ test('the page opens with the robot walking slowly, unless reduced motion is pre
   await movingPage.waitForFunction(() => document.querySelector('#speed').value === '50');
   const stillPage = await openPredicted();
   await waitForGait(stillPage, 'stand');
-  // On a page with motion the robot has begun to walk within this time.
+  // On a page with motion, the robot would have begun to walk within this time.
   await advance(stillPage, 6000);
   assert.equal(await stillPage.locator('#doing').textContent(), 'stand');
 });
 
 test('the robot walks at the start even if walk and trot are predicted before the robot\'s banner', async () => {
   const page = await openPage({ reducedMotion: 'no-preference' }, () => {
-    // The predictions do not come with the page, as for a user's own robot.
+    // Without the stored predictions, as for a user's own robot.
     const { fetch } = window;
     window.fetch = (address, ...args) => (String(address).includes('predictions') ? Promise.reject(new TypeError('none')) : fetch(address, ...args));
     // Only the first three gaits are predicted.
@@ -226,7 +226,7 @@ test('a robot with other gaits is driven by its own gaits', async () => {
   await waitForGait(page, 'stop');
 });
 
-test('after a click on the pace, on the list of robots or on the floor the arrows still drive; after Tab they do not', async () => {
+test('arrow keys drive after a click on the pace, the list of robots or the floor, but not after Tab', async () => {
   const page = await openPredicted();
   const pace = page.locator('#speed');
   for (const selector of ['#speed', '#floor', '#robot']) {

@@ -1,13 +1,13 @@
-// Two pages connected to one robot: one by the board's cable, the other by a Bluetooth module at the same serial line.
+// Two pages connected to one robot: through the board's cable, and through a Bluetooth module at the same serial line.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { complaints, openPage, text, useBrowser, repeatUntil } from './browser.js';
+import { complaints, openPage, readText, useBrowser, repeatUntil } from './browser.js';
 
 useBrowser();
 
-const activityOf = (page) => text(page, '#doing');
+const readActivity = (page) => readText(page, '#doing');
 const startWalk = (page) => page.locator('#gaits button[data-command="walk"]').click();
 
 /** Replaces Web Serial with a port whose bytes the test transfers; runs in the page before any other script. */
@@ -50,7 +50,7 @@ async function openTwoPages() {
   };
   const runUntil = (waitName, condition) => repeatUntil(waitName, condition, step);
   await radioPage.locator('#connect').click();
-  await runUntil('the second page finds the robot', async () => (await text(radioPage, '#where')).includes('on Bluetooth'));
+  await runUntil('the second page finds the robot', async () => (await readText(radioPage, '#where')).includes('on Bluetooth'));
   return { cablePage, radioPage, runUntil };
 }
 
@@ -58,9 +58,9 @@ test('each of two pages shows the robot\'s activity, and stops a gait that the o
   const { cablePage, radioPage, runUntil } = await openTwoPages();
   for (const [driver, watcher] of [[cablePage, radioPage], [radioPage, cablePage]]) {
     await startWalk(driver);
-    for (const page of [driver, watcher]) await runUntil('both pages show the walk', async () => (await activityOf(page)) === 'walk');
+    for (const page of [driver, watcher]) await runUntil('both pages show the walk', async () => (await readActivity(page)) === 'walk');
     await watcher.keyboard.press('Escape');
-    for (const page of [driver, watcher]) await runUntil('both pages show the stop', async () => (await activityOf(page)) === 'stop');
+    for (const page of [driver, watcher]) await runUntil('both pages show the stop', async () => (await readActivity(page)) === 'stop');
   }
   const readReceivedText = () => cablePage.evaluate(() => window.receivedText);
   const isRestored = async () => /deadman 0\n[^]*deadman 0\n[^]*$/.test(await readReceivedText());

@@ -1,24 +1,21 @@
-// The robot's section alone is written, behind the firmware that is already on the board.
+// Writing only the robot's section, behind the firmware that is already on the board.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { openWithBoard, openWithErasedBoard, runUntil, reconnect, waitForText } from './board.js';
-import { complaints, openStanding, openPage, text, unfold, useBrowser } from './browser.js';
+import { openWithBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
+import { complaints, openStanding, openPage, readText, unfold, useBrowser } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
-import { imageOf } from './image.js';
+import { makeImage, SECTION_START } from './image.js';
 
 useBrowser();
 
-/** Address of the robot's section in the flash. */
-const SECTION_START = 0x6e00;
-const readFlash = async (page, from, to) => Buffer.from(await page.evaluate(([from, to]) => Array.from(window.attachedBoard.flash.subarray(from, to)), [from, to]));
-const sectionOf = async (name) => Buffer.from((await imageOf(name)).subarray(SECTION_START));
+const makeSection = async (name) => Buffer.from((await makeImage(name)).subarray(SECTION_START));
 /** Waits until a message is shown below a panel's buttons. */
 const waitForMessage = (page, pattern, selector = '#flash-said', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
 const writeRobotAlone = (page) => page.locator('#flash-robot').click();
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
-const pulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
+const listPulsedPins = (page) => page.evaluate(() => window.lizard.description.servos.map(({ pin }) => pin).filter((pin) => pin in window.pulseWidthsUs));
 
 async function unfoldFlashPanel(page) {
   await unfold(page, '#flash');
@@ -35,7 +32,7 @@ async function assertFlash(page, start, expected) {
   assert.deepEqual(await readFlash(page, start, start + expected.length), expected);
 }
 
-test('a robot is written in a second or two, and firmware and saved settings stay unchanged', async () => {
+test('a robot is written within 2.5 s, and firmware and saved settings stay unchanged', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   await page.evaluate(() => window.lizard.ask('trim 1 2').then(() => window.lizard.ask('save')) && null);
   await page.clock.runFor(1500);
@@ -44,29 +41,29 @@ test('a robot is written in a second or two, and firmware and saved settings sta
   assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'settings are saved');
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const seconds = Number(/in ([\d.]+) s/.exec(await text(page, '#flash-said'))[1]);
+  const seconds = Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-said'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
-  await assertFlash(page, SECTION_START, await sectionOf('robot'));
+  await assertFlash(page, SECTION_START, await makeSection('robot'));
   assert.deepEqual(await readFlash(page, 0, SECTION_START), codeBytes);
   assert.deepEqual(await page.evaluate(() => Array.from(window.attachedBoard.eeprom)), savedEeprom);
 });
 
-test('an edited gait is written to a board, and the board walks it', async () => {
+test('a board walks with an edited gait after it was written', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#gait-editor');
   await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
   await page.locator('#gait-name').fill('stride');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
   await page.locator('#gait-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride is a button of Drive\.$/, '#gait-said');
+  await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride has a button in Drive\.$/, '#gait-said');
   await page.clock.runFor(3000);
-  assert.equal(await text(page, '#doing'), 'stand', 'a board does not walk by itself');
+  assert.equal(await readText(page, '#doing'), 'stand', 'a board does not walk by itself');
   await page.evaluate(() => (window.pulseWidthsUs = {}));
   await page.locator('#gaits button[data-command="stride"]').click();
   const readY = () => page.evaluate(() => window.lizard.last.place.y);
   const startY = await readY();
-  await runUntil(page, 'the robot of the page has walked 5 mm', async () => (await readY()) - startY > 5);
+  await runUntil(page, 'the page\'s robot has walked 5 mm', async () => (await readY()) - startY > 5);
   assert.ok(await page.evaluate(() => window.receivedText.includes('stride\n')));
 });
 
@@ -80,32 +77,32 @@ test('one button writes an edited text to the board', async () => {
   await waitForText(page, '#where', /^on a board on USB, robot mine [0-9a-f]{8}$/);
 });
 
-test('without a board the buttons say what is missing', async () => {
+test('without a board, Write it to the board asks for a connection', async () => {
   const page = await openStanding();
   await unfold(page, '#robot-editor');
   await page.locator('#robot-write').click();
-  await page.locator('#robot-said', { hasText: 'No board is connected: Connect a board…' }).waitFor();
+  await page.locator('#robot-said', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
 });
 
-test('no robot is written behind a firmware that reads another format, and the firmware keeps running', async () => {
+test('a robot whose format the firmware does not read is refused, and the firmware keeps running', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
   // Changes the format in the mark after the 26 interrupt vectors.
   await page.evaluate(() => (window.attachedBoard.flash[26 * 4 + 4] ^= 0x40));
   const previousFlash = await readFlash(page, 0, 0x7e00);
   await writeRobotAlone(page);
-  await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, whose robots are of format \d+; this robot is of format \d+: write the firmware, too\. Nothing was written$/);
+  await waitForMessage(page, /^not written: the board has lizard [\d.]+ robot large [0-9a-f]{8}, which reads robots of format \d+; this robot has format \d+: write the firmware, too\. Nothing was written$/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash);
   await waitForText(page, '#where', /^on a board on USB with another robot/);
 });
 
 test('the robot alone is written to a board that has not restarted', async () => {
   const page = await openWithBoard('large', 5000, { boardKeepsRunning: true });
-  assert.match(await text(page, '#where'), /that has not restarted/);
+  assert.match(await readText(page, '#where'), /that has not restarted/);
   await page.evaluate(() => (window.boardKeepsRunning = false));
   await unfoldFlashPanel(page);
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await assertFlash(page, SECTION_START, await sectionOf('robot'));
+  await assertFlash(page, SECTION_START, await makeSection('robot'));
 });
 
 test('a board unplugged during a write has no robot, reports that, moves nothing, and can be written again', async () => {
@@ -113,35 +110,35 @@ test('a board unplugged during a write has no robot, reports that, moves nothing
   await writeRobotAlone(page);
   await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
-  await waitForMessage(page, /^not written: .*\. The board has half a robot now: its firmware says fault=robot and moves no servo\. Write it again$/);
+  await waitForMessage(page, /^not written: .*\. The board now has an incomplete robot: its firmware reports fault=robot and moves no servo\. Write the robot again$/);
   await reconnect(page);
-  await runUntil(page, 'the board greets', async () => (await text(page, '#where')) === 'on a board on USB with this firmware and no robot in it: write this one');
+  await runUntil(page, 'the board sends its banner', async () => (await readText(page, '#where')) === 'on a board on USB with this firmware but no robot: write this robot');
   await page.clock.runFor(5000);
-  assert.deepEqual(await pulsedPins(page), []);
-  await page.locator('#log div', { hasText: '# fault: no robot in the flash, write one' }).first().waitFor();
-  await page.locator('#setup').getByText('has this firmware and no robot, so it moves nothing.').waitFor();
+  assert.deepEqual(await listPulsedPins(page), []);
+  await page.locator('#log div', { hasText: '# fault: no robot in the flash; write one' }).first().waitFor();
+  await page.locator('#setup').getByText('has this firmware but no robot; it moves nothing.').waitFor();
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await runUntil(page, 'the robot stands', async () => (await pulsedPins(page)).length === 4);
+  await runUntil(page, 'the robot stands', async () => (await listPulsedPins(page)).length === 4);
 });
 
-test('a write that begins right after the banner is not disturbed', async () => {
+test('the page does not disturb a write right after the banner', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('robot', 2000));
-  assert.match(await text(page, '#where'), /^on a board on USB, robot paper /);
+  assert.match(await readText(page, '#where'), /^on a board on USB, robot paper /);
   await page.locator('#flash-write').click();
   await page.clock.runFor(4000);
-  assert.match(await text(page, '#flash-said'), /^(read|writ|verify)ing/);
+  assert.match(await readText(page, '#flash-said'), /^(read|writ|verify)ing/);
   assert.equal(await page.locator('#problems').innerText(), '');
 });
 
 test('a board unplugged while the firmware is written does nothing, and can be written again', async () => {
   const page = await unfoldFlashPanel(await openWithBoard('large', 8000));
-  assert.equal((await pulsedPins(page)).length, 4, 'the robot stands');
+  assert.equal((await listPulsedPins(page)).length, 4, 'the robot stands');
   await page.locator('#flash-write').click();
   await waitUntilPartIsWritten(page);
   await page.evaluate(() => window.unplug());
-  await waitForMessage(page, /^not written: .*\. The board has half a program now, and does nothing\. Its boot loader is still there: write it again$/);
-  // The board runs alone, without the page.
+  await waitForMessage(page, /^not written: .*\. The board now has an incomplete program, which does nothing\. Its boot loader is intact: write the program again$/);
+  // The board runs without the page.
   const pulses = await page.evaluate(() => {
     window.attachedBoard.reset('external');
     window.pulseWidthsUs = {};
@@ -155,10 +152,10 @@ test('a board unplugged while the firmware is written does nothing, and can be w
   await waitForText(page, '#where', /without this firmware$/);
   await page.locator('#flash-write').click();
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await assertFlash(page, 0, Buffer.from(await imageOf('robot')));
+  await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
 });
 
-test('a robot alone is not written to a board without this firmware, and the message says why', async () => {
+test('a robot alone is refused for a board without this firmware', async () => {
   const page = await unfoldFlashPanel(await openWithErasedBoard());
   await writeRobotAlone(page);
   await waitForMessage(page, /^not written: the board has no program, and a robot alone moves nothing: write the firmware, too\. Nothing was written$/);
@@ -166,16 +163,16 @@ test('a robot alone is not written to a board without this firmware, and the mes
 
 test('an older Nano, whose boot loader has another baud rate, is found, written and started', async () => {
   const page = await openWithBoard(null, 0, { loaderBaud: 57_600, usbVendor: 0x1a86 });
-  await runUntil(page, 'the board is identified', async () => (await text(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P by its boot loader'));
+  await runUntil(page, 'the board is identified', async () => (await readText(page, '#problems')).startsWith('The board is an Arduino Nano, an ATmega328P according to its boot loader'));
   await unfoldFlashPanel(page);
   await page.locator('#flash-write').click();
-  await waitForMessage(page, /^no answer; the board is called again/);
+  await waitForMessage(page, /^no answer; calling the board again/);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await assertFlash(page, 0, Buffer.from(await imageOf('robot')));
+  await assertFlash(page, 0, Buffer.from(await makeImage('robot')));
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
 });
 
-test('an older Nano that is unplugged while its baud rate is set is reported, and the simulation continues', async () => {
+test('the page reports an older Nano that is unplugged while its baud rate is set', async () => {
   const page = await openPage({}, installFakeSerial);
   await page.evaluate(() => {
     let openCount = 0;
@@ -185,9 +182,9 @@ test('an older Nano that is unplugged while its baud rate is set is reported, an
     Object.assign(window, { flashedRobot: null, loaderBaud: 57_600, onPortOpen });
   });
   await page.locator('#connect').click();
-  await runUntil(page, 'the loss of the board is shown', async () => (await text(page, '#problems')).startsWith('The board is gone: The device has been lost. The simulation goes on.'));
+  await runUntil(page, 'the loss of the board is shown', async () => (await readText(page, '#problems')).startsWith('The board is gone: The device has been lost. The simulation continues.'));
   await runUntil(page, 'a board can be connected', () => page.locator('#connect').isEnabled());
-  assert.match(await text(page, '#where'), /simulated UNO/);
+  assert.match(await readText(page, '#where'), /simulated UNO/);
 });
 
 test('flash pages that already have the right bytes are not written', async () => {
@@ -197,12 +194,12 @@ test('flash pages that already have the right bytes are not written', async () =
     await waitForMessage(page, /^reading/);
     await waitForMessage(page, /^written and verified in [\d.]+ s$/);
     await page.clock.runFor(3000);
-    return Number(/in ([\d.]+) s/.exec(await text(page, '#flash-said'))[1]);
+    return Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-said'))[1]);
   };
   const unchangedSeconds = await measureWrite();
   await page.evaluate(() => window.attachedBoard.flash.fill(0x12, 0, 0x7e00));
   const fullSeconds = await measureWrite();
-  assert.ok(unchangedSeconds < 6 && fullSeconds > unchangedSeconds + 5, `${unchangedSeconds} s and ${fullSeconds} s`);
+  assert.ok(unchangedSeconds < 6 && fullSeconds > unchangedSeconds + 5, `unchanged: ${unchangedSeconds} s, full: ${fullSeconds} s`);
 });
 
 test('an image that would overwrite a Nano\'s boot loader is written only after the user confirms a UNO', async () => {
@@ -218,13 +215,13 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
     void dialog[reply]();
   });
   await writeRobotAlone(page);
-  await waitForMessage(page, /^not written: 3\d{4} bytes of flash are needed, and a Nano has 30720 before its boot section\. Gaits can be left out/);
-  assert.match(dialogMessages[0], /^Is this board an Arduino UNO\? By its USB chip it may also be a Nano/);
+  await waitForMessage(page, /^not written: 3\d{4} bytes of flash are needed, but a Nano has only 30720 before its boot section\. Gaits can be left out/);
+  assert.match(dialogMessages[0], /^Is this board an Arduino UNO\? Its USB chip is also used on the Nano/);
   assert.deepEqual(await readFlash(page, 0, 0x7e00), previousFlash, 'nothing was written');
   reply = 'accept';
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  await assertFlash(page, SECTION_START, await sectionOf('own-gaits'));
+  await assertFlash(page, SECTION_START, await makeSection('own-gaits'));
   assert.equal(dialogMessages.length, 2);
   // The section of a small robot ends below the Nano's boot loader, so no dialog opens.
   await page.locator('#robot').selectOption('robot');

@@ -1,15 +1,15 @@
-// Servo pulses that are exact to the CPU cycle (62.5 ns), whatever serial traffic and other work a sketch has.
+// Servo pulses that are exact to the CPU cycle (62.5 ns), even during serial traffic and other work of the sketch.
 //
-// The functions are those of Arduino's Servo library: to change over, include this file instead of Servo.h. The library
-// drives one to eight servos on any pins except A6 and A7 of an ATmega328P at 16 MHz (UNO, Nano, Pro Mini). It uses
-// Timer1, so pins 9 and 10 have no analogWrite. A frame, from one pulse of a servo to its next, lasts 22.5 ms.
+// The library has the functions of Arduino's Servo library: to switch, include this file instead of Servo.h. It drives
+// one to eight servos on any pins except A6 and A7 of an ATmega328P at 16 MHz (UNO, Nano, Pro Mini). It uses Timer1, so
+// pins 9 and 10 have no analogWrite. A frame, the time between two pulses of a servo, lasts 22.5 ms.
 #ifndef SERVO_PULSES_H
 #define SERVO_PULSES_H
 
 #include <Arduino.h>
 
 #if !defined(__AVR_ATmega328P__) || F_CPU != 16000000L
-#error "ServoPulses runs only on the ATmega328P at 16 MHz (UNO, Nano): choose such a board, or use the library Servo."
+#error "ServoPulses requires an ATmega328P at 16 MHz (UNO, Nano): choose such a board, or use the library Servo."
 #endif
 
 #define MIN_PULSE_WIDTH 544
@@ -22,29 +22,29 @@ class Servo {
 public:
   Servo();
 
-  // Makes the pin an output and starts its pulses, with the last width written, or 1500 us. `min` and `max` are the
-  // widths for 0 and 180 degrees in us, from 63 to 2437; every width is limited to this range. Returns the servo's
-  // number, 0 to 7, or INVALID_SERVO for a ninth servo or a pin that the board does not have.
+  // Makes the pin an output and starts its pulses, with the last written width or 1500 us. `min` and `max` are the
+  // widths for 0 and 180 degrees, between 63 and 2437 us; every width is clamped to this range. Returns the servo's
+  // number, 0 to 7, or INVALID_SERVO for a ninth servo or an invalid pin.
   uint8_t attach(int pin) { return attach(pin, MIN_PULSE_WIDTH, MAX_PULSE_WIDTH); }
   uint8_t attach(int pin, int min, int max);
-  // Ends the pulses. A pulse that has begun, or is already planned, keeps its width. The pin stays an output and low.
+  // Stops the pulses. A pulse that has begun or is already planned keeps its width. The pin stays a low output.
   void detach();
   bool attached() const;
 
   // Sets the angle, 0 to 180 degrees. A value of at least MIN_PULSE_WIDTH is a width in us instead.
   void write(int value);
   void writeMicroseconds(int us);
-  // Sets the width in CPU cycles of 62.5 ns, 16 in a microsecond.
+  // Sets the width in CPU cycles of 62.5 ns, 16 in 1 us.
   void writeCycles(uint16_t cycles);
-  // Returns the angle for the present width, in degrees.
+  // Returns the angle of the current width, in degrees.
   int read() const;
   int readMicroseconds() const;
 
-  // Returns the number of frames since the first `attach`, modulo 256. All widths that are written within 2.4 ms after
-  // this number changes take effect together, in the next frame.
+  // Returns the number of frames since the first `attach`, modulo 256. All widths written within 2.4 ms after a change
+  // of this number take effect together, in the next frame.
   static uint8_t frames();
-  // Returns the number of edges that were late because interrupts were off, or another handler ran, for more than
-  // 10 us. A pulse that would begin late is left out, since its width would be wrong. The count stops at 255.
+  // Returns the number of edges that were late because interrupts were blocked for more than 10 us. A pulse that would
+  // begin late is omitted, since its width would be wrong. The count stops at 255.
   static uint8_t late();
 
 private:

@@ -1,14 +1,14 @@
 //! Constants that stay in flash.
 //!
-//! An AVR has two address spaces. A Rust `static` lives in the one for data: it is copied to RAM at start, and an
-//! ATmega328P has only 2 KiB of RAM. Tables and messages belong in the other, flash, which only the `lpm` instruction
-//! reads. [`flash!`](crate::flash!) puts a constant there; a [`Flash`] is the constant's address, and the only way to
-//! read the constant. On any other machine a [`Flash`] is an ordinary reference, so the same code runs there, even with
-//! tables made at run time.
+//! An AVR has two address spaces: data and flash. A Rust `static` is in the data space: it is copied to RAM at start,
+//! and an ATmega328P has only 2 KiB of RAM. Tables and messages belong in flash, which only the `lpm` instruction
+//! reads. [`flash!`](crate::flash!) puts a constant there. A [`Flash`] is the constant's address, and reading through
+//! it is the only access to the constant. On any other machine a [`Flash`] is an ordinary reference, so the same code
+//! runs there, even with tables made at run time.
 //!
-//! A read never fails: an index past the end reads the last element, so the program needs
-//! no code for a panic. (The crate avr-progmem also keeps constants in flash, but it needs
-//! a nightly compiler on the host, too, and panics on a bad index.)
+//! A read never fails: an index past the end reads the last element, so the program needs no code for a panic. (The
+//! crate avr-progmem also keeps constants in flash, but it needs a nightly compiler on the host, too, and panics if an
+//! index is out of bounds.)
 
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]
@@ -18,7 +18,7 @@ use core::ptr::NonNull;
 /// The address of a constant in flash; on any other machine, an ordinary reference.
 pub struct Flash<'a, T: ?Sized> {
     address: NonNull<T>,
-    lifetime: PhantomData<&'a T>,
+    marker: PhantomData<&'a T>,
 }
 
 impl<T: ?Sized> Clone for Flash<'_, T> {
@@ -29,35 +29,33 @@ impl<T: ?Sized> Clone for Flash<'_, T> {
 
 impl<T: ?Sized> Copy for Flash<'_, T> {}
 
-// SAFETY: the value at `address` is never written while a `Flash` of it exists, so
-// any number of readers on any number of threads see the same value.
+// SAFETY: while a `Flash` exists, the value at its `address` is not written, so readers on all threads see the same
+// value.
 unsafe impl<T: ?Sized + Sync> Sync for Flash<'_, T> {}
 // SAFETY: as above.
 unsafe impl<T: ?Sized + Sync> Send for Flash<'_, T> {}
 
 impl<T: ?Sized> Flash<'_, T> {
-    /// Makes a reference to a constant. It is public only for [`flash!`](crate::flash!).
+    /// Creates a reference to a constant. It is public only for [`flash!`](crate::flash!).
     ///
     /// # Safety
-    /// For the whole lifetime a value of `T` must be at `address` and must not be written: in the flash
-    /// of an AVR, and in ordinary memory elsewhere. `address` need not be aligned.
+    /// For the whole lifetime, a value of `T` must be at `address` and must not be written. On an AVR `address` must be
+    /// in flash, on any other machine in ordinary memory. `address` need not be aligned.
     #[doc(hidden)]
     pub const unsafe fn new(address: *const T) -> Self {
         Self {
-            // SAFETY: there is a value at `address`, so `address` is not 0: flash begins with the interrupt
-            // vectors.
+            // SAFETY: a value is at `address`, so `address` is not 0, where the interrupt vectors are.
             address: unsafe { NonNull::new_unchecked(address.cast_mut()) },
-            lifetime: PhantomData,
+            marker: PhantomData,
         }
     }
 }
 
-/// Wraps a table made at run time. Only a host does this.
+/// Wraps a table that was made at run time, which only a host does.
 #[cfg(not(target_arch = "avr"))]
 impl<'a, T: ?Sized> From<&'a T> for Flash<'a, T> {
     fn from(value: &'a T) -> Self {
-        // SAFETY: a reference is valid for reads as long as it lives, and its value
-        // does not change meanwhile.
+        // SAFETY: for its lifetime, a reference is valid for reads, and its value does not change.
         unsafe { Self::new(value) }
     }
 }
@@ -67,7 +65,7 @@ impl<T: Copy> Flash<'_, T> {
     #[cfg(not(target_arch = "avr"))]
     #[inline]
     pub fn load(self) -> T {
-        // SAFETY: `new` vouches for a value at `self.address`, and it is `Copy`.
+        // SAFETY: by the contract of `new`, a value of `T` is at `self.address`; `T` is `Copy`.
         unsafe { self.address.as_ptr().read_unaligned() }
     }
 
@@ -75,10 +73,10 @@ impl<T: Copy> Flash<'_, T> {
     #[cfg(target_arch = "avr")]
     #[inline]
     pub fn load(self) -> T {
-        // One and two bytes go through registers, the rest through memory.
+        // One or two bytes are loaded into registers, larger values into memory.
         if size_of::<T>() == 1 {
-            // SAFETY: `new` vouches for the byte at `self.address`; any copy of a
-            // `Copy` value of that size is such a value.
+            // SAFETY: by the contract of `new`, the byte at `self.address` is a `T`; a bitwise copy of a `Copy` value
+            // is a valid value.
             return unsafe { transmute_copy(&fetch_byte(self.address.as_ptr().cast())) };
         }
         if size_of::<T>() == 2 {
@@ -86,8 +84,8 @@ impl<T: Copy> Flash<'_, T> {
             return unsafe { transmute_copy(&fetch_word(self.address.as_ptr().cast())) };
         }
         let mut copy = MaybeUninit::<T>::uninit();
-        // SAFETY: `new` vouches for `size_of::<T>()` readable bytes, `copy`
-        // has room for as many, and a bitwise copy of a `Copy` value is a valid value.
+        // SAFETY: by the contract of `new`, `size_of::<T>()` bytes are readable, and `copy` has room for them. A
+        // bitwise copy of a `Copy` value is a valid value.
         unsafe {
             fetch_bytes(
                 self.address.as_ptr().cast(),
@@ -103,7 +101,7 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
     /// The array as a slice, still in flash.
     #[inline]
     pub const fn as_slice(self) -> Flash<'a, [T]> {
-        // SAFETY: the same elements, of the same lifetime.
+        // SAFETY: the slice has the elements and the lifetime of the array.
         unsafe { Flash::new(self.address.as_ptr() as *const [T]) }
     }
 
@@ -112,7 +110,7 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
     pub const fn at(self, index: usize) -> Flash<'a, T> {
         const { assert!(N > 0) };
         let index = if index < N { index } else { N - 1 };
-        // SAFETY: `index` is below the length of the array at `self.address`.
+        // SAFETY: `index` is less than the length of the array at `self.address`.
         unsafe { Flash::new(self.address.as_ptr().cast::<T>().add(index)) }
     }
 }
@@ -143,7 +141,7 @@ impl<'a, T> Flash<'a, [T]> {
         } else {
             last_index
         };
-        // SAFETY: `index` is below the length of the slice at `self.address`.
+        // SAFETY: `index` is less than the length of the slice at `self.address`.
         Some(unsafe { Flash::new(self.address.as_ptr().cast::<T>().add(index)) })
     }
 }
@@ -152,7 +150,7 @@ impl<'a, T> Flash<'a, [T]> {
     /// A slice without elements.
     pub const EMPTY: Self = Self {
         address: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
-        lifetime: PhantomData,
+        marker: PhantomData,
     };
 
     /// The `length` elements from index `start` on; `None` if there are fewer.
@@ -164,34 +162,34 @@ impl<'a, T> Flash<'a, [T]> {
         // SAFETY: `start` is within the slice at `self.address`, or at its end.
         let first = unsafe { self.address.as_ptr().cast::<T>().add(start) };
         let elements = core::ptr::slice_from_raw_parts(first, length);
-        // SAFETY: the elements are among those of the slice, and of the same lifetime.
+        // SAFETY: the elements are a part of the slice at `self.address` and have its lifetime.
         Some(unsafe { Flash::new(elements) })
     }
 }
 
 impl<'a> Flash<'a, [u8]> {
-    /// Reinterprets the bytes as values of a [`Plain`] type; omits an incomplete value at the end.
+    /// Reinterprets the bytes as values of a [`Pod`] type, without an incomplete value at the end.
     #[inline]
-    pub const fn cast<T: Plain>(self) -> Flash<'a, [T]> {
+    pub const fn cast<T: Pod>(self) -> Flash<'a, [T]> {
         let values = core::ptr::slice_from_raw_parts(
             self.address.as_ptr().cast_const().cast::<T>(),
             self.len() / const { require_nonzero(size_of::<T>()) },
         );
-        // SAFETY: this many values fit in the bytes, any bytes are a value of a `Plain`
-        // type, and `new` does not ask for alignment.
+        // SAFETY: this many values fit in the bytes, any bit pattern is a valid `Pod` value, and `new` requires no
+        // alignment.
         unsafe { Flash::new(values) }
     }
 
-    /// Reads the value whose bytes begin at `offset`; a value of zeros if it is not completely within the slice.
+    /// Reads the value whose bytes begin at `offset`. Returns an all-zero value if that value is not entirely within
+    /// the slice.
     #[inline]
-    pub fn read<T: Plain>(self, offset: usize) -> T {
+    pub fn read<T: Pod>(self, offset: usize) -> T {
         match self.subslice(offset, size_of::<T>()) {
             Some(bytes) => {
-                // SAFETY: there are as many bytes as a value has, and any bytes are a
-                // value.
+                // SAFETY: there are `size_of::<T>()` bytes, and any bit pattern is a valid `T`.
                 unsafe { Flash::new(bytes.address.as_ptr().cast_const().cast::<T>()) }.load()
             }
-            // SAFETY: zeros are a value, too.
+            // SAFETY: any bit pattern is a valid `T`, so all zeros are, too.
             None => unsafe { core::mem::zeroed() },
         }
     }
@@ -202,12 +200,12 @@ const fn require_nonzero(size: usize) -> usize {
     size
 }
 
-/// A type without padding for which any bytes are a valid value. Its bytes are little-endian, the same in the flash
-/// of an AVR and in the memory of a host. See [`plain!`](crate::plain!).
+/// Plain old data: a type without padding, for which any bit pattern is a valid value. Its bytes are little-endian, the
+/// same in the flash of an AVR and in the memory of a host. See [`pod!`](crate::pod!).
 ///
 /// # Safety
-/// Every pattern of `size_of::<Self>()` bytes is a value, and no byte is padding.
-pub unsafe trait Plain: Copy {
+/// Any bit pattern must be a valid value, and no byte may be padding.
+pub unsafe trait Pod: Copy {
     /// The value's bytes.
     #[inline]
     fn bytes(&self) -> &[u8] {
@@ -215,29 +213,29 @@ pub unsafe trait Plain: Copy {
         unsafe { core::slice::from_raw_parts((&raw const *self).cast(), size_of::<Self>()) }
     }
 }
-// SAFETY: any bytes are a valid integer, and an integer has no padding.
-unsafe impl Plain for u8 {}
+// SAFETY: any bit pattern is a valid integer, and an integer has no padding.
+unsafe impl Pod for u8 {}
 // SAFETY: as above.
-unsafe impl Plain for i8 {}
+unsafe impl Pod for i8 {}
 // SAFETY: as above.
-unsafe impl Plain for u16 {}
+unsafe impl Pod for u16 {}
 // SAFETY: as above.
-unsafe impl Plain for i16 {}
+unsafe impl Pod for i16 {}
 // SAFETY: as above.
-unsafe impl Plain for u32 {}
+unsafe impl Pod for u32 {}
 // SAFETY: as above.
-unsafe impl Plain for i32 {}
+unsafe impl Pod for i32 {}
 // SAFETY: an array has no padding between its elements.
-unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
+unsafe impl<T: Pod, const N: usize> Pod for [T; N] {}
 
 // The AVR and all hosts in use are little-endian.
 const _: () = assert!(cfg!(target_endian = "little"));
 
-/// Declares a type that can be read from flash: a struct whose fields are such types, in an order that leaves
-/// no padding. The compiler checks this.
+/// Declares a [`Pod`](crate::Pod) struct, whose fields must be `Pod` types in an order that leaves no padding. The
+/// compiler checks this.
 ///
 /// ```
-/// lizard_avr::plain! {
+/// lizard_avr::pod! {
 ///     /// A point.
 ///     #[derive(Debug, PartialEq)]
 ///     pub struct Point {
@@ -252,7 +250,7 @@ const _: () = assert!(cfg!(target_endian = "little"));
 /// assert_eq!(flash.read::<Point>(0), Point { x: 256, y: 2 });
 /// ```
 #[macro_export]
-macro_rules! plain {
+macro_rules! pod {
     (
         $(#[$meta:meta])*
         $vis:vis struct $name:ident {
@@ -265,17 +263,17 @@ macro_rules! plain {
         $vis struct $name {
             $($(#[$field_meta])* $field_vis $field: $type),*
         }
-        $crate::plain!($name: $($type),*);
+        $crate::pod!($name: $($type),*);
     };
     ($name:ty: $($type:ty),*) => {
-        // SAFETY: all fields are `Plain`, and the assertion below excludes padding between them.
+        // SAFETY: all fields are `Pod`, and the assertion below excludes padding between them.
         #[allow(unsafe_code)]
-        unsafe impl $crate::Plain for $name {}
+        unsafe impl $crate::Pod for $name {}
         const _: () = {
-            const fn plain_size<T: $crate::Plain>() -> usize {
+            const fn pod_size<T: $crate::Pod>() -> usize {
                 size_of::<T>()
             }
-            assert!(size_of::<$name>() == 0 $(+ plain_size::<$type>())*, "the struct has padding");
+            assert!(size_of::<$name>() == 0 $(+ pod_size::<$type>())*, "the struct must have no padding");
         };
     };
 }
@@ -290,7 +288,7 @@ impl<T: ?Sized> core::fmt::Debug for Flash<'_, T> {
 #[inline]
 unsafe fn fetch_byte(source: *const u8) -> u8 {
     let byte: u8;
-    // SAFETY: the caller vouches for a byte of flash at `source`.
+    // SAFETY: the caller guarantees a byte of flash at `source`.
     unsafe {
         core::arch::asm!(
             "lpm {byte}, Z",
@@ -306,7 +304,7 @@ unsafe fn fetch_byte(source: *const u8) -> u8 {
 #[inline]
 unsafe fn fetch_word(source: *const u8) -> u16 {
     let word: u16;
-    // SAFETY: the caller vouches for two bytes of flash at `source`.
+    // SAFETY: the caller guarantees two bytes of flash at `source`.
     unsafe {
         core::arch::asm!(
             "lpm {word:l}, Z+",
@@ -324,8 +322,7 @@ unsafe fn fetch_word(source: *const u8) -> u16 {
 unsafe fn fetch_bytes(source: *const u8, destination: *mut u8, count: usize) {
     let mut source = source;
     for index in 0..count {
-        // SAFETY: the caller vouches for `count` bytes of flash at `source` and
-        // of RAM at `destination`.
+        // SAFETY: the caller guarantees `count` bytes of flash at `source` and of RAM at `destination`.
         unsafe {
             destination.add(index).write(fetch_byte(source));
             source = source.add(1);
@@ -350,7 +347,7 @@ macro_rules! flash {
             // SAFETY: the linker script puts this section of constants into flash.
             #[cfg_attr(target_arch = "avr", unsafe(link_section = ".progmem.data"))]
             static VALUE: $type = $value;
-            // SAFETY: `VALUE` is a static, and the attribute puts it where `new` requires it.
+            // SAFETY: `VALUE` is a static, and the attribute puts it into the memory that `new` requires.
             unsafe { $crate::Flash::new(&raw const VALUE) }
         };
     )*};

@@ -12,16 +12,15 @@ pub const fn mul(a: i16, b: i16) -> i32 {
     a as i32 * b as i32
 }
 
-/// Computes the 32-bit product of two 16-bit factors, read as unsigned: adds four products of bytes, each shifted to
-/// its position. The instructions `$correction`, if any, then correct the halves `low` and `high`. Takes half the
-/// cycles of the library routine that the compiler calls, which multiplies 32 by 32 bits.
+/// Computes the 32-bit product of two 16-bit factors, read as unsigned, as the sum of four shifted products of bytes.
+/// Any instructions `$correction` then correct the halves `low` and `high`. Takes half the cycles of the library
+/// routine that the compiler would call, which multiplies 32 by 32 bits.
 #[cfg(target_arch = "avr")]
 macro_rules! product {
     ($a:expr, $b:expr $(, $correction:literal)*) => {{
         let low: u16;
         let high: u16;
-        // SAFETY: arithmetic on registers only; r1 is zero again at the end, as the calling convention
-        // requires.
+        // SAFETY: the instructions change only registers, and set r1 to zero again, as the calling convention requires.
         unsafe {
             core::arch::asm!(
                 "mul {a:l}, {b:l}",
@@ -58,8 +57,8 @@ pub fn mul_unsigned(a: u16, b: u16) -> u32 {
     product!(a, b)
 }
 
-/// Returns the full product of two signed factors. A negative factor read as unsigned is 2^16 too large, so the other
-/// factor is subtracted from the upper half.
+/// Returns the full product of two signed factors. For each negative factor, which read as unsigned is 2^16 too large,
+/// the other factor is subtracted from the upper half.
 #[cfg(target_arch = "avr")]
 #[inline(never)]
 pub fn mul(a: i16, b: i16) -> i32 {

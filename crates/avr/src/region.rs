@@ -1,27 +1,26 @@
-//! The flash after the program, which holds the robot's section and is written separately
-//! from the program.
+//! The region of flash after the program, which holds the robot's section and is written separately from the program.
 //!
-//! Data that is written without a compiler lies at a fixed address. On an AVR that address is a constant of
-//! the program, so a region takes no RAM, and reading it costs the same as reading a constant. Every address of flash
-//! can be read, whatever it holds. On any other machine a region is a slice of ordinary memory.
+//! The compiler does not place this data, so it has a fixed address. On an AVR this address is a constant of the
+//! program, so a region takes no RAM, and reading it costs the same as reading a constant. Every address of flash is
+//! readable, whatever its contents. On any other machine a region is a slice of ordinary memory.
 
-use crate::{Flash, Plain};
+use crate::{Flash, Pod};
 
-/// True if avr-gcc links the program without tools/linker. That linker makes the code shorter, so without it the region
-/// begins later. Such a build is for simulators only, so the region may take the place of a UNO's boot loader.
-const IS_PLAIN_LINK: bool = match option_env!("LIZARD_PLAIN_LINK") {
+/// True if avr-gcc links the program without tools/linker. The code is then longer, so the region begins later. Such a
+/// build is for simulators only, so the region may take the place of a UNO's boot loader.
+const USES_STOCK_LINKER: bool = match option_env!("LIZARD_PLAIN_LINK") {
     Some(value) => matches!(value.as_bytes(), b"1"),
     None => false,
 };
 
-/// The region's first address. Before it there is room for 27.5 KiB of code, or for 29.9 KiB if avr-gcc alone links.
-pub const START_ADDRESS: u16 = if IS_PLAIN_LINK { 0x7780 } else { 0x6e00 };
+/// The region's first address. The code before it may have 27.5 KiB, or 29.9 KiB if linked by avr-gcc alone.
+pub const START_ADDRESS: u16 = if USES_STOCK_LINKER { 0x7780 } else { 0x6e00 };
 
-/// The address after the region: where the boot loader of an Arduino UNO begins, or the flash ends.
-const END_ADDRESS: u16 = if IS_PLAIN_LINK { 0x8000 } else { 0x7e00 };
+/// The address after the region: the start of an Arduino UNO's boot loader, or the end of the flash.
+const END_ADDRESS: u16 = if USES_STOCK_LINKER { 0x8000 } else { 0x7e00 };
 
 /// The size of the region in bytes.
-pub const SPACE_BYTES: u16 = END_ADDRESS - START_ADDRESS;
+pub const REGION_BYTES: u16 = END_ADDRESS - START_ADDRESS;
 
 /// The region of flash that holds the robot's section.
 #[derive(Clone, Copy, Debug)]
@@ -29,15 +28,15 @@ pub struct Region<'a> {
     #[cfg(not(target_arch = "avr"))]
     bytes: &'a [u8],
     #[cfg(target_arch = "avr")]
-    lifetime: core::marker::PhantomData<&'a [u8]>,
+    marker: core::marker::PhantomData<&'a [u8]>,
 }
 
 #[cfg(not(target_arch = "avr"))]
 impl<'a> Region<'a> {
-    /// The region that a program starts with: on a host, no bytes.
-    pub const INITIAL: Self = Self { bytes: &[] };
+    /// The region with which a program starts: on a host, an empty one.
+    pub const DEFAULT: Self = Self { bytes: &[] };
 
-    /// Creates a region of these bytes.
+    /// Creates a region that consists of these bytes.
     pub const fn new(bytes: &'a [u8]) -> Self {
         Self { bytes }
     }
@@ -47,11 +46,11 @@ impl<'a> Region<'a> {
         self.bytes
     }
 
-    /// The region's size in bytes, at most [`SPACE_BYTES`].
+    /// The region's size in bytes, at most [`REGION_BYTES`].
     pub const fn size(self) -> u16 {
         let length = self.bytes.len();
-        if length > SPACE_BYTES as usize {
-            SPACE_BYTES
+        if length > REGION_BYTES as usize {
+            REGION_BYTES
         } else {
             length as u16
         }
@@ -62,26 +61,26 @@ impl<'a> Region<'a> {
         Self::new(self.bytes.get(..length.into()).unwrap_or(self.bytes))
     }
 
-    /// Reads the value whose bytes begin at `offset`; a value of zeros if it is not completely within the region.
-    /// Debug builds panic in that case, unless the region is empty.
-    pub fn read<T: Plain>(self, offset: u16) -> T {
-        self.assert_has(offset, size_of::<T>());
+    /// Reads the value whose bytes begin at `offset`. If that value is not entirely within the region, returns an
+    /// all-zero value; debug builds panic instead, unless the region is empty.
+    pub fn read<T: Pod>(self, offset: u16) -> T {
+        self.debug_assert_in_bounds(offset, size_of::<T>());
         Flash::from(self.bytes).read(offset.into())
     }
 
-    /// Returns `count` values whose bytes begin at `offset`; an empty slice if they are not completely within the
-    /// region. Debug builds panic in that case, unless the region is empty.
-    pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
+    /// Returns `count` values whose bytes begin at `offset`. If they are not entirely within the region, returns an
+    /// empty slice; debug builds panic instead, unless the region is empty.
+    pub fn values<T: Pod>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
         let length = usize::from(count) * size_of::<T>();
-        self.assert_has(offset, length);
+        self.debug_assert_in_bounds(offset, length);
         let bytes = Flash::from(self.bytes).subslice(offset.into(), length);
         bytes.map_or(Flash::EMPTY, Flash::cast)
     }
 
-    fn assert_has(self, offset: u16, length: usize) {
+    fn debug_assert_in_bounds(self, offset: u16, length: usize) {
         debug_assert!(
             self.bytes.is_empty() || usize::from(offset) + length <= self.bytes.len(),
-            "{length} bytes at {offset} are not in a region of {}",
+            "{length} bytes at {offset} are outside the region of {} bytes",
             self.bytes.len()
         );
     }
@@ -89,41 +88,39 @@ impl<'a> Region<'a> {
 
 #[cfg(target_arch = "avr")]
 impl<'a> Region<'a> {
-    /// The region that a program starts with: on an AVR the only region, that of the robot's section.
-    pub const INITIAL: Self = Self {
-        lifetime: core::marker::PhantomData,
+    /// The region with which a program starts: on an AVR, the region of the robot's section, the only one.
+    pub const DEFAULT: Self = Self {
+        marker: core::marker::PhantomData,
     };
 
     /// The region's size in bytes.
     #[inline(always)]
     pub const fn size(self) -> u16 {
-        SPACE_BYTES
+        REGION_BYTES
     }
 
-    /// The region's first `length` bytes. The length is not stored, since all offsets into a
-    /// section have been checked.
+    /// The region itself, because all offsets into a section have been checked and its length is not needed.
     #[inline(always)]
     pub const fn prefix(self, _length: u16) -> Self {
         self
     }
 
-    /// Reads the value whose bytes begin at `offset`, without a check of the bounds.
+    /// Reads the value whose bytes begin at `offset`, without bounds checking.
     #[inline(always)]
-    pub fn read<T: Plain>(self, offset: u16) -> T {
+    pub fn read<T: Pod>(self, offset: u16) -> T {
         let pointer =
             core::ptr::with_exposed_provenance(usize::from(START_ADDRESS.wrapping_add(offset)));
-        // SAFETY: every address of flash can be read, and any bytes are a value; the
-        // program does not write its flash.
+        // SAFETY: every address of flash is readable, any bit pattern is a valid `T`, and the program does not write
+        // its flash.
         unsafe { Flash::new(pointer) }.load()
     }
 
-    /// Returns `count` values whose bytes begin at `offset`, without a check of the bounds.
+    /// Returns `count` values whose bytes begin at `offset`, without bounds checking.
     #[inline(always)]
-    pub fn values<T: Plain>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
+    pub fn values<T: Pod>(self, offset: u16, count: u16) -> Flash<'a, [T]> {
         let pointer =
             core::ptr::with_exposed_provenance(usize::from(START_ADDRESS.wrapping_add(offset)));
-        // SAFETY: every address of flash can be read, and any bytes are values; the
-        // program does not write its flash.
+        // SAFETY: as in `read`.
         unsafe { Flash::new(core::ptr::slice_from_raw_parts(pointer, usize::from(count))) }
     }
 }

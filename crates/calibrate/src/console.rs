@@ -1,32 +1,32 @@
-//! The robot's console: lines that are sent, and their replies.
+//! The robot's console: commands and their replies.
 
 use std::time::Duration;
 
-/// The robot's reply to a line.
+/// The robot's reply to a command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Reply {
-    /// The `#` lines before the answer.
+    /// The lines before the answer; each begins with `#`.
     pub notes: Vec<String>,
     /// The answer: `ok ...` or `err ...`.
     pub answer: String,
 }
 
-/// A connection to a robot's console. All times are the robot's: a simulated robot may run slower or faster than this
+/// A connection to a robot's console. All times are robot time: a simulated robot may run slower or faster than this
 /// machine.
 pub trait Console {
-    /// The error if no reply arrives.
+    /// The error of a failed connection.
     type Error;
 
     /// Sends a line and waits for the reply.
     ///
     /// # Errors
-    /// Fails if the robot does not answer, or the connection is gone.
+    /// Fails if the robot does not answer, or the connection is lost.
     fn ask(&mut self, line: &str) -> impl Future<Output = Result<Reply, Self::Error>>;
 
-    /// Waits for a duration of the robot's time.
+    /// Waits for a duration of robot time.
     ///
     /// # Errors
-    /// Fails if the connection is gone.
+    /// Fails if the connection is lost.
     fn pause(&mut self, duration: Duration) -> impl Future<Output = Result<(), Self::Error>>;
 }
 
@@ -42,19 +42,19 @@ impl<C: Console> Console for &mut C {
     }
 }
 
-/// A reply that is not `ok`.
+/// The error of a reply that is not `ok`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadReply {
-    /// The robot refuses a line.
+    /// The robot refused a line.
     #[error("the robot refuses `{line}`: {reason}")]
     Refused {
         /// The line that was sent.
         line: String,
-        /// The code and the reason.
+        /// The error code and its text.
         reason: String,
     },
     /// The answer has an unknown format.
-    #[error("the robot's answer to `{line}` is not understood: `{answer}`")]
+    #[error("the answer to `{line}` has an unknown format: `{answer}`")]
     Unclear {
         /// The line that was sent.
         line: String,
@@ -63,7 +63,7 @@ pub enum BadReply {
     },
 }
 
-/// The error of a line that was not answered with `ok`.
+/// The error of a command that the robot did not confirm.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConsoleError<E> {
     /// The reply is not `ok`.
@@ -75,13 +75,13 @@ pub enum ConsoleError<E> {
 }
 
 impl<E> ConsoleError<E> {
-    /// True if the robot refuses the line.
+    /// True if the robot refused the line.
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::Reply(BadReply::Refused { .. }))
     }
 }
 
-/// Sends a line that must be accepted.
+/// Sends a line; a refusal is an error.
 ///
 /// # Errors
 /// Fails if the robot refuses the line, or if its answer has an unknown format.

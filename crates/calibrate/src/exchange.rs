@@ -1,4 +1,4 @@
-//! Reads a robot's settings, and replaces them as a whole.
+//! Reads all settings of a robot, and replaces them.
 
 use lizard_robot::{Calibration, Transfer};
 
@@ -7,7 +7,7 @@ use crate::console::{BadReply, Console, ConsoleError, send_command};
 /// Reads a robot's settings.
 ///
 /// # Errors
-/// Fails if there is no answer, or if its format is unknown.
+/// Fails if the robot does not answer, or if its answer has an unknown format.
 pub async fn read_settings<C: Console>(
     console: &mut C,
 ) -> Result<Calibration, ConsoleError<C::Error>> {
@@ -21,8 +21,8 @@ pub async fn read_settings<C: Console>(
 /// Sends settings in the order of a [`Transfer`], without saving them.
 ///
 /// # Errors
-/// Fails if the connection breaks, or with the first refusal of the last round if lines are refused in that round. The
-/// robot then has only a part of the settings.
+/// Fails if the connection breaks, or if the robot refuses lines in the last round; the error is then the first refusal
+/// of that round. After an error, the robot has only some of the settings.
 pub async fn send_settings<C: Console>(
     console: &mut C,
     calibration: &Calibration,
@@ -44,31 +44,33 @@ pub async fn send_settings<C: Console>(
     last_refusal.map_or(Ok(()), Err)
 }
 
-/// The error of a robot that did not accept settings.
+/// The error of a failed replacement of settings.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SendError<E> {
     /// The robot refused a value.
     #[error("{0}; nothing was saved, and the robot keeps its old settings")]
     Refused(ConsoleError<E>),
-    /// Neither the new nor the old settings are in effect as a whole.
+    /// Neither the new nor the old settings are completely in effect.
     #[error("{0}; nothing was saved; send `load` or `factory`, or press the board's reset button")]
     Mixed(ConsoleError<E>),
     /// The settings that the robot reports differ from those that were sent.
-    #[error("the robot did not accept all of it; nothing was saved, and it keeps its old settings")]
+    #[error(
+        "the robot did not accept all values; nothing was saved, and the robot keeps its old settings"
+    )]
     Differs,
 }
 
-/// Sends settings without saving them, and reads them back. If the robot refuses them or reports other ones, sends its
-/// old settings again.
+/// Sends new settings without saving them, and reads them back. If the robot refuses them or reports other values,
+/// sends the old settings again.
 ///
 /// # Errors
-/// Fails if the robot refuses settings or reports other ones, or if the connection breaks.
+/// Fails if the robot refuses settings or reports other values, or if the connection breaks.
 pub async fn replace_settings<C: Console>(
     console: &mut C,
     old: &Calibration,
-    calibration: &Calibration,
+    new: &Calibration,
 ) -> Result<(), SendError<C::Error>> {
-    let error = match send_and_compare(console, calibration).await {
+    let error = match send_and_compare(console, new).await {
         Ok(true) => return Ok(()),
         Ok(false) => SendError::Differs,
         Err(error) => SendError::Refused(error),
@@ -79,7 +81,7 @@ pub async fn replace_settings<C: Console>(
     Err(error)
 }
 
-/// Sends settings and reads them back; returns true if they are the same.
+/// Sends settings and reads them back; returns true if the robot reports the same settings.
 async fn send_and_compare<C: Console>(
     console: &mut C,
     calibration: &Calibration,

@@ -14,21 +14,21 @@ pub const SCALE_TURNS_DEG: [f64; 8] = [30.0, -30.0, 20.0, -20.0, 15.0, -15.0, 10
 
 /// A calibration in progress. Angles are in degrees, counter-clockwise; a servo is 0 to 3 for A1 to A4.
 ///
-/// Every function fails if the connection breaks or if the robot refuses a line. After a refusal, the settings are as
-/// before. The robot may have executed a line whose answer was lost, so the next function that needs the settings reads
-/// them again.
+/// Every function fails if the connection breaks or if the robot refuses a line. A refusal leaves the settings
+/// unchanged. The robot may have executed a line whose answer was lost, so the next function that needs the settings
+/// reads them again.
 #[derive(Debug)]
 pub struct Guide<C> {
     console: C,
-    /// The settings to which the guide returns: those at the start, or of the last save.
+    /// The settings that the guide restores: the settings at the start or at the last save.
     saved: Calibration,
-    /// The settings that are active now.
+    /// The active settings.
     active: Calibration,
-    /// The neutral angles, degrees; `None` before the first `stand`.
-    neutral: Option<[f64; 4]>,
-    /// True after a line without an answer: the robot's settings may differ from `active`.
+    /// The neutral angles; `None` before the first `stand`.
+    neutral_deg: Option<[f64; 4]>,
+    /// True after an unanswered line: the robot's settings may differ from `active`.
     may_be_outdated: bool,
-    /// The settings of a `save` that was not answered.
+    /// The settings of an unanswered `save`.
     unanswered_save: Option<Calibration>,
 }
 
@@ -39,14 +39,14 @@ impl<C: Console> Guide<C> {
     /// Reads the robot's settings; nothing moves.
     ///
     /// # Errors
-    /// Fails if there is no answer, or if its format is unknown.
+    /// Fails if the robot does not answer, or if its answer has an unknown format.
     pub async fn begin(mut console: C) -> Result<Self, C> {
         let active = read_settings(&mut console).await?;
         Ok(Self {
             console,
             saved: active.clone(),
             active,
-            neutral: None,
+            neutral_deg: None,
             may_be_outdated: false,
             unanswered_save: None,
         })
@@ -57,7 +57,7 @@ impl<C: Console> Guide<C> {
         &mut self.console
     }
 
-    /// The settings that are active now, saved or not.
+    /// The active settings, saved or not.
     pub fn calibration(&self) -> &Calibration {
         &self.active
     }
@@ -67,15 +67,15 @@ impl<C: Console> Guide<C> {
         self.may_be_outdated || !self.active.is_equivalent_to(&self.saved)
     }
 
-    /// Makes the robot stand; returns its neutral angles.
+    /// Makes the robot stand; returns the neutral angles, degrees.
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
     pub async fn stand(&mut self) -> Result<[f64; 4], C> {
         self.send_line("stand").await?;
-        let neutral = wait_until_still(&mut self.console).await?;
-        self.neutral = Some(neutral);
-        Ok(neutral)
+        let neutral_deg = wait_until_still(&mut self.console).await?;
+        self.neutral_deg = Some(neutral_deg);
+        Ok(neutral_deg)
     }
 
     /// Stops the pulses, so that no servo moves when the servos get power.
@@ -90,21 +90,21 @@ impl<C: Console> Guide<C> {
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
-    pub async fn center(&mut self) -> Result<(), C> {
+    pub async fn center_servos(&mut self) -> Result<(), C> {
         self.stand().await?;
         self.send_line("center").await?;
         wait_until_still(&mut self.console).await.map(drop)
     }
 
-    /// Turns one servo from its neutral angle by the first of these turns that the robot accepts; returns this turn.
+    /// Turns one servo from its neutral angle by the first turn that the robot accepts; returns this turn, degrees.
     ///
     /// # Errors
     /// Fails if the robot refuses all turns.
-    pub async fn turn(&mut self, servo: usize, turns_deg: &[f64]) -> Result<f64, C> {
-        let neutral = self.stand().await?;
+    pub async fn turn_servo(&mut self, servo: usize, turns_deg: &[f64]) -> Result<f64, C> {
+        let neutral_deg = self.stand().await?;
         let mut refusal = None;
         for turn_deg in turns_deg {
-            match self.point(servo, neutral[servo] + turn_deg).await {
+            match self.move_servo(servo, neutral_deg[servo] + turn_deg).await {
                 Ok(_) => return Ok(*turn_deg),
                 Err(error) if error.is_refusal() => refusal = refusal.or(Some(error)),
                 Err(error) => return Err(error),
@@ -113,16 +113,16 @@ impl<C: Console> Guide<C> {
         refusal.map_or(Ok(0.0), Err)
     }
 
-    /// Moves one servo to an angle, and the others to neutral; returns the angle as it was sent, from 0 to 360.
+    /// Moves one servo to an angle, and the others to neutral; returns the sent angle, from 0 to 360 degrees.
     ///
     /// # Errors
     /// Fails if the robot refuses this pose.
-    pub async fn point(&mut self, servo: usize, degrees: f64) -> Result<f64, C> {
-        let mut pose = match self.neutral {
-            Some(neutral) => neutral,
+    pub async fn move_servo(&mut self, servo: usize, angle_deg: f64) -> Result<f64, C> {
+        let mut pose = match self.neutral_deg {
+            Some(neutral_deg) => neutral_deg,
             None => self.stand().await?,
         };
-        pose[servo] = wrap(degrees);
+        pose[servo] = wrap_degrees(angle_deg);
         let [a1, a2, a3, a4] = pose;
         self.send_line(&format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}"))
             .await?;
@@ -130,17 +130,16 @@ impl<C: Console> Guide<C> {
         Ok(pose[servo])
     }
 
-    /// Reverses the sign of a servo. To keep its neutral pulse width, its trim is reversed, too.
+    /// Reverses a servo's sign, and also the trim, so that the neutral pulse width stays the same.
     ///
     /// # Errors
     /// Fails if the robot cannot stand.
-    pub async fn reverse(&mut self, servo: usize) -> Result<(), C> {
+    pub async fn reverse_sign(&mut self, servo: usize) -> Result<(), C> {
         self.stand().await?;
-        let sign_line_of =
-            |servo: usize, settings: ServoSettings| format!("dir {} {}", servo + 1, settings.dir);
         self.refresh().await?;
         let new = self.active.servos[servo].reversed();
-        self.set_with_trim(servo, new, sign_line_of).await?;
+        let format_line = |settings: ServoSettings| format!("dir {} {}", servo + 1, settings.dir);
+        self.set_with_trim(servo, new, format_line).await?;
         wait_until_still(&mut self.console).await.map(drop)
     }
 
@@ -148,34 +147,33 @@ impl<C: Console> Guide<C> {
     ///
     /// # Errors
     /// Fails if the trim would be too large.
-    pub async fn trim(&mut self, servo: usize, change_deg: f64) -> Result<(), C> {
+    pub async fn change_trim(&mut self, servo: usize, change_deg: f64) -> Result<(), C> {
         self.refresh().await?;
         let mut new = self.active.servos[servo];
         new.trim = round_to_hundredths(new.trim + change_deg);
-        self.send_line(&trim_line_of(servo, new)).await?;
+        self.send_line(&format_trim(servo, new)).await?;
         self.active.servos[servo] = new;
         Ok(())
     }
 
-    /// Sets a servo's scale, us per degree. To keep its neutral pulse width, its trim is converted, too.
+    /// Sets a servo's scale, us per degree, and converts the trim, so that the neutral pulse width stays the same.
     ///
     /// # Errors
-    /// Fails if this scale or the converted trim is refused.
+    /// Fails if the robot refuses the scale or the converted trim.
     pub async fn set_scale(&mut self, servo: usize, scale: f64) -> Result<(), C> {
         self.refresh().await?;
         let new = self.active.servos[servo].with_scale(scale);
-        let scale_line_of = |servo: usize, settings: ServoSettings| {
-            format!("scale {} {:.2}", servo + 1, settings.scale)
-        };
-        self.set_with_trim(servo, new, scale_line_of).await
+        let format_line =
+            |settings: ServoSettings| format!("scale {} {:.2}", servo + 1, settings.scale);
+        self.set_with_trim(servo, new, format_line).await
     }
 
-    /// Makes the robot stand, and sets a servo's scale from a commanded turn and its measured size; returns the scale,
-    /// us per degree.
+    /// Makes the robot stand, and sets a servo's scale from a commanded and a measured turn; returns the scale, us per
+    /// degree.
     ///
     /// # Errors
-    /// Fails if this scale or the converted trim is refused.
-    pub async fn scale_by_turn(
+    /// Fails if the robot refuses the scale or the converted trim.
+    pub async fn set_scale_from_turn(
         &mut self,
         servo: usize,
         commanded_deg: f64,
@@ -192,9 +190,9 @@ impl<C: Console> Guide<C> {
     ///
     /// # Errors
     /// Fails if a gait needs a larger travel.
-    pub async fn limit(&mut self, servo: usize, ends_deg: [f64; 2]) -> Result<(), C> {
+    pub async fn set_limit(&mut self, servo: usize, ends_deg: [f64; 2]) -> Result<(), C> {
         self.refresh().await?;
-        let limit = ends_deg.map(wrap);
+        let limit = ends_deg.map(wrap_degrees);
         let [min, max] = limit;
         self.send_line(&format!("limit {} {min:.2} {max:.2}", servo + 1))
             .await?;
@@ -207,7 +205,7 @@ impl<C: Console> Guide<C> {
     ///
     /// # Errors
     /// Fails if the robot cannot walk now.
-    pub async fn walk(&mut self) -> Result<Option<String>, C> {
+    pub async fn start_walk(&mut self) -> Result<Option<String>, C> {
         let help = self.send_line("help").await?;
         let gait_lists = help
             .notes
@@ -236,12 +234,12 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Makes the robot stand, and restores the settings of the start or of the last save; returns true if other
+    /// Makes the robot stand, and restores the settings at the start or at the last save; returns true if other
     /// settings were active. If a `save` was not answered, first makes the board load its saved settings.
     ///
     /// # Errors
-    /// Fails if the robot refuses a setting. If the robot refuses to stand, for example at a low supply voltage, the
-    /// settings are restored anyway.
+    /// Fails if the robot refuses a setting. Restores the settings even if the robot refuses to stand, for example at a
+    /// low supply voltage.
     pub async fn restore(&mut self) -> Result<bool, C> {
         match self.stand().await {
             Err(error) if !error.is_refusal() => return Err(error),
@@ -268,8 +266,8 @@ impl<C: Console> Guide<C> {
     /// Replaces the active settings without saving the new ones.
     ///
     /// # Errors
-    /// Fails if the robot refuses settings or reports other ones. Then it has its old settings, unless the error says
-    /// otherwise.
+    /// Fails if the robot refuses settings or reports other values. The robot then has its old settings, except after
+    /// [`SendError::Mixed`].
     pub async fn replace(
         &mut self,
         calibration: &Calibration,
@@ -284,21 +282,21 @@ impl<C: Console> Guide<C> {
         result
     }
 
-    /// Sends the line of a servo's new sign or scale, and its new trim; if the trim is refused, sends the old sign or
-    /// scale again.
+    /// Sends the line of a servo's new sign or scale, and the new trim. If the robot refuses the trim, sends the old
+    /// sign or scale again.
     async fn set_with_trim(
         &mut self,
         servo: usize,
         new: ServoSettings,
-        line_of: impl Fn(usize, ServoSettings) -> String,
+        format_line: impl Fn(ServoSettings) -> String,
     ) -> Result<(), C> {
         let old = self.active.servos[servo];
-        self.send_line(&line_of(servo, new)).await?;
+        self.send_line(&format_line(new)).await?;
         if new.trim != old.trim
-            && let Err(error) = self.send_line(&trim_line_of(servo, new)).await
+            && let Err(error) = self.send_line(&format_trim(servo, new)).await
         {
             if error.is_refusal() {
-                self.send_line(&line_of(servo, old)).await?;
+                self.send_line(&format_line(old)).await?;
             }
             return Err(error);
         }
@@ -306,7 +304,7 @@ impl<C: Console> Guide<C> {
         Ok(())
     }
 
-    /// Sends a line, and notes if it was not answered.
+    /// Sends a line, and records a missing answer.
     async fn send_line(&mut self, line: &str) -> Result<Reply, C> {
         let result = send_command(&mut self.console, line).await;
         self.may_be_outdated |= matches!(&result, Err(error) if !error.is_refusal());
@@ -323,7 +321,7 @@ impl<C: Console> Guide<C> {
     }
 }
 
-/// Makes a robot load its saved settings; returns true if they are the same as these.
+/// Makes a robot load its saved settings; returns true if they are equivalent to `calibration`.
 async fn load_and_compare<C: Console>(
     console: &mut C,
     calibration: &Calibration,
@@ -335,14 +333,14 @@ async fn load_and_compare<C: Console>(
     }
 }
 
-/// The line that sets a servo's trim.
-fn trim_line_of(servo: usize, settings: ServoSettings) -> String {
+/// Formats the line that sets a servo's trim.
+fn format_trim(servo: usize, settings: ServoSettings) -> String {
     format!("trim {} {:.2}", servo + 1, settings.trim)
 }
 
-/// Wraps an angle to the range from 0 to 360 degrees, and rounds it as the console does.
-fn wrap(degrees: f64) -> f64 {
-    round_to_hundredths(degrees).rem_euclid(360.0)
+/// Wraps an angle to the range from 0 to 360 degrees, and rounds the result as the console does.
+fn wrap_degrees(angle_deg: f64) -> f64 {
+    round_to_hundredths(angle_deg).rem_euclid(360.0)
 }
 
 /// Rounds to hundredths, as the robot does, without a negative zero.

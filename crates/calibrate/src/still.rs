@@ -1,4 +1,4 @@
-//! The end of a motion, found by repeated `status` commands.
+//! Detects the end of a movement by repeated `status` commands.
 
 use std::time::Duration;
 
@@ -11,19 +11,19 @@ const STATUS_INTERVAL: Duration = Duration::from_millis(50);
 /// Largest number of `status` commands: a wait ends after five seconds, plus the time that the answers take.
 const MAX_STATUS_COUNT: u32 = 100;
 
-/// Waits until the robot stands still or the wait is too long, and returns its pose, degrees.
+/// Waits until the robot stands still or the time limit has passed, and returns its pose, degrees.
 ///
 /// # Errors
 /// Fails if the robot does not answer, or has no pose.
 pub(crate) async fn wait_until_still<C: Console>(
     console: &mut C,
 ) -> Result<[f64; 4], ConsoleError<C::Error>> {
-    // The last pose that was reported, and the first frame that had it.
+    // The first frame that reported the current pose, and this pose.
     let mut still_since: Option<(u64, [f64; 4])> = None;
     for _ in 1..MAX_STATUS_COUNT {
         let (frames, pose) = ask_pose(console).await?;
         match still_since {
-            // After a restart, the count of frames starts at 0 again.
+            // After a reset, the frame count starts at 0 again.
             Some((first_frame, first_pose)) if first_pose == pose && frames >= first_frame => {
                 if frames - first_frame >= STILL_FRAMES {
                     return Ok(pose);
@@ -39,7 +39,7 @@ pub(crate) async fn wait_until_still<C: Console>(
     Ok(ask_pose(console).await?.1)
 }
 
-/// Asks for the robot's status; returns the number of frames since the robot started, and its pose, degrees.
+/// Asks for the robot's status; returns the number of frames since the reset, and the pose, degrees.
 async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
     let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_stands_still_once_its_pose_has_not_changed_for_a_while_even_after_a_restart() {
+    fn a_robot_stands_still_once_its_pose_is_constant_for_long_enough_even_after_a_reset() {
         for (states, expected) in [
             (vec![(100, 1.0), (112, 1.0), (200, 2.0)], 1.0),
             (
@@ -97,7 +97,7 @@ mod tests {
                 ],
                 2.0,
             ),
-            // The count of frames stops, so the wait ends at its limit.
+            // The frame count stops, so the wait ends at the time limit.
             (vec![(100, 1.0), (105, 1.0)], 1.0),
         ] {
             let pose = pollster::block_on(wait_until_still(&mut ScriptedStatus(states)));

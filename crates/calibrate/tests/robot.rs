@@ -1,4 +1,4 @@
-//! Tests of calibrations on the firmware's own console, without a chip and faster than real time.
+//! Tests of calibrations with the firmware's console, without a chip and faster than real time.
 
 use std::convert::Infallible;
 use std::time::Duration;
@@ -16,7 +16,7 @@ use proptest::prelude::*;
 /// The robot.toml of the paper's robot.
 const PAPER: &str = include_str!("../../../robots/paper.toml");
 
-/// A connection that loses nothing.
+/// A lossless connection.
 struct DirectConsole(RunningRobot);
 
 impl DirectConsole {
@@ -27,7 +27,7 @@ impl DirectConsole {
         Self(running)
     }
 
-    fn calibration(&mut self) -> Calibration {
+    fn read_calibration(&mut self) -> Calibration {
         block_on(read_settings(self)).expect("the robot answers")
     }
 }
@@ -57,14 +57,19 @@ impl Console for DirectConsole {
     }
 }
 
-/// The factory settings of the paper's robot.
-fn factory_settings() -> Calibration {
-    DirectConsole::power_on(PAPER).calibration()
+/// Reads the factory settings of the paper's robot.
+fn read_factory_settings() -> Calibration {
+    DirectConsole::power_on(PAPER).read_calibration()
+}
+
+/// Starts a guide for a new robot.
+fn begin_guide(robot_toml: &str) -> Guide<DirectConsole> {
+    block_on(Guide::begin(DirectConsole::power_on(robot_toml))).expect("the robot answers")
 }
 
 #[test]
-fn the_settings_of_a_new_robot_are_those_of_robot_toml() {
-    let calibration = factory_settings();
+fn a_new_robot_has_the_settings_of_robot_toml() {
+    let calibration = read_factory_settings();
     assert_eq!(
         (calibration.boot.as_str(), calibration.deadman),
         ("stand", 0)
@@ -78,9 +83,9 @@ fn the_settings_of_a_new_robot_are_those_of_robot_toml() {
 }
 
 #[test]
-fn settings_that_were_sent_are_read_back() {
+fn read_settings_returns_the_sent_settings() {
     let mut robot = DirectConsole::power_on(PAPER);
-    let mut calibration = factory_settings();
+    let mut calibration = read_factory_settings();
     calibration.servos[1].trim = -3.25;
     calibration.servos[2].dir = '-';
     calibration.servos[3].scale = 10.57;
@@ -88,73 +93,71 @@ fn settings_that_were_sent_are_read_back() {
     calibration.boot = "arc left".to_owned();
     calibration.deadman = 1500;
     block_on(send_settings(&mut robot, &calibration)).expect("the robot accepts the settings");
-    let read_back = robot.calibration();
+    let read_back = robot.read_calibration();
     assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
-    assert!(!calibration.is_equivalent_to(&factory_settings()));
+    assert!(!calibration.is_equivalent_to(&read_factory_settings()));
 }
 
 #[test]
-fn a_setting_that_the_current_ones_forbid_is_retried_after_the_others() {
-    // With a travel of 400 us to each side, a large trim and a large scale exclude each other.
+fn a_setting_that_conflicts_with_the_current_settings_is_sent_again_after_the_others() {
+    // With a travel of 400 us to each side, a large trim and a large scale are incompatible.
     let narrow_robot = PAPER.replace("min_us = 600.0", "min_us = 1100.0");
     let narrow_robot = narrow_robot.replace("max_us = 2400.0", "max_us = 1900.0");
     let mut robot = DirectConsole::power_on(&narrow_robot);
-    let initial = robot.calibration();
+    let initial = robot.read_calibration();
     let [mut scaled, mut trimmed] = [initial.clone(), initial];
     scaled.servos[0].scale = 16.0;
     trimmed.servos[0].trim = 15.0;
     for calibration in [&trimmed, &scaled, &trimmed] {
         block_on(send_settings(&mut robot, calibration)).expect("the robot accepts the settings");
-        let read_back = robot.calibration();
+        let read_back = robot.read_calibration();
         assert!(calibration.is_equivalent_to(&read_back), "{read_back:?}");
     }
 }
 
 #[test]
-fn settings_that_do_not_suit_the_gaits_are_refused_and_the_old_ones_are_restored() {
-    let mut guide =
-        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
-    block_on(guide.trim(2, 1.5)).expect("the robot accepts the settings");
-    let mut calibration = factory_settings();
+fn replace_restores_the_old_settings_if_the_robot_refuses_the_new_settings() {
+    let mut guide = begin_guide(PAPER);
+    block_on(guide.change_trim(2, 1.5)).expect("the robot accepts the settings");
+    let mut calibration = read_factory_settings();
     calibration.servos[0].trim = 4.0;
     calibration.servos[1].limit = [40.0, 43.0];
     let error = block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
     assert!(matches!(error, SendError::Refused(_)), "{error:?}");
     let message = error.to_string();
     assert!(
-        message.contains("`limit 2 40.00 43.00`: 3 A2 would"),
+        message.contains("`limit 2 40.00 43.00`: 3 A2's travel must"),
         "{message}"
     );
-    let mut expected = factory_settings();
+    let mut expected = read_factory_settings();
     expected.servos[2].trim = 1.5;
-    assert!(guide.console().calibration().is_equivalent_to(&expected));
+    assert!(
+        guide
+            .console()
+            .read_calibration()
+            .is_equivalent_to(&expected)
+    );
     assert!(guide.calibration().is_equivalent_to(&expected));
 }
 
 #[test]
-fn a_scale_whose_trim_is_refused_is_undone() {
-    let mut guide =
-        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
-    block_on(guide.trim(0, 19.0)).expect("the robot accepts the settings");
-    // The horn keeps its tooth, so half the scale needs twice the trim, which exceeds the largest trim.
+fn set_scale_restores_the_old_scale_if_the_robot_refuses_the_trim() {
+    let mut guide = begin_guide(PAPER);
+    block_on(guide.change_trim(0, 19.0)).expect("the robot accepts the settings");
+    // The horn stays on its tooth, so half the scale needs twice the trim, which exceeds the largest trim.
     let refusal = block_on(guide.set_scale(0, 5.0)).expect_err("the trim is too large");
-    assert!(
-        refusal
-            .to_string()
-            .starts_with("the robot refuses `trim 1 38.00`"),
-        "{refusal}"
-    );
-    let robot_settings = guide.console().calibration().servos[0];
+    let message = refusal.to_string();
+    assert!(message.starts_with("the robot refuses `trim 1 38.00`"));
+    let robot_settings = guide.console().read_calibration().servos[0];
     assert_eq!((robot_settings.scale, robot_settings.trim), (10.0, 19.0));
     assert_eq!(guide.calibration().servos[0], robot_settings);
 }
 
 #[test]
-fn a_scale_is_measured_by_a_turn_as_large_as_the_robot_accepts() {
-    let mut guide =
-        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
+fn the_scale_is_measured_by_the_largest_turn_that_the_robot_accepts() {
+    let mut guide = begin_guide(PAPER);
     let commanded_deg =
-        block_on(guide.turn(0, &SCALE_TURNS_DEG)).expect("the robot accepts a turn");
+        block_on(guide.turn_servo(0, &SCALE_TURNS_DEG)).expect("the robot accepts a turn");
     let pose = guide.console().0.status_value("pose");
     let a1: f64 = pose
         .split(',')
@@ -163,31 +166,31 @@ fn a_scale_is_measured_by_a_turn_as_large_as_the_robot_accepts() {
         .expect("the pose has an angle of A1");
     assert!(
         (a1 - 138.59 - commanded_deg).abs() < 0.02,
-        "{pose} after {commanded_deg}"
+        "pose {pose} after a turn of {commanded_deg} deg"
     );
-    assert!(commanded_deg.abs() >= 20.0, "{commanded_deg}");
-    // A servo that turns 10 % too far needs a scale that is smaller by the factor 1.1.
-    let scale = block_on(guide.scale_by_turn(0, commanded_deg, commanded_deg * 1.1))
+    assert!(commanded_deg.abs() >= 20.0, "a turn of {commanded_deg} deg");
+    // A servo that turns 10 % too far needs a scale that is smaller by a factor of 1.1.
+    let scale = block_on(guide.set_scale_from_turn(0, commanded_deg, commanded_deg * 1.1))
         .expect("the robot accepts the settings");
     assert_eq!(scale, 9.09);
-    assert_eq!(guide.console().calibration().servos[0].scale, 9.09);
+    assert_eq!(guide.console().read_calibration().servos[0].scale, 9.09);
 }
 
 #[test]
-fn angles_are_rounded_as_on_the_console_and_the_first_refusal_is_reported() {
-    let mut guide =
-        block_on(Guide::begin(DirectConsole::power_on(PAPER))).expect("the robot answers");
-    let angle = block_on(guide.point(0, 140.004 - 360.0)).expect("the robot accepts the settings");
+fn angles_are_rounded_as_on_the_console_and_the_first_refusal_is_returned() {
+    let mut guide = begin_guide(PAPER);
+    let angle =
+        block_on(guide.move_servo(0, 140.004 - 360.0)).expect("the robot accepts the settings");
     assert_eq!(angle, 140.0);
-    block_on(guide.limit(0, [-300.0, 580.0])).expect("the robot accepts the settings");
+    block_on(guide.set_limit(0, [-300.0, 580.0])).expect("the robot accepts the settings");
     assert_eq!(guide.calibration().servos[0].limit, [60.0, 220.0]);
     let refusal =
-        block_on(guide.turn(0, &[170.0, 180.0])).expect_err("the angles are out of reach");
+        block_on(guide.turn_servo(0, &[170.0, 180.0])).expect_err("the angles are out of reach");
     assert!(refusal.to_string().contains("`pose 308.59 "), "{refusal}");
 }
 
 #[test]
-fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
+fn start_walk_starts_walk_or_the_first_other_gait() {
     let removable_gaits = [
         "walk",
         "back",
@@ -208,9 +211,8 @@ fn the_test_walk_is_walk_or_the_first_gait_that_the_robot_has() {
         let robot_toml = removed_gaits
             .iter()
             .fold(PAPER.to_owned(), |text, name| without_gait(&text, name));
-        let mut guide = block_on(Guide::begin(DirectConsole::power_on(&robot_toml)))
-            .expect("the robot answers");
-        let gait = block_on(guide.walk()).expect("the robot accepts the settings");
+        let mut guide = begin_guide(&robot_toml);
+        let gait = block_on(guide.start_walk()).expect("the robot accepts the settings");
         assert_eq!(gait.as_deref(), expected);
         let gait = guide.console().0.status_value("gait");
         assert_eq!(gait, expected.unwrap_or("stand"));
@@ -226,26 +228,50 @@ enum Loss {
     Answer,
 }
 
-/// A connection that loses the line with a given index or its answer, and records all lines.
-struct SingleLossConsole {
+/// A connection that loses some lines or answers, and records the lines and the robot's saved settings.
+struct LossyConsole {
     robot: DirectConsole,
     lines: Vec<String>,
-    loss: Option<(usize, Loss)>,
+    /// The index of each affected line, and the lost part of its exchange.
+    losses: Vec<(usize, Loss)>,
+    saved: Calibration,
 }
 
-impl Console for SingleLossConsole {
+impl LossyConsole {
+    /// Sends `first_lines` to the paper's robot without losses. The connection then counts lines from 0.
+    fn connect(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Self {
+        let mut robot = DirectConsole::power_on(PAPER);
+        for line in first_lines {
+            block_on(robot.ask(line)).expect("the robot answers");
+        }
+        let saved = robot.read_calibration();
+        Self {
+            robot,
+            lines: Vec::new(),
+            losses,
+            saved,
+        }
+    }
+}
+
+impl Console for LossyConsole {
     type Error = &'static str;
 
     async fn ask(&mut self, line: &str) -> Result<Reply, &'static str> {
         let index = self.lines.len();
         self.lines.push(line.to_owned());
-        match self.loss {
-            Some((lost_index, Loss::Line)) if lost_index == index => Err("the line was lost"),
-            Some((lost_index, Loss::Answer)) if lost_index == index => {
-                let _ = self.robot.ask(line).await;
-                Err("the answer was lost")
-            }
-            _ => Ok(self.robot.ask(line).await.expect("the robot answers")),
+        let mut losses = self.losses.iter();
+        let loss = losses.find(|(lost_index, _)| *lost_index == index);
+        if let Some((_, Loss::Line)) = loss {
+            return Err("the line was lost");
+        }
+        let reply = self.robot.ask(line).await.expect("the robot answers");
+        if line == "save" && reply.answer.starts_with("ok") {
+            self.saved = self.robot.read_calibration();
+        }
+        match loss {
+            None => Ok(reply),
+            Some(_) => Err("the answer was lost"),
         }
     }
 
@@ -258,157 +284,132 @@ impl Console for SingleLossConsole {
     }
 }
 
-/// Performs a calibration with every kind of setting and two saves.
+/// Starts a guide for the paper's robot, which has received `first_lines`, over a lossy connection.
+fn begin_lossy_guide(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Guide<LossyConsole> {
+    let connection = LossyConsole::connect(first_lines, losses);
+    block_on(Guide::begin(connection)).expect("the robot answers")
+}
+
+/// Performs a calibration that changes settings of every kind and saves twice.
 async fn calibrate<C: Console>(guide: &mut Guide<C>) -> Result<(), ConsoleError<C::Error>> {
-    guide.trim(3, 2.0).await?;
-    guide.reverse(3).await?;
+    guide.change_trim(3, 2.0).await?;
+    guide.reverse_sign(3).await?;
     guide.save().await?;
     guide.set_scale(3, 11.0).await?;
-    guide.limit(0, [60.0, 220.0]).await?;
+    guide.set_limit(0, [60.0, 220.0]).await?;
     guide.save().await?;
-    guide.trim(1, -0.5).await
+    guide.change_trim(1, -0.5).await
 }
 
 /// Performs the calibration with one loss; returns the guide, and true if the calibration has failed.
-fn calibrate_with_loss(loss: (usize, Loss)) -> (Guide<SingleLossConsole>, bool) {
-    let robot = DirectConsole::power_on(PAPER);
-    let connection = SingleLossConsole {
-        robot,
-        lines: Vec::new(),
-        loss: Some(loss),
-    };
-    let mut guide = match block_on(Guide::begin(connection)) {
-        Ok(guide) => guide,
-        Err(error) => panic!("{error}"),
-    };
+fn calibrate_with_loss(loss: (usize, Loss)) -> (Guide<LossyConsole>, bool) {
+    let mut guide = begin_lossy_guide(&[], vec![loss]);
     let result = block_on(calibrate(&mut guide));
     (guide, result.is_err())
 }
 
-/// Makes the robot load the settings with which it starts after a reset, and returns them.
-fn load_stored(guide: &mut Guide<SingleLossConsole>) -> Calibration {
+/// Makes the robot load its saved settings or, without any, its factory settings, and returns them.
+fn load_stored_settings(guide: &mut Guide<LossyConsole>) -> Calibration {
     let robot = &mut guide.console().robot;
     if !robot.0.send_line("load").starts_with("ok") {
         robot.0.expect_accepted("factory");
     }
-    robot.calibration()
+    robot.read_calibration()
 }
 
 #[test]
-fn whichever_line_or_answer_is_lost_the_guide_ends_with_the_settings_of_the_robot() {
-    // Line 0 reads the settings when the guide starts; without them there is no guide.
+fn after_the_loss_of_any_line_or_answer_guide_and_robot_agree_on_the_settings() {
+    // Line 0 reads the settings; without its answer, the guide cannot start.
     let mut loss_count = 0;
     for index in 1.. {
         for loss in [Loss::Line, Loss::Answer] {
             let (mut guide, has_failed) = calibrate_with_loss((index, loss));
             if !has_failed {
-                assert!(loss_count > 30, "{loss_count}");
+                assert!(loss_count > 30, "{loss_count} losses");
                 return;
             }
             loss_count += 1;
             let is_query = guide.console().lines[index] == "status";
-            assert!(is_query || guide.has_unsaved_changes(), "{index}, {loss:?}");
+            let context = format!("line {index}, lost: {loss:?}");
+            assert!(is_query || guide.has_unsaved_changes(), "{context}");
             // A cancelled calibration restores the stored settings, so a reset changes nothing.
             block_on(guide.restore()).expect("the robot answers");
-            let active = guide.console().robot.calibration();
+            let active = guide.console().robot.read_calibration();
+            assert!(active.is_equivalent_to(guide.calibration()), "{context}");
+            assert!(!guide.has_unsaved_changes(), "{context}");
+            let stored = load_stored_settings(&mut guide);
             assert!(
-                active.is_equivalent_to(guide.calibration()),
-                "{index}, {loss:?}"
-            );
-            assert!(!guide.has_unsaved_changes(), "{index}, {loss:?}");
-            let stored_settings = load_stored(&mut guide);
-            assert!(
-                stored_settings.is_equivalent_to(&active),
-                "{index}, {loss:?}: {stored_settings:?}, {active:?}"
+                stored.is_equivalent_to(&active),
+                "{context}: stored {stored:?}, active {active:?}"
             );
 
             // A save stores the settings that the guide shows.
             let (mut guide, _) = calibrate_with_loss((index, loss));
             block_on(guide.save()).expect("the robot answers");
             let shown = guide.calibration().clone();
-            assert!(
-                shown.is_equivalent_to(&guide.console().robot.calibration()),
-                "{index}, {loss:?}"
-            );
-            assert!(
-                shown.is_equivalent_to(&load_stored(&mut guide)),
-                "{index}, {loss:?}"
-            );
+            for actual in [
+                guide.console().robot.read_calibration(),
+                load_stored_settings(&mut guide),
+            ] {
+                assert!(shown.is_equivalent_to(&actual), "{context}: {actual:?}");
+            }
         }
     }
 }
 
 #[test]
-fn a_servo_moves_from_angle_to_angle_without_a_return_to_neutral() {
-    let mut connection = SingleLossConsole {
-        robot: DirectConsole::power_on(PAPER),
-        lines: Vec::new(),
-        loss: None,
-    };
+fn move_servo_does_not_return_to_neutral_between_two_angles() {
+    let mut connection = LossyConsole::connect(&[], Vec::new());
     let mut guide = block_on(Guide::begin(&mut connection)).expect("the robot answers");
     for degrees in [140.0, 141.0] {
-        block_on(guide.point(0, degrees)).expect("the robot accepts the settings");
+        block_on(guide.move_servo(0, degrees)).expect("the robot accepts the settings");
     }
     let stand_lines = connection.lines.iter().filter(|line| *line == "stand");
     assert_eq!(stand_lines.count(), 1);
 }
 
 #[test]
-fn settings_that_were_unsaved_at_the_start_are_restored_even_after_a_lost_save() {
+fn restore_returns_to_settings_that_were_unsaved_at_the_start_even_after_a_lost_save() {
     // If only the answer was lost, the robot has saved the new trim.
     for (loss, trim) in [(Loss::Line, 2.0), (Loss::Answer, 3.0)] {
-        let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, loss);
-        block_on(guide.trim(0, 1.0)).expect("the robot accepts the settings");
+        let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], vec![(2, loss)]);
+        block_on(guide.change_trim(0, 1.0)).expect("the robot accepts the settings");
         block_on(guide.save()).expect_err("the exchange is lost");
         for _ in 0..2 {
             block_on(guide.restore()).expect("the robot answers");
-            let active = guide.console().robot.calibration();
+            let active = guide.console().robot.read_calibration();
             assert_eq!(active.servos[0].trim, trim);
         }
     }
 }
 
-/// A guide that starts after the paper's robot has received some lines, with a loss at the line with this index.
-fn guide_after(lines: &[&str], index: usize, loss: Loss) -> Guide<SingleLossConsole> {
-    let mut robot = DirectConsole::power_on(PAPER);
-    for line in lines {
-        block_on(robot.ask(line)).expect("the robot answers");
-    }
-    let connection = SingleLossConsole {
-        robot,
-        lines: Vec::new(),
-        loss: Some((index, loss)),
-    };
-    block_on(Guide::begin(connection)).expect("the robot answers")
-}
-
 #[test]
-fn settings_saved_before_the_start_are_not_restored_after_a_lost_save() {
-    let mut guide = guide_after(&["trim 1 5", "save", "trim 1 2"], 2, Loss::Line);
-    block_on(guide.trim(0, 1.0)).expect("the robot accepts the settings");
+fn restore_does_not_return_to_settings_saved_before_the_start_after_a_lost_save() {
+    let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], vec![(2, Loss::Line)]);
+    block_on(guide.change_trim(0, 1.0)).expect("the robot accepts the settings");
     block_on(guide.save()).expect_err("the exchange is lost");
-    block_on(guide.trim(0, -1.0)).expect("the robot accepts the settings");
+    block_on(guide.change_trim(0, -1.0)).expect("the robot accepts the settings");
     block_on(guide.restore()).expect("the robot answers");
-    assert_eq!(guide.console().robot.calibration().servos[0].trim, 2.0);
+    assert_eq!(guide.console().robot.read_calibration().servos[0].trim, 2.0);
 }
 
 #[test]
-fn a_setting_whose_answer_was_lost_is_read_again_before_the_next_change() {
-    let mut guide = guide_after(&[], 1, Loss::Answer);
+fn the_guide_reads_the_settings_again_after_a_lost_answer() {
+    let mut guide = begin_lossy_guide(&[], vec![(1, Loss::Answer)]);
     block_on(guide.set_scale(0, 11.0)).expect_err("the exchange is lost");
     let scale =
-        block_on(guide.scale_by_turn(0, 30.0, 30.0)).expect("the robot accepts the settings");
+        block_on(guide.set_scale_from_turn(0, 30.0, 30.0)).expect("the robot accepts the settings");
     assert_eq!(scale, 11.0);
 
-    let mut guide = guide_after(&[], 1, Loss::Answer);
-    block_on(guide.trim(0, 1.5)).expect_err("the exchange is lost");
-    let mut calibration = factory_settings();
+    let mut guide = begin_lossy_guide(&[], vec![(1, Loss::Answer)]);
+    block_on(guide.change_trim(0, 1.5)).expect_err("the exchange is lost");
+    let mut calibration = read_factory_settings();
     calibration.servos[1].limit = [40.0, 43.0];
     block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
-    assert_eq!(guide.console().robot.calibration().servos[0].trim, 1.5);
+    assert_eq!(guide.console().robot.read_calibration().servos[0].trim, 1.5);
 }
 
-/// A connection that answers `ok` to every trim of A2 without passing it on.
+/// A connection that answers `ok` to each trim of A2, but does not send it to the robot.
 struct TrimIgnoringConsole(DirectConsole);
 
 impl Console for TrimIgnoringConsole {
@@ -430,83 +431,47 @@ impl Console for TrimIgnoringConsole {
 }
 
 #[test]
-fn settings_that_differ_when_read_back_are_an_error() {
-    let mut guide = block_on(Guide::begin(TrimIgnoringConsole(DirectConsole::power_on(
-        PAPER,
-    ))))
-    .expect("the robot answers");
-    let mut calibration = factory_settings();
+fn replace_fails_if_the_robot_reports_different_settings() {
+    let connection = TrimIgnoringConsole(DirectConsole::power_on(PAPER));
+    let mut guide = block_on(Guide::begin(connection)).expect("the robot answers");
+    let mut calibration = read_factory_settings();
     calibration.servos[0].trim = 1.0;
     calibration.servos[1].trim = 1.0;
     let error = block_on(guide.replace(&calibration)).expect_err("a trim differs");
     assert_eq!(error, SendError::Differs);
-    let active = guide.console().0.calibration();
-    assert!(active.is_equivalent_to(&factory_settings()), "{active:?}");
+    let active = guide.console().0.read_calibration();
+    assert!(
+        active.is_equivalent_to(&read_factory_settings()),
+        "{active:?}"
+    );
 }
 
-/// A connection that loses some lines or their answers, and records the settings that the robot has saved.
-struct LossyConsole {
-    robot: DirectConsole,
-    line_count: usize,
-    losses: Vec<(usize, Loss)>,
-    saved: Calibration,
-}
-
-impl Console for LossyConsole {
-    type Error = &'static str;
-
-    async fn ask(&mut self, line: &str) -> Result<Reply, &'static str> {
-        let index = self.line_count;
-        self.line_count += 1;
-        let loss = self
-            .losses
-            .iter()
-            .find(|(lost_index, _)| *lost_index == index);
-        if let Some((_, Loss::Line)) = loss {
-            return Err("the line was lost");
-        }
-        let reply = self.robot.ask(line).await.expect("the robot answers");
-        if line == "save" && reply.answer.starts_with("ok") {
-            self.saved = self.robot.calibration();
-        }
-        match loss {
-            None => Ok(reply),
-            Some(_) => Err("the answer was lost"),
-        }
-    }
-
-    async fn pause(&mut self, duration: Duration) -> Result<(), &'static str> {
-        self.robot
-            .pause(duration)
-            .await
-            .expect("a pause cannot fail");
-        Ok(())
-    }
-}
-
-/// Performs the action with this number, and ignores a failure, as a person may do.
-async fn perform(guide: &mut Guide<LossyConsole>, action: usize, servo: usize, amount: f64) {
-    let neutral = [138.59, 41.41, 318.59, 221.41][servo];
+/// Performs the action with the given number, and ignores a failure, as a person may do.
+async fn perform_action(guide: &mut Guide<LossyConsole>, action: usize, servo: usize, amount: f64) {
+    let neutral_deg = [138.59, 41.41, 318.59, 221.41][servo];
     let _ = match action {
-        0 => guide.trim(servo, amount).await,
-        1 => guide.reverse(servo).await,
+        0 => guide.change_trim(servo, amount).await,
+        1 => guide.reverse_sign(servo).await,
         2 => guide.set_scale(servo, 10.0 + amount / 4.0).await,
         3 => {
-            let commanded_deg = guide.turn(servo, &SCALE_TURNS_DEG).await.unwrap_or(30.0);
+            let commanded_deg = guide
+                .turn_servo(servo, &SCALE_TURNS_DEG)
+                .await
+                .unwrap_or(30.0);
             guide
-                .scale_by_turn(servo, commanded_deg, commanded_deg + amount)
+                .set_scale_from_turn(servo, commanded_deg, commanded_deg + amount)
                 .await
                 .map(drop)
         }
         4 => {
             guide
-                .limit(servo, [neutral - 80.0 + amount, neutral + 85.0])
+                .set_limit(servo, [neutral_deg - 80.0 + amount, neutral_deg + 85.0])
                 .await
         }
         5 | 6 => guide.save().await,
         7 => guide.restore().await.map(drop),
         _ => {
-            let mut calibration = factory_settings();
+            let mut calibration = read_factory_settings();
             calibration.servos[servo].trim = amount.round();
             let _ = guide.replace(&calibration).await;
             Ok(())
@@ -518,20 +483,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn after_any_actions_and_losses_the_robot_ends_with_the_settings_that_it_saved_last(
+    fn after_any_actions_and_losses_the_robot_has_its_last_saved_settings(
         actions in vec((0..9_usize, 0..4_usize, -5.0..5.0), 1..12),
         losses in vec((1..150_usize, prop_oneof![Just(Loss::Line), Just(Loss::Answer)]), 0..12),
         ends_with_save in any::<bool>(),
     ) {
-        let mut robot = DirectConsole::power_on(PAPER);
-        for line in ["trim 1 5", "save", "trim 1 2"] {
-            block_on(robot.ask(line)).expect("the robot answers");
-        }
-        let saved = robot.calibration();
-        let connection = LossyConsole { robot, line_count: 0, losses, saved };
-        let mut guide = block_on(Guide::begin(connection)).expect("nothing is lost yet");
+        let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], losses);
         for (action, servo, amount) in actions {
-            block_on(perform(&mut guide, action, servo, amount));
+            block_on(perform_action(&mut guide, action, servo, amount));
         }
         guide.console().losses.clear();
         match ends_with_save {
@@ -541,7 +500,7 @@ proptest! {
         prop_assert!(!guide.has_unsaved_changes());
         let shown = guide.calibration().clone();
         let LossyConsole { robot, saved, .. } = guide.console();
-        let active = robot.calibration();
+        let active = robot.read_calibration();
         prop_assert!(active.is_equivalent_to(&shown), "{active:?}, shown {shown:?}");
         prop_assert!(active.is_equivalent_to(saved), "{active:?}, saved {saved:?}");
     }

@@ -1,8 +1,8 @@
 //! The drive of a leg by its servo, through a strut: `[leg.drive]` in robot.toml.
 //!
 //! A rigid strut is a bar with two holes: the leg moves exactly with its servo. A strut with a slot and a spring
-//! moves the leg exactly with its servo as long as the load is below the spring's pull; under a larger load the
-//! strut yields in one direction. With either strut, pins and gears have play, within which nothing drives the leg.
+//! moves the leg exactly with its servo until the load exceeds the spring's pull; then the strut yields in one
+//! direction. With either strut, pins and gears have play, within which nothing drives the leg.
 
 use crate::lag_energy::{LagEnergy, Resistance};
 use crate::strut::Strut;
@@ -10,7 +10,7 @@ use crate::strut::Strut;
 /// The drive of each leg; all four are equal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
-    /// Kind of the connection.
+    /// Connection between servo and leg.
     pub kind: DriveKind,
     /// Free movement of a leg to either side, deg.
     pub play: f64,
@@ -58,18 +58,18 @@ impl Drive {
         }
     }
 
-    /// Limits a lag (deg) to the range between the leg's stops while its servo is at this sweep, deg.
-    pub(crate) fn limit_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
+    /// Clamps a lag (deg) to the leg's stops with its servo at `sweep` (deg).
+    pub(crate) fn clamp_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
         let stops = self
-            .lag_energy_of_leg(leg, sweep, 1.0, 1.0)
+            .lag_energy(leg, sweep, 1.0, 1.0)
             .stops()
             .map(f64::to_degrees);
         lag.clamp(stops[0], stops[1])
     }
 
-    /// The energy of this leg's lag while its servo is at this sweep, deg. The unit of force is `force_unit` N;
-    /// `max_pad_torque` is an upper bound of the torque of a pad on its leg, in that unit times mm.
-    pub(crate) fn lag_energy_of_leg(
+    /// Returns the energy of a leg's lag with its servo at `sweep` (deg). The unit of force is `force_unit` newtons;
+    /// `max_pad_torque` is an upper bound of a pad's torque on its leg, in that unit times mm.
+    pub(crate) fn lag_energy(
         &self,
         leg: usize,
         sweep: f64,

@@ -9,12 +9,11 @@ pub const GRAVITY: f64 = 9.80665;
 /// The geometry of the feet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feet {
-    /// Distance of the front hips ahead of the chassis centre, mm; the hind hips are as far behind it.
+    /// Distance from the chassis centre forward to the front hips and back to the hind hips, mm.
     pub hip_forward: f64,
-    /// Distances of the front and of the hind hips from the chassis's long axis, to either side, mm.
+    /// Distances from the chassis's long axis to the front hips and to the hind hips, mm.
     pub hip_side: [f64; 2],
-    /// Outward sweep of the legs while the servos are at neutral, deg: front legs forward, hind
-    /// legs back.
+    /// Outward sweep of the legs with the servos at neutral, deg: front legs forward, hind legs back.
     pub mount_angle: f64,
     /// Length of a leg's crank, mm: the distance from the hip to the foot.
     pub reach: f64,
@@ -30,12 +29,11 @@ impl Feet {
         })
     }
 
-    /// Positions of the feet at these sweeps (deg, servo order): (forward, left) from the
-    /// chassis centre, mm.
+    /// Positions of the feet at these sweeps (deg, servo order): (forward, left) from the chassis centre, mm.
     pub fn positions(&self, sweeps: [f64; 4]) -> [Point; 4] {
         let hips = self.hips();
         std::array::from_fn(|i| {
-            let (sin, cos) = self.sin_cos_of_leg(i, sweeps[i]);
+            let (sin, cos) = self.leg_sin_cos(i, sweeps[i]);
             [
                 hips[i][0] + self.reach * sin,
                 hips[i][1] + LEFT_SIGN[i] * self.reach * cos,
@@ -46,13 +44,13 @@ impl Feet {
     /// Derivatives of the feet's positions with respect to their legs' sweeps, mm/rad.
     pub(crate) fn sweep_derivatives(&self, sweeps: [f64; 4]) -> [Point; 4] {
         std::array::from_fn(|i| {
-            let (sin, cos) = self.sin_cos_of_leg(i, sweeps[i]);
+            let (sin, cos) = self.leg_sin_cos(i, sweeps[i]);
             [self.reach * cos, -LEFT_SIGN[i] * self.reach * sin]
         })
     }
 
-    /// Sine and cosine of the leg's angle from straight sideways, forward positive.
-    fn sin_cos_of_leg(&self, leg: usize, sweep: f64) -> (f64, f64) {
+    /// Sine and cosine of a leg's angle, measured from straight sideways, forward positive.
+    fn leg_sin_cos(&self, leg: usize, sweep: f64) -> (f64, f64) {
         (sweep + FRONT_SIGN[leg] * self.mount_angle)
             .to_radians()
             .sin_cos()
@@ -65,23 +63,23 @@ pub struct Body {
     /// Mass of the whole robot, g.
     pub mass: f64,
     /// Centre of mass: (forward, left) from the chassis centre, mm.
-    pub mass_centre: Point,
+    pub centre_of_mass: Point,
 }
 
-/// The share of a robot's mass that moves with one pad. In the paper's robot it is 15 g of 435 g: the foot, its
-/// coupler, and crank and follower in proportion to the movement of their centres.
-const LEG_MASS_SHARE: f64 = 15.0 / 435.0;
+/// Fraction of a robot's mass that moves with one pad. In the paper's robot it is 15 g of 435 g: the foot, its
+/// coupler, and crank and follower in proportion to the displacement of their centres.
+const LEG_MASS_FRACTION: f64 = 15.0 / 435.0;
 
 impl Body {
     /// The default of robot.toml: the mass of the paper's parts, centred.
     pub const DEFAULT: Self = Self {
         mass: 435.0,
-        mass_centre: [0.0; 2],
+        centre_of_mass: [0.0; 2],
     };
 
     /// The mass that moves with a pad, g.
     pub fn leg_mass(&self) -> f64 {
-        LEG_MASS_SHARE * self.mass
+        LEG_MASS_FRACTION * self.mass
     }
 
     /// Mean load of a foot, N.
@@ -105,7 +103,7 @@ mod tests {
     use crate::assert_near;
 
     #[test]
-    fn a_foot_is_one_crank_length_from_its_hip_in_the_direction_of_the_sweep() {
+    fn each_foot_is_one_crank_length_from_its_hip_along_the_sweep() {
         let feet = PAPER_FEET;
         let expected_positions = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
         assert_eq!(feet.positions([0.0; 4]), expected_positions);
@@ -113,7 +111,7 @@ mod tests {
         let expected_positions = [[100.0, 35.0], [100.0, -35.0], [-10.0, -35.0], [-10.0, 35.0]];
         for (foot, expected_point) in forward_feet.into_iter().zip(expected_positions) {
             let error = (foot[0] - expected_point[0]).hypot(foot[1] - expected_point[1]);
-            assert!(error < 1e-12, "{foot:?}");
+            assert!(error < 1e-12, "expected {expected_point:?}, got {foot:?}");
         }
         let splayed_feet = Feet {
             mount_angle: 90.0,
@@ -125,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn sweep_derivatives_are_the_difference_quotients_of_the_positions() {
+    fn sweep_derivatives_match_difference_quotients_of_the_positions() {
         let feet = Feet {
             mount_angle: 12.0,
             ..PAPER_FEET

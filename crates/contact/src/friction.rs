@@ -1,14 +1,12 @@
-//! The movement of least frictional work in a small step: a small convex problem.
+//! The displacement of least frictional work in a small step: a small convex problem.
 //!
-//! The cost of a pad is its load times the length of its slide, in which backward components are
-//! multiplied by the friction ratio. A leg on a spring may lag behind its servo at the cost of the
-//! spring's energy; a rigid leg does not lag. A sum of lengths has a kink wherever a pad holds, and
-//! the minimum usually lies at such kinks. So every length is smoothed to `sqrt(length^2 + eps^2)`,
-//! and the sum is minimised by Newton's method; eps is lowered in stages from the size of the slides
-//! to a hundred-millionth of it. The cost of the result exceeds the true minimum by at most eps for
-//! each pad, which the tests check against the dual problem. If the minimum is not unique (two pads
-//! against two), the smoothing selects the symmetric solution; [`crate::Ground::predict`] detects the
-//! movements that depend on this selection.
+//! The cost of a pad is its load times the length of its slide; the friction ratio multiplies backward components. A
+//! leg on a spring may lag behind its servo at the cost of the spring's energy; a rigid leg does not lag. A sum of
+//! lengths has a kink wherever a pad holds, and the minimum usually lies at such kinks. Every length is therefore
+//! smoothed to `sqrt(length^2 + eps^2)`, and Newton's method minimises the sum. In stages, eps falls from the size of
+//! the slides to a hundred-millionth of it. The result costs at most eps per pad more than the true minimum; the tests
+//! check this bound against the dual problem. If the minimum is not unique (two pads against two), the smoothing
+//! selects the symmetric solution; [`crate::Ground::predict`] detects the displacements that depend on this selection.
 
 use crate::lag_energy::LagEnergy;
 use crate::linear::solve_symmetric;
@@ -17,17 +15,16 @@ use crate::motor_step::Expansion;
 /// Position or slide of a pad: forward, left.
 pub type Point = [f64; 2];
 
-/// A small movement of the body: forward, left in mm, counter-clockwise in rad.
+/// A small displacement of the body: forward and left in mm, counter-clockwise in rad.
 pub(crate) type Twist = [f64; 3];
 
 /// Smallest width of the smoothing, relative to the size of the slides.
 const MIN_SMOOTHING: f64 = 1e-8;
-/// Index of the last stage. Stage 0 smooths over the size of the slides, the last stage over `MIN_SMOOTHING` times that
-/// size.
+/// Index of the last stage. Stage 0 smooths over the slides' size, the last stage over `MIN_SMOOTHING` times that size.
 const LAST_STAGE: i32 = 5;
 /// Index of the first stage if an initial guess is given.
 const FIRST_STAGE_WITH_GUESS: i32 = 2;
-/// The largest number of Newton steps in a stage; five to eight are usual.
+/// Largest number of Newton steps in a stage; five to eight are usual.
 const MAX_NEWTON_STEPS: usize = 40;
 /// Largest net force that counts as balanced, relative to the friction of one pad.
 const MAX_IMBALANCE: f64 = 1e-9;
@@ -44,13 +41,13 @@ const MAX_ZERO_DISTANCE: f64 = 1e-12;
 pub(crate) struct Pads {
     /// Positions of the pads in the body frame, mm.
     pub positions: [Point; 4],
-    /// Displacements of the pads in the body frame by their legs' swings, at unchanged lags, mm.
+    /// Displacements of the pads in the body frame due to their legs' swings, at unchanged lags, mm.
     pub swings: [Point; 4],
     /// Ratio of backward to forward friction.
     pub friction_ratio: f64,
     /// Loads of the pads, relative to the mean.
     pub loads: [f64; 4],
-    /// Compliance of legs and servos; `None` if every leg is rigid and every servo follows its pulses exactly.
+    /// Compliance of legs and servos; `None` if all legs are rigid and all servos follow their pulses exactly.
     pub compliance: Option<Compliance>,
     /// Inertia of body and legs; `None` in a quasi-static step.
     pub inertia: Option<Inertia>,
@@ -59,11 +56,11 @@ pub(crate) struct Pads {
 /// The inertia of body and legs, which keep the velocities of the previous step unless forces change them.
 #[derive(Clone, Copy)]
 pub(crate) struct Inertia {
-    /// Inertial force per mm, and torque per rad, of difference between this twist of the body and the previous one.
+    /// Inertial force per mm, and torque per rad, by which the body's twist differs from the previous one.
     pub stiffness: Twist,
     /// Twist of the previous step.
     pub previous_twist: Twist,
-    /// Inertial force of a leg's mass per mm of difference between this slide of its pad and the previous one.
+    /// Inertial force of a leg's mass per mm by which its pad's slide differs from the previous one.
     pub leg_stiffness: f64,
     /// Slides of the pads in the previous step.
     pub previous_slides: [Point; 4],
@@ -72,8 +69,7 @@ pub(crate) struct Inertia {
 /// The drives of legs that lag behind their servos, or of servos that lag behind their pulses.
 #[derive(Clone, Copy)]
 pub(crate) struct Compliance {
-    /// Derivatives of the pads' positions with respect to their legs' sweeps, mm/rad. A lag moves a pad in the opposite
-    /// direction.
+    /// Derivatives of the pads' positions with respect to their legs' sweeps, mm/rad; a lag has the opposite effect.
     pub sweep_derivatives: [Point; 4],
     /// Lags before the step, rad.
     pub previous_lags: [f64; 4],
@@ -81,31 +77,30 @@ pub(crate) struct Compliance {
     pub lag_energies: [LagEnergy; 4],
 }
 
-/// The movement in a small step.
+/// The displacement of body and legs in a small step.
 #[derive(Clone, Copy)]
 pub(crate) struct Displacement {
-    /// Movement of the body.
+    /// Displacement of the body.
     pub twist: Twist,
-    /// Lags after the step, rad: each is the sum of a leg's and its servo's lag; 0 without compliance.
+    /// Lags after the step, rad: each the sum of a leg's and its servo's lag; 0 without compliance.
     pub lags: [f64; 4],
     /// Changes of the lags, rad.
     pub lag_changes: [f64; 4],
 }
 
-/// The smoothed cost near a displacement, to second order in the scaled unknowns. The lag of a leg affects no other
-/// leg, so the lags are eliminated from gradient and Hessian one by one.
+/// The smoothed cost near a displacement, to second order in the scaled unknowns. A leg's lag affects no other leg, so
+/// the lags are eliminated from gradient and Hessian one by one.
 struct CostExpansion {
     cost: f64,
     /// Gradient with respect to the twist, with the lags eliminated.
     gradient: [f64; 3],
     /// Hessian with respect to the twist, with the lags eliminated.
     hessian: [[f64; 3]; 3],
-    /// Derivatives with respect to each leg's lag, by which the lags were eliminated.
+    /// Derivatives with respect to each leg's lag, which eliminated the lags.
     lag_derivatives: [LagDerivatives; 4],
 }
 
-/// The derivatives of the cost with respect to a leg's lag: the first, the second, and the mixed ones with the
-/// twist.
+/// The derivatives of the cost with respect to a leg's lag: first, second, and mixed with the twist.
 #[derive(Clone, Copy, Default)]
 struct LagDerivatives {
     slope: f64,
@@ -113,7 +108,7 @@ struct LagDerivatives {
     mixed: [f64; 3],
 }
 
-/// The units in which all unknowns are of the order of 1.
+/// The units that scale all unknowns to the order of 1.
 struct Units {
     /// Typical length of a slide, mm.
     slide_size: f64,
@@ -133,7 +128,7 @@ impl Pads {
     pub fn minimise_cost_from(&self, guess: Option<&Displacement>) -> Displacement {
         let slide_size = max_abs_component(&self.swings).max(self.max_free_distance());
         if slide_size < MAX_ZERO_DISTANCE {
-            return self.displacement_of([0.0; 3], [0.0; 4]);
+            return self.build_displacement([0.0; 3], [0.0; 4]);
         }
         // A turn of one unit moves the farthest pad by about one unit of length.
         let units = Units {
@@ -163,9 +158,8 @@ impl Pads {
             let eps = slide_size * MIN_SMOOTHING.powf(f64::from(stage) / f64::from(LAST_STAGE));
             let expand_at = |x, z| self.expand(&units.displacement(self, x, z), eps, &units);
             let mut current = expand_at(x, z);
-            // The slide of a pad that holds shrinks in proportion to eps, so the solutions of two
-            // stages can be extrapolated to the next one. A guess counts as a solution with the
-            // smallest eps.
+            // The slide of a pad that holds shrinks in proportion to eps, so two stages' solutions can be extrapolated
+            // to the next stage. A guess counts as a solution with the smallest eps.
             if let [Some((older_eps, older_x, older_z)), Some((newer_eps, ..))] = last_solutions {
                 let step_ratio = (newer_eps - eps) / (older_eps - newer_eps);
                 let next_x: [f64; 3] =
@@ -178,13 +172,9 @@ impl Pads {
                 }
             }
             for _ in 0..MAX_NEWTON_STEPS {
-                let gradient_components = current.gradient.into_iter();
-                let gradient_components =
-                    gradient_components.chain(current.lag_derivatives.map(|leg| leg.slope));
-                if gradient_components
-                    .map(f64::abs)
-                    .all(|g| g < MAX_IMBALANCE * slide_size)
-                {
+                let lag_slopes = current.lag_derivatives.map(|leg| leg.slope);
+                let mut gradient_components = current.gradient.into_iter().chain(lag_slopes);
+                if gradient_components.all(|g| g.abs() < MAX_IMBALANCE * slide_size) {
                     break;
                 }
                 let dx = solve_symmetric(current.hessian, current.gradient);
@@ -221,8 +211,8 @@ impl Pads {
         units.displacement(self, x, z)
     }
 
-    /// The displacement with this twist and these changes of the lags.
-    fn displacement_of(&self, twist: Twist, lag_changes: [f64; 4]) -> Displacement {
+    /// Builds the displacement with this twist and these changes of the lags.
+    fn build_displacement(&self, twist: Twist, lag_changes: [f64; 4]) -> Displacement {
         let previous_lags = self
             .compliance
             .map_or([0.0; 4], |compliance| compliance.previous_lags);
@@ -233,13 +223,13 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a pad may move even if no servo sweeps in this step, mm: a motor may turn its leg, or a
-    /// spring may pull its leg back. A spring can overcome its pad's friction only if pads or springs have changed.
+    /// Largest distance that a pad may move in a step without servo sweeps, mm: a motor may turn its leg, or a spring
+    /// may pull its leg back. A spring can overcome its pad's friction only if pads or springs have changed.
     fn max_free_distance(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
         };
-        let free_distance_of = |i: usize| {
+        let compute_free_distance = |i: usize| {
             if let Some(motor) = &compliance.lag_energies[i].motor {
                 let [x, y] = compliance.sweep_derivatives[i];
                 return x.hypot(y) * motor.unloaded_lag().abs();
@@ -251,10 +241,10 @@ impl Pads {
                 false => 0.0,
             }
         };
-        (0..4).map(free_distance_of).fold(0.0, f64::max)
+        (0..4).map(compute_free_distance).fold(0.0, f64::max)
     }
 
-    /// The slide of each pad over the floor, mm.
+    /// Slide of each pad over the floor, mm.
     pub fn slides(&self, displacement: &Displacement) -> [Point; 4] {
         let [forward, left, turn] = displacement.twist;
         std::array::from_fn(|i| {
@@ -272,18 +262,11 @@ impl Pads {
 
     /// Weights of a slide's components, forward and left: a backward slide costs `friction_ratio` times as much.
     pub fn slide_weights(&self, slide: Point) -> Point {
-        [
-            if slide[0] < 0.0 {
-                self.friction_ratio
-            } else {
-                1.0
-            },
-            1.0,
-        ]
+        let is_back = slide[0] < 0.0;
+        [if is_back { self.friction_ratio } else { 1.0 }, 1.0]
     }
 
-    /// Computes the smoothed cost of a displacement, its gradient and its Hessian with respect to the
-    /// scaled unknowns.
+    /// Computes a displacement's smoothed cost with its gradient and Hessian with respect to the scaled unknowns.
     fn expand(&self, displacement: &Displacement, eps: f64, units: &Units) -> CostExpansion {
         let (mut cost, mut gradient, mut hessian) = (0.0, [0.0; 3], [[0.0; 3]; 3]);
         let mut lag_derivatives = [LagDerivatives::default(); 4];
@@ -318,23 +301,21 @@ impl Pads {
                     [slide[0] - previous_slide[0], slide[1] - previous_slide[1]],
                 )
             });
-            let length_derivative_of = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
+            let length_derivative = |[a, b]: Point| (wx * a * ux + wy * b * uy) / length;
             // Derivatives of the pad's friction cost plus its leg's inertia cost. Each argument is the derivative of
             // the slide with respect to one unknown.
-            let first_derivative_of = |row: Point| {
-                load * length_derivative_of(row) + leg_stiffness * dot(row, slide_change)
-            };
-            let second_derivative_of = |a: Point, b: Point| {
+            let first_derivative =
+                |row: Point| load * length_derivative(row) + leg_stiffness * dot(row, slide_change);
+            let second_derivative = |a: Point, b: Point| {
                 let weighted_product = wx * wx * a[0] * b[0] + wy * wy * a[1] * b[1];
-                load * (weighted_product - length_derivative_of(a) * length_derivative_of(b))
-                    / length
+                load * (weighted_product - length_derivative(a) * length_derivative(b)) / length
                     + leg_stiffness * dot(a, b)
             };
             cost += load * length + leg_stiffness * dot(slide_change, slide_change) / 2.0;
             for i in 0..3 {
-                gradient[i] += first_derivative_of(derivatives[i]);
+                gradient[i] += first_derivative(derivatives[i]);
                 for j in 0..3 {
-                    hessian[i][j] += second_derivative_of(derivatives[i], derivatives[j]);
+                    hessian[i][j] += second_derivative(derivatives[i], derivatives[j]);
                 }
             }
             let Some(compliance) = &self.compliance else {
@@ -351,10 +332,10 @@ impl Pads {
                 .expand(displacement.lags[i], eps / units.slide_size * lag_unit);
             cost += energy;
             let leg = LagDerivatives {
-                slope: first_derivative_of(lag_row) + lag_torque * lag_unit,
-                curvature: second_derivative_of(lag_row, lag_row)
+                slope: first_derivative(lag_row) + lag_torque * lag_unit,
+                curvature: second_derivative(lag_row, lag_row)
                     + lag_stiffness * lag_unit * lag_unit,
-                mixed: derivatives.map(|twist_row| second_derivative_of(twist_row, lag_row)),
+                mixed: derivatives.map(|twist_row| second_derivative(twist_row, lag_row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {
                 gradient[i] -= mixed * leg.slope / leg.curvature;
@@ -376,7 +357,7 @@ impl Pads {
 impl Units {
     /// Converts scaled unknowns to a displacement.
     fn displacement(&self, pads: &Pads, x: [f64; 3], z: [f64; 4]) -> Displacement {
-        pads.displacement_of(
+        pads.build_displacement(
             std::array::from_fn(|i| x[i] * self.twist[i]),
             std::array::from_fn(|i| z[i] * self.lags[i]),
         )
@@ -399,16 +380,16 @@ impl Units {
 impl CostExpansion {
     /// First-order reduction of the cost by the Newton steps of the lags at an unchanged twist.
     fn lag_reduction(&self) -> f64 {
-        let reduction_of = |leg: &LagDerivatives| match leg.curvature {
+        let leg_reduction = |leg: &LagDerivatives| match leg.curvature {
             0.0 => 0.0,
             curvature => leg.slope * leg.slope / curvature,
         };
-        self.lag_derivatives.iter().map(reduction_of).sum()
+        self.lag_derivatives.iter().map(leg_reduction).sum()
     }
 }
 
 impl LagDerivatives {
-    /// Newton step of the leg's lag that belongs to this Newton step of the twist.
+    /// Computes the Newton step of the leg's lag for a Newton step of the twist.
     fn newton_step(&self, twist_step: [f64; 3]) -> f64 {
         if self.curvature == 0.0 {
             return 0.0;
@@ -417,7 +398,7 @@ impl LagDerivatives {
     }
 }
 
-/// The largest absolute value of all components of the points.
+/// Returns the largest absolute value of the points' components.
 fn max_abs_component(points: &[Point; 4]) -> f64 {
     let components = points.iter().flatten();
     components.fold(0.0f64, |max, component| max.max(component.abs()))

@@ -1,42 +1,41 @@
-//! Dry friction of pins and sliders, which a servo has to overcome in addition to the friction of its foot's pad on the
-//! floor.
+//! Dry friction of pins and sliders, which a servo has to overcome in addition to its pad's friction on the floor.
 //!
 //! The pins of a servo's leg and crank turn with the servo, so their friction is a single torque at its shaft. A slider
-//! joins the arms of two servos and resists changes of its length; its lever arm at each servo depends on both servos'
-//! angles. Its length hardly changes while all legs move together; when one leg swings alone, its servo must change the
-//! slider's length, too.
+//! joins the arms of two servos and resists changes of its length; its lever arm at each servo depends on both
+//! servos' angles. While all legs move together, its length hardly changes; a leg that swings alone must change it.
 
 use crate::legs::FORWARD_TURN_SIGN;
 
 /// The dry friction of the mechanism between the servos and their legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointFriction {
-    /// Friction of the pins that a servo turns, as a torque at the servo, N mm.
+    /// Friction of the pins that a servo turns, as a torque at its shaft, N mm.
     pub pin_torque: f64,
     /// Friction of a slider, N.
     pub slider_force: f64,
     /// Vectors from each servo's shaft to the tip of its slider arm at neutral: (forward, left), mm.
     pub slider_arms: [[f64; 2]; 4],
-    /// Distance from the hind shafts to the front ones, mm.
-    pub base: f64,
+    /// Distance between the front and the hind shafts, mm.
+    pub shaft_distance: f64,
 }
 
 /// The front and the hind servo of each slider: the left slider first, then the right one.
 const SLIDER_SERVOS: [[usize; 2]; 2] = [[0, 3], [1, 2]];
 
 impl JointFriction {
-    /// Lever arms of the sliders at the servos, at sweeps in deg: derivatives of the sliders' lengths with respect to
-    /// each servo's sweep, mm/rad.
+    /// Computes the sliders' lever arms at the servos: the derivatives of the sliders' lengths with respect to each
+    /// servo's sweep, mm/rad. `sweeps` are in deg.
     pub(crate) fn slider_lever_arms(&self, sweeps: [f64; 4]) -> [f64; 4] {
         let mut lever_arms = [0.0; 4];
-        let arms: [[f64; 2]; 4] = std::array::from_fn(|i| {
-            let (sin, cos) = (FORWARD_TURN_SIGN[i] * sweeps[i]).to_radians().sin_cos();
-            let [x, y] = self.slider_arms[i];
+        let arms: [[f64; 2]; 4] = std::array::from_fn(|servo| {
+            let turn_deg = FORWARD_TURN_SIGN[servo] * sweeps[servo];
+            let (sin, cos) = turn_deg.to_radians().sin_cos();
+            let [x, y] = self.slider_arms[servo];
             [x * cos - y * sin, x * sin + y * cos]
         });
         for [front, hind] in SLIDER_SERVOS {
             let span = [
-                self.base + arms[front][0] - arms[hind][0],
+                self.shaft_distance + arms[front][0] - arms[hind][0],
                 arms[front][1] - arms[hind][1],
             ];
             let length = span[0].hypot(span[1]);
@@ -49,24 +48,25 @@ impl JointFriction {
         lever_arms
     }
 
-    /// Torques of the sliders on the servos, N mm, at sweeps in deg and rates in rad/s. At slider speeds below
-    /// `fade_speed` (mm/s) the friction is proportional to the speed, so that friction never reverses a servo.
+    /// Computes the sliders' friction torques on the servos, N mm. `sweeps` are in deg, `rates_rad_s` in rad/s. At
+    /// slider speeds below `smoothing_speed` (mm/s) friction is proportional to speed, so it never reverses a servo.
     pub(crate) fn slider_torques(
         &self,
         sweeps: [f64; 4],
-        rates: [f64; 4],
-        fade_speed: f64,
+        rates_rad_s: [f64; 4],
+        smoothing_speed: f64,
     ) -> [f64; 4] {
         if self.slider_force == 0.0 {
             return [0.0; 4];
         }
         let lever_arms = self.slider_lever_arms(sweeps);
         let mut torques = [0.0; 4];
-        for side in SLIDER_SERVOS {
-            let speed: f64 = side.map(|i| lever_arms[i] * rates[i]).iter().sum();
-            let force = -self.slider_force * (speed / fade_speed).clamp(-1.0, 1.0);
-            for i in side {
-                torques[i] = force * lever_arms[i];
+        for servo_pair in SLIDER_SERVOS {
+            let speeds = servo_pair.map(|servo| lever_arms[servo] * rates_rad_s[servo]);
+            let speed: f64 = speeds.iter().sum();
+            let force = -self.slider_force * (speed / smoothing_speed).clamp(-1.0, 1.0);
+            for servo in servo_pair {
+                torques[servo] = force * lever_arms[servo];
             }
         }
         torques

@@ -1,27 +1,24 @@
 //! The energy of a leg's lag behind its servo.
 //!
-//! In the contact model a single function describes the drive of a leg: the energy of its lag.
-//! It is zero within the play; beyond the play it is the energy of the spring on that side; beyond
-//! a stop it rises more steeply than any pad can push. It has kinks exactly at the lags that are
-//! most likely. They are smoothed over a width `eps`, like the lengths of slides in `friction.rs`.
+//! In the contact model a single function describes the drive of a leg: the energy of its lag. This energy is zero
+//! within the play; beyond the play it is the energy of the spring on that side; beyond a stop it rises more steeply
+//! than any pad can push. Its kinks are exactly at the most likely lags, so they are smoothed over a width `eps`, like
+//! the lengths of slides in `friction.rs`.
 
 use crate::motor_step::{Expansion, MotorStep};
 
-/// The energy of a lag, in the units of the contact problem: the mean friction of a pad as the unit
-/// of force, mm and radians.
+/// The energy of a lag, in the units of the contact problem: a pad's mean friction for forces, mm and radians.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LagEnergy {
     /// Free movement of the leg to either side, rad.
     pub play: f64,
-    /// Torque of a stop, slightly larger than the largest torque of a pad. A much larger one would
-    /// only make the cost harder to minimise.
+    /// Torque of a stop, slightly larger than a pad's largest torque; a much larger one would impede the minimisation.
     pub stop_torque: f64,
     /// Resistance to a negative lag.
     pub lower_resistance: Resistance,
     /// Resistance to a positive lag.
     pub upper_resistance: Resistance,
-    /// The servo's motor, if the servo may lag behind its pulses; lags are then those of leg and servo
-    /// together.
+    /// The servo's motor, if the servo may lag behind its pulses; lags then include the servo's.
     pub motor: Option<MotorStep>,
 }
 
@@ -30,36 +27,36 @@ pub(crate) struct LagEnergy {
 pub(crate) enum Resistance {
     /// A rigid stop.
     Stop,
-    /// A spring in a strut, and a stop at the end of its slot.
+    /// A spring in a strut, and a stop at the end of the strut's slot.
     Strut {
         /// Geometry of the strut.
         triangle: StrutTriangle,
-        /// Pull of the spring without a lag.
-        force: f64,
+        /// Tension of the spring without a lag.
+        preload: f64,
         /// Rate of the spring, per mm.
         rate: f64,
-        /// Lag beyond the play at which the screw is at the slot's end, rad.
+        /// Lag beyond the play at which the screw reaches the slot's end, rad.
         end_lag: f64,
     },
 }
 
-/// The triangle that determines the length of a strut at a lag of its leg. Its sides are the strut,
-/// the leg's arm, and the base: the line from the leg's pivot to the strut's joint at the servo.
+/// The triangle that determines a strut's length at a lag of its leg. Its sides are the strut, the leg's arm, and the
+/// base: the line from the leg's pivot to the strut's joint at the servo.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StrutTriangle {
     /// Length of the base, mm.
     base: f64,
     /// Length of the leg's arm, mm.
     arm: f64,
-    /// Angle between base and arm while the leg does not lag, rad; a lag adds to it.
+    /// Angle between base and arm without a lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of the magnitude of `angle`.
     sin_cos: (f64, f64),
-    /// Length of the strut while the leg does not lag, mm.
+    /// Length of the strut without a lag, mm.
     unlagged_length: f64,
 }
 
-/// The energy of a unit torque against a positive `x`: the ramp `max(x, 0)` with its kink smoothed over a width `eps`.
+/// Energy of a unit torque that resists a positive `x`: the ramp `max(x, 0)` with its kink smoothed over `eps`.
 fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
     let length = (x * x + eps * eps).sqrt();
     if length == 0.0 {
@@ -82,7 +79,7 @@ fn smoothed_ramp(x: f64, eps: f64) -> Expansion {
 }
 
 impl StrutTriangle {
-    /// Makes the triangle of a base and an arm (mm) with an angle between them, rad.
+    /// Creates the triangle of a base and an arm, mm, with an angle between them, rad.
     pub fn new(base: f64, arm: f64, angle: f64) -> Self {
         let (sin, cos) = angle.abs().sin_cos();
         Self {
@@ -94,24 +91,23 @@ impl StrutTriangle {
         }
     }
 
-    /// Lever arm of the strut's pull while the leg does not lag: the derivative of the strut's length with respect to
-    /// the lag, mm/rad. It is negative if a positive lag makes the strut shorter.
+    /// Lever arm of the strut's pull without a lag: the derivative of the strut's length with respect to the lag,
+    /// mm/rad; negative if a positive lag shortens the strut.
     pub fn lever_arm(&self) -> f64 {
         let (sin, _) = self.sin_cos;
         (self.base * self.arm * sin / self.unlagged_length).copysign(self.angle)
     }
 
-    /// Magnitude of the lever arm, mm/rad, after a lag (rad) in the direction in which the strut grows.
-    pub fn lever_arm_after(&self, lag: f64) -> f64 {
-        let (_, lever_arm, _) = self.growth_and_derivatives(lag);
+    /// Magnitude of the lever arm, mm/rad, at a lag (rad) that lengthens the strut.
+    pub fn lever_arm_at(&self, lag: f64) -> f64 {
+        let (_, lever_arm, _) = self.extension_and_derivatives(lag);
         lever_arm
     }
 
-    /// Magnitude of the lag at which the strut has grown by this length, rad; infinite if it
-    /// cannot grow so far.
-    pub fn lag_at_growth(&self, growth: f64) -> f64 {
+    /// Magnitude of the lag at which the strut is `extension` mm longer, rad; infinite if it cannot extend so far.
+    pub fn lag_at_extension(&self, extension: f64) -> f64 {
         let Self { base, arm, .. } = self;
-        let length = self.unlagged_length + growth;
+        let length = self.unlagged_length + extension;
         let cos = (base * base + arm * arm - length * length) / (2.0 * base * arm);
         match cos < -1.0 {
             true => f64::INFINITY,
@@ -119,50 +115,49 @@ impl StrutTriangle {
         }
     }
 
-    /// Growth of the strut's length (mm) after a lag in the direction in which it grows, with the first and second
-    /// derivatives with respect to the lag: the lever arm (mm/rad) and its slope.
+    /// Extension of the strut (mm) at a lag that lengthens it, with its first and second derivatives with respect to
+    /// the lag: the lever arm (mm/rad) and the lever arm's slope.
     ///
-    /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths
-    /// would then consist mostly of rounding errors, which would mislead Newton's method.
-    fn growth_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
+    /// Lags are often as small as a hundred-thousandth of a radian. The difference of two lengths would then consist
+    /// mostly of rounding errors, which would mislead Newton's method.
+    fn extension_and_derivatives(&self, lag: f64) -> (f64, f64, f64) {
         let (product, (sin, cos)) = (self.base * self.arm, self.sin_cos);
         let (half_sin, half_cos) = (lag / 2.0).sin_cos();
         let (lag_sin, lag_cos) = (2.0 * half_sin * half_cos, 1.0 - 2.0 * half_sin * half_sin);
-        let square_growth = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
-        let length = (self.unlagged_length * self.unlagged_length + square_growth).sqrt();
+        let squared_length_increase = 4.0 * product * (sin * half_cos + cos * half_sin) * half_sin;
+        let length = (self.unlagged_length * self.unlagged_length + squared_length_increase).sqrt();
         let lever_arm = product * (sin * lag_cos + cos * lag_sin) / length;
         let lever_arm_slope =
             (product * (cos * lag_cos - sin * lag_sin) - lever_arm * lever_arm) / length;
         (
-            square_growth / (length + self.unlagged_length),
+            squared_length_increase / (length + self.unlagged_length),
             lever_arm,
             lever_arm_slope,
         )
     }
 
-    /// Energy of a spring that pulls the strut together with `force` and `rate`, minus
-    /// `preload * lag`. The lag is in the direction in which the strut grows.
-    fn spring_energy(&self, lag: f64, force: f64, rate: f64, preload: f64) -> Expansion {
-        let (growth, lever_arm, lever_arm_slope) = self.growth_and_derivatives(lag);
-        let pull = force + rate * growth;
+    /// Energy of the spring minus `kink_torque * lag`, at a lag that lengthens the strut.
+    fn spring_energy(&self, lag: f64, preload: f64, rate: f64, kink_torque: f64) -> Expansion {
+        let (extension, lever_arm, lever_arm_slope) = self.extension_and_derivatives(lag);
+        let tension = preload + rate * extension;
         Expansion {
-            energy: force * growth - preload * lag + rate * growth * growth / 2.0,
-            torque: pull * lever_arm - preload,
-            // If the lever arm shrinks faster than the pull grows, the curvature is negative. Newton's method needs a
-            // convex energy, so the curvature is then set to zero.
-            stiffness: (rate * lever_arm * lever_arm + pull * lever_arm_slope).max(0.0),
+            energy: preload * extension - kink_torque * lag + rate * extension * extension / 2.0,
+            torque: tension * lever_arm - kink_torque,
+            // If the lever arm shrinks faster than the tension grows, the curvature is negative. Newton's method needs
+            // a convex energy, so the curvature is then set to zero.
+            stiffness: (rate * lever_arm * lever_arm + tension * lever_arm_slope).max(0.0),
         }
     }
 }
 
 impl Resistance {
-    /// The resistance of a strut with a spring and a slot; `slot_length` in mm.
-    pub fn strut(triangle: StrutTriangle, force: f64, rate: f64, slot_length: f64) -> Self {
+    /// Creates the resistance of a strut with a spring and a slot; `slot_length` in mm.
+    pub fn strut(triangle: StrutTriangle, preload: f64, rate: f64, slot_length: f64) -> Self {
         Self::Strut {
             triangle,
-            force,
+            preload,
             rate,
-            end_lag: triangle.lag_at_growth(slot_length),
+            end_lag: triangle.lag_at_extension(slot_length),
         }
     }
 
@@ -173,23 +168,22 @@ impl Resistance {
             Self::Stop => Expansion::default().plus_scaled(stop_torque, ramp),
             Self::Strut {
                 triangle,
-                force,
+                preload,
                 rate,
                 end_lag,
             } => {
-                // The preload is the torque at a kink; the spring's further torque grows from zero.
-                let preload = force * triangle.lever_arm().abs();
-                let spring_energy = match excess_lag > 0.0 {
-                    true => triangle.spring_energy(excess_lag, force, rate, preload),
-                    false => Expansion::default(),
-                };
-                let energy = spring_energy.plus_scaled(preload, ramp);
-                match end_lag.is_finite() {
-                    true => {
-                        energy.plus_scaled(stop_torque, smoothed_ramp(excess_lag - end_lag, eps))
-                    }
-                    false => energy,
+                // The preload causes the torque at the kink; the spring's further torque grows from zero.
+                let kink_torque = preload * triangle.lever_arm().abs();
+                let mut energy = Expansion::default();
+                if excess_lag > 0.0 {
+                    energy = triangle.spring_energy(excess_lag, preload, rate, kink_torque);
                 }
+                energy = energy.plus_scaled(kink_torque, ramp);
+                if end_lag.is_finite() {
+                    let end_ramp = smoothed_ramp(excess_lag - end_lag, eps);
+                    energy = energy.plus_scaled(stop_torque, end_ramp);
+                }
+                energy
             }
         }
     }
@@ -197,14 +191,17 @@ impl Resistance {
     /// Torque of the spring at a lag that exceeds the play by `excess_lag`, rad.
     fn spring_torque(&self, excess_lag: f64) -> f64 {
         match *self {
-            _ if excess_lag <= 0.0 => 0.0,
-            Self::Stop => 0.0,
             Self::Strut {
                 triangle,
-                force,
+                preload,
                 rate,
                 ..
-            } => triangle.spring_energy(excess_lag, force, rate, 0.0).torque,
+            } if excess_lag > 0.0 => {
+                triangle
+                    .spring_energy(excess_lag, preload, rate, 0.0)
+                    .torque
+            }
+            _ => 0.0,
         }
     }
 
@@ -218,8 +215,7 @@ impl Resistance {
 }
 
 impl LagEnergy {
-    /// Energy at a lag (rad) of leg and servo together, its slope and its curvature, with kinks
-    /// smoothed over `eps` rad.
+    /// Energy at a lag (rad) of leg and servo together, slope and curvature, with kinks smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let Some(motor) = &self.motor else {
             return self.expand_leg(lag, eps);
@@ -227,7 +223,7 @@ impl LagEnergy {
         if self.is_rigid() {
             return motor.expand(lag, eps);
         }
-        // Leg and servo are in series: both bear the same torque.
+        // Leg and servo are in series, so both bear the same torque.
         let servo_lag = self.servo_lag(lag, eps);
         let motor = motor.expand(servo_lag, eps);
         let leg = self.expand_leg(lag - servo_lag, eps);
@@ -238,14 +234,14 @@ impl LagEnergy {
         }
     }
 
-    /// The servo's part of a lag of leg and servo together, rad.
+    /// Computes the servo's part of a lag of leg and servo together, rad.
     pub fn servo_lag(&self, lag: f64, eps: f64) -> f64 {
         match &self.motor {
             None => 0.0,
             Some(_) if self.is_rigid() => lag,
             Some(motor) => {
                 let kinks = [lag - self.play, lag + self.play];
-                motor.lag_at_balance(kinks, self.stop_torque, eps, |servo_lag| {
+                motor.find_balance_lag(kinks, self.stop_torque, eps, |servo_lag| {
                     let leg = self.expand_leg(lag - servo_lag, eps);
                     (leg.torque, leg.stiffness)
                 })
@@ -275,7 +271,7 @@ impl LagEnergy {
         }
     }
 
-    /// Magnitude of the torque with which the spring pulls the leg back at a lag, rad.
+    /// Magnitude of the torque with which the spring pulls the leg back at `lag` (rad).
     pub fn spring_torque(&self, lag: f64) -> f64 {
         self.upper_resistance.spring_torque(lag - self.play)
             + self.lower_resistance.spring_torque(-lag - self.play)
@@ -289,8 +285,8 @@ impl LagEnergy {
         ]
     }
 
-    /// The convex conjugate of the energy at a torque, for the dual problem: the maximum of torque times
-    /// lag minus energy. It is infinite for a torque that exceeds that of a stop.
+    /// The convex conjugate of the energy at a torque, for the dual problem: the maximum of torque times lag minus
+    /// energy; infinite if the torque exceeds a stop's torque.
     #[cfg(test)]
     pub fn conjugate(&self, torque: f64) -> f64 {
         let resistance = if torque > 0.0 {
@@ -329,7 +325,7 @@ mod tests {
 
     const STOP_TORQUE: f64 = 400.0;
 
-    /// The triangle of a strut of 30.2 mm with arms of 22 mm, which are at `angle_deg` to the strut.
+    /// The triangle of a 30.2 mm strut whose 22 mm arms are at `angle_deg` to it.
     fn triangle_at(angle_deg: f64) -> StrutTriangle {
         let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
         let base = [22.0 * cos - 30.2, 22.0 * sin];
@@ -337,8 +333,8 @@ mod tests {
         StrutTriangle::new(f64::hypot(base[0], base[1]), 22.0, enclosed_angle)
     }
 
-    /// Asserts that torque and stiffness agree with the difference quotients of the energy.
-    fn assert_derivatives(lag_energy: LagEnergy, lags: impl IntoIterator<Item = f64>) {
+    /// Asserts that torque and stiffness match the difference quotients of the energy.
+    fn assert_derivatives_match(lag_energy: LagEnergy, lags: impl IntoIterator<Item = f64>) {
         for lag in lags {
             let Expansion {
                 torque, stiffness, ..
@@ -354,7 +350,7 @@ mod tests {
     }
 
     #[test]
-    fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
+    fn torque_and_stiffness_match_the_derivatives_of_the_energy() {
         let lags = (-40..40).map(|i| f64::from(i) / 200.0 + 1e-4);
         for play in [0.0, 0.02] {
             let strut_resistance = Resistance::strut(triangle_at(70.0), 8.0, 0.7, 5.0);
@@ -370,7 +366,7 @@ mod tests {
                     upper_resistance,
                     motor: None,
                 };
-                assert_derivatives(lag_energy, lags.clone());
+                assert_derivatives_match(lag_energy, lags.clone());
             }
         }
     }
@@ -386,13 +382,13 @@ mod tests {
             motor: None,
         };
         for lag in [-0.1, -0.05, 0.0, 0.1] {
-            assert_eq!(lag_energy.expand(lag, 0.0).energy, 0.0, "{lag}");
+            assert_eq!(lag_energy.expand(lag, 0.0).energy, 0.0, "lag {lag}");
         }
-        let (growth, lever_arm, _) = triangle.growth_and_derivatives(0.01);
-        let torque = (8.0 + 0.7 * growth) * lever_arm;
+        let (extension, lever_arm, _) = triangle.extension_and_derivatives(0.01);
+        let torque = (8.0 + 0.7 * extension) * lever_arm;
         assert_near(lag_energy.expand(0.11, 0.0).torque, torque, 1e-9);
         assert_eq!(lag_energy.expand(-0.11, 0.0).torque, -STOP_TORQUE);
-        let stops = [-0.1, 0.1 + triangle.lag_at_growth(5.0)];
+        let stops = [-0.1, 0.1 + triangle.lag_at_extension(5.0)];
         assert_eq!(lag_energy.stops(), stops);
         assert_near(lag_energy.spring_torque(0.11), torque, 1e-9);
         assert_eq!(lag_energy.spring_torque(-0.2), 0.0, "a stop does not pull");
@@ -406,24 +402,23 @@ mod tests {
         // The component of the arm perpendicular to the strut.
         let lever_arm = triangle.lever_arm().abs();
         assert_near(lever_arm, 22.0 * 70f64.to_radians().sin(), 1e-9);
-        let end_lag = triangle.lag_at_growth(5.0);
-        let (growth, ..) = triangle.growth_and_derivatives(end_lag);
-        assert_near(growth, 5.0, 1e-9);
-        assert_eq!(triangle.lag_at_growth(50.0), f64::INFINITY);
+        let end_lag = triangle.lag_at_extension(5.0);
+        let (extension, ..) = triangle.extension_and_derivatives(end_lag);
+        assert_near(extension, 5.0, 1e-9);
+        assert_eq!(triangle.lag_at_extension(50.0), f64::INFINITY);
     }
 
     #[test]
-    fn tiny_lags_and_ramps_far_below_their_kink_keep_their_precision() {
+    fn tiny_lags_and_ramps_far_below_their_kink_stay_precise() {
         let triangle = triangle_at(70.0);
         for lag in [1e-12, 1e-9, 1e-6] {
             // The Taylor series to second order.
-            let (growth, ..) = triangle.growth_and_derivatives(lag);
-            let (_, lever_arm, lever_arm_slope) = triangle.growth_and_derivatives(0.0);
-            let expected_growth = lever_arm * lag + lever_arm_slope * lag * lag / 2.0;
-            assert_near(growth / expected_growth, 1.0, 1e-11);
+            let (extension, ..) = triangle.extension_and_derivatives(lag);
+            let (_, lever_arm, lever_arm_slope) = triangle.extension_and_derivatives(0.0);
+            let expected_extension = lever_arm * lag + lever_arm_slope * lag * lag / 2.0;
+            assert_near(extension / expected_extension, 1.0, 1e-11);
         }
-        // Far below its kink the smoothed ramp is eps^2 / (4 |x|), even if that is many orders of
-        // magnitude less than |x|.
+        // Far below its kink the smoothed ramp is eps^2 / (4 |x|), even if this is far less than |x|.
         let ramp = smoothed_ramp(-0.5, 1e-9);
         assert_near(ramp.energy / 5e-19, 1.0, 1e-9);
         assert_near(ramp.torque / 1e-18, 1.0, 1e-9);

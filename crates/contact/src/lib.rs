@@ -1,21 +1,19 @@
-//! The contact model: the movement of a body whose feet are never lifted.
+//! The contact model: the motion of a body whose feet are never lifted.
 //!
 //! Four pads, one at each foot, stand on the floor. When the legs swing, not all pads can stay in place, and friction
-//! decides which of them slide. The body moves so that the least power is lost to friction. Finding that movement is a
-//! small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet (`stance.rs`)
-//! and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad counts as a point,
-//! whatever its shape: a leg moves its pad without turning it and the body does not tilt, so even a domed pad always
+//! decides which of them slide. The body moves so that friction dissipates the least power. Finding this displacement
+//! is a small convex problem: `ground.rs` has the formula, `friction.rs` the solution. The loads of the feet
+//! (`stance.rs`) and the lag of each leg behind its servo (`drive.rs`) are part of the same problem. A pad of any shape
+//! counts as a point: a leg moves its pad without turning it and the body does not tilt, so even a domed pad always
 //! touches the floor with the same point of its surface.
 //!
-//! A [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the movement for a series of
-//! sweeps, as far as friction determines it; a [`Walker`] follows the sweeps step by step.
-//! `lizard-robot` predicts each gait of a robot.toml with this crate, and `lizard-twin` follows the
-//! pulses of a board with it. The crate itself reads no file and knows no gait.
+//! A [`Ground`] is one robot on one floor. [`Ground::predict`] predicts the displacement for a series of sweeps, as far
+//! as friction determines it; a [`Walker`] follows the sweeps step by step. `lizard-robot` predicts each gait of a
+//! robot.toml with this crate, and `lizard-twin` follows the pulses of a board with it. The crate itself reads no file.
 //!
 //! # When not to use it
-//! Feet neither lift nor tilt. Only [`Walker::drive`] models motors and inertia; everything else is quasi-static,
-//! so that speed has no effect. For a robot that lifts its feet, or that is so fast that its inertia matters
-//! more than friction, use a physics engine.
+//! Feet neither lift nor tilt. Only [`Walker::drive`] models motors and inertia; everything else is quasi-static, so
+//! speed has no effect. For a robot that lifts its feet or is very fast, use a physics engine.
 //!
 //! ```
 //! use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
@@ -28,8 +26,8 @@
 //!     friction_ratio: 1.0,
 //!     drive: Drive::RIGID,
 //! };
-//! // All four feet swing back from 20 degrees ahead to 20 degrees behind: the pads hold, and
-//! // the body moves ahead by the chord of the feet's arcs.
+//! // All four feet swing back from 20 degrees ahead to 20 degrees behind. The pads hold, and the body moves forward by
+//! // the chord of the feet's arcs.
 //! let prediction = ground.predict([[20.0; 4], [-20.0; 4]]);
 //! let chord = 2.0 * 45.0 * 20f64.to_radians().sin();
 //! assert!(prediction.forward.is_some_and(|forward| (forward - chord).abs() < 1e-3));
@@ -70,10 +68,10 @@ pub use strut::{SLOT_LENGTH, Strut};
 pub use travel::{Prediction, Travel};
 pub use walker::{Slip, Walker};
 
-/// Fails if a value is not near the expected one.
+/// Fails if a value differs from the expected one by `max_error` or more.
 #[cfg(test)]
 #[track_caller]
 fn assert_near(value: f64, expected: f64, max_error: f64) {
     let is_near = (value - expected).abs() < max_error;
-    assert!(is_near, "{value} is not near {expected}");
+    assert!(is_near, "expected {expected}, got {value}");
 }

@@ -1,8 +1,7 @@
 //! The solution of three linear equations.
 
 /// Solves `a x = b` for a symmetric, positive semidefinite 3x3 matrix by Gaussian elimination with partial
-/// pivoting. The matrix may be singular, and any of the solutions will do: a tiny addition to the diagonal
-/// selects one.
+/// pivoting. If the matrix is singular, a tiny addition to the diagonal selects one of the solutions.
 pub(crate) fn solve_symmetric(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     let max_diagonal = (0..3).fold(0.0f64, |max, i| max.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {

@@ -1,13 +1,13 @@
 //! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step. The
-//! energy's slope is the sum of all torques: of the motor, its damping, its rotor's inertia and friction. So the
-//! contact problem of `friction.rs` can treat a servo like a spring.
+//! energy's slope is the sum of all torques: of the motor, its damping, its rotor's inertia, and friction. The contact
+//! problem of `friction.rs` can therefore treat a servo like a spring.
 
 use crate::motor::Motor;
 
 /// The state of a servo at the beginning of a step, and its target.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ServoState {
-    /// Angle that the pulse commands, rad.
+    /// Commanded angle, rad.
     pub target_angle: f64,
     /// Angle of the servo, rad.
     pub angle: f64,
@@ -26,7 +26,7 @@ pub(crate) struct Expansion {
 }
 
 impl Expansion {
-    /// The sum of this expansion and `factor` times another one.
+    /// Returns the sum of this expansion and `factor` times another one.
     pub fn plus_scaled(self, factor: f64, other: Self) -> Self {
         Self {
             energy: self.energy + factor * other.energy,
@@ -36,9 +36,9 @@ impl Expansion {
     }
 }
 
-/// The energy of a motor in a short time step, as a function of the servo's lag. The lag is the angle, rad, by
-/// which the servo is behind its reference: the angle that it would reach in the step at an unchanged rate.
-/// Torques are in the contact problem's unit of force times mm.
+/// The energy of a motor in a short time step, as a function of the servo's lag, rad. The lag is relative to a
+/// reference: the angle that the servo would reach in the step at an unchanged rate. Torques are in the contact
+/// problem's unit of force times mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotorStep {
     /// Angle by which the target leads the reference, rad.
@@ -53,7 +53,7 @@ pub(crate) struct MotorStep {
     inertial_stiffness: f64,
     /// Lag at the end of the step if only inertia and damping acted, rad.
     coasting_lag: f64,
-    /// Lag of a servo that does not turn in this step, rad.
+    /// Lag of a servo that stands still in this step, rad.
     standstill_lag: f64,
     /// Torque of the pins' dry friction.
     pin_torque: f64,
@@ -62,8 +62,8 @@ pub(crate) struct MotorStep {
 }
 
 impl MotorStep {
-    /// Makes the energy of a step of `seconds`. The torques of the pins' friction and of the slider are
-    /// given in N mm; the energy uses `force_unit` N as the unit of force.
+    /// Creates the energy of a step of `seconds`. The torques of the pins' friction and of the slider are in N mm; the
+    /// energy uses `force_unit` newtons as its unit of force.
     pub fn new(
         motor: &Motor,
         state: ServoState,
@@ -71,7 +71,7 @@ impl MotorStep {
         [pin_torque, slider_torque]: [f64; 2],
         force_unit: f64,
     ) -> Self {
-        let inertia = motor.inertia() / (seconds * seconds);
+        let inertia = motor.reflected_inertia() / (seconds * seconds);
         let inertial_stiffness = inertia + motor.damping() / seconds;
         let steady_turn = state.rate * seconds;
         Self {
@@ -87,8 +87,7 @@ impl MotorStep {
         }
     }
 
-    /// Energy at a lag (rad), its slope and its curvature, with the kink of dry friction smoothed
-    /// over `eps` rad.
+    /// Energy at a lag (rad), its slope and its curvature, with the kink of dry friction smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let error = self.target_lead + lag;
         let excess_error = (error.abs() - self.half_dead_band).max(0.0);
@@ -129,14 +128,14 @@ impl MotorStep {
         }
     }
 
-    /// Lag of an unloaded servo at the end of the step, to first order, rad.
+    /// Computes an unloaded servo's lag at the end of the step, to first order, rad.
     pub fn unloaded_lag(&self) -> f64 {
         -self.expand(0.0, 0.0).torque / self.inertial_stiffness
     }
 
-    /// The lag (rad) at which the motor's torque equals the load's. `load_at` returns the load's torque and
-    /// stiffness at a lag; its torque is at most `max_load` and changes abruptly at the `kinks`.
-    pub fn lag_at_balance(
+    /// Finds the lag (rad) at which the motor's torque equals the load's. `load_at` returns the load's torque and
+    /// stiffness at a lag; the torque is at most `max_load` and changes abruptly at the `kinks`.
+    pub fn find_balance_lag(
         &self,
         kinks: [f64; 2],
         max_load: f64,
@@ -168,8 +167,7 @@ impl MotorStep {
             if step_length <= f64::EPSILON * (max_deviation + lag.abs()) {
                 return newton_lag;
             }
-            // The steps of Newton's method shrink unless there is a kink between lag and solution. Then a kink, or
-            // else bisection, gives the next lag.
+            // Newton's steps shrink unless a kink lies before the solution; then it or bisection gives the next lag.
             let is_between = |lag: &f64| low < *lag && *lag < high;
             let next = match is_between(&newton_lag) && step_length <= longest_step {
                 true => newton_lag,
@@ -185,7 +183,7 @@ impl MotorStep {
     }
 }
 
-/// The largest number of iterations in a search for a balance: as many as bisection alone would need.
+/// Largest number of iterations in a search for a balance: as many as bisection alone would need.
 const MAX_ITERATIONS: usize = 60;
 
 #[cfg(test)]
@@ -194,11 +192,11 @@ mod tests {
     use crate::assert_near;
 
     #[test]
-    fn torque_and_stiffness_are_the_derivatives_of_the_energy() {
+    fn torque_and_stiffness_match_the_derivatives_of_the_energy() {
         let motor = Motor {
             stall_torque: 176.5,
             no_load_speed: 500.0,
-            spin_up_time: 0.02,
+            rotor_time_constant: 0.02,
             full_torque_error: 3.0,
             half_dead_band: 0.0,
         };

@@ -6,7 +6,7 @@ use crate::travel::Travel;
 /// Position and heading of the body on the floor, in the body's axes at the start of the walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Distance ahead, mm.
+    /// Distance forward, mm.
     pub forward: f64,
     /// Distance to the left, mm.
     pub left: f64,
@@ -22,10 +22,9 @@ impl Place {
         heading: 0.0,
     };
 
-    /// The place after the body has moved with a constant twist for a unit of time. Its path is a circular arc, so
-    /// that the opposite twist leads back exactly.
+    /// Returns the place after a unit of time with a constant twist. The opposite twist leads back exactly.
     pub(crate) fn moved_by_twist(self, [forward, left, turn]: Twist) -> Self {
-        // The length of the chord over that of the arc. The chord's direction is the heading at half the turn.
+        // The chord's length divided by the arc's. The chord's direction is the heading at half the turn.
         let half_turn = turn / 2.0;
         let chord_over_arc = if half_turn == 0.0 {
             1.0
@@ -40,7 +39,7 @@ impl Place {
         }
     }
 
-    /// The travel from an earlier place to this one, in the body's axes at the earlier place.
+    /// Returns the travel from an earlier place to this one, in the body's axes at the earlier place.
     pub fn travel_from(self, earlier: Self) -> Travel {
         let (sin, cos) = earlier.heading.sin_cos();
         let (x, y) = (self.forward - earlier.forward, self.left - earlier.left);
@@ -51,7 +50,7 @@ impl Place {
         }
     }
 
-    /// The place after this travel from here: the inverse of [`Place::travel_from`].
+    /// Returns the place after this travel: the inverse of [`Place::travel_from`].
     pub fn moved_by_travel(self, travel: Travel) -> Self {
         let [forward, left] = self.to_floor([travel.forward, travel.left]);
         Self {
@@ -70,7 +69,7 @@ impl Place {
         ]
     }
 
-    /// The travel from the start to this place.
+    /// Returns the travel from the start to this place.
     pub fn travel(self) -> Travel {
         self.travel_from(Self::START)
     }
@@ -84,11 +83,9 @@ mod tests {
 
     fn assert_at(place: Place, [forward, left, turn]: [f64; 3]) {
         let travel = place.travel();
-        let error = (travel.forward - forward).hypot(travel.left - left);
-        assert!(
-            error < 1e-12 && (travel.turn - turn).abs() < 1e-12,
-            "{travel:?}"
-        );
+        assert_near(travel.forward, forward, 1e-12);
+        assert_near(travel.left, left, 1e-12);
+        assert_near(travel.turn, turn, 1e-12);
     }
 
     #[test]
@@ -107,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_body_that_turns_as_it_moves_follows_a_circle() {
-        // A quarter circle and a half circle, both to the left, of radius 10.
+        // A quarter circle and a semicircle, both to the left, of radius 10.
         for (turn, expected) in [(FRAC_PI_2, [10.0, 10.0, 90.0]), (PI, [0.0, 20.0, 180.0])] {
             let place = Place::START.moved_by_twist([10.0 * turn, 0.0, turn]);
             assert_at(place, expected);
@@ -121,16 +118,15 @@ mod tests {
         let end = start.moved_by_twist(twist);
         let travel = end.travel_from(start);
         let expected = Place::START.moved_by_twist(twist).travel();
-        assert_near(travel.forward, expected.forward, 1e-12);
-        assert_near(travel.left, expected.left, 1e-12);
-        assert_near(travel.turn, expected.turn, 1e-12);
+        let expected = [expected.forward, expected.left, expected.turn];
+        assert_at(Place::START.moved_by_travel(travel), expected);
         let error = start.moved_by_travel(travel).travel_from(end);
         assert_near(error.forward, 0.0, 1e-12);
         assert_near(error.left.hypot(error.turn), 0.0, 1e-12);
     }
 
     #[test]
-    fn a_point_is_converted_from_the_axes_of_the_body_to_those_of_the_floor() {
+    fn a_point_is_converted_from_the_bodys_axes_to_the_floors_axes() {
         let place = Place {
             forward: 1.0,
             left: 2.0,

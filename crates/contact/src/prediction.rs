@@ -1,8 +1,8 @@
-//! The prediction of a robot's movement for given sweeps of its legs.
+//! The prediction of a robot's displacement for given sweeps of its legs.
 //!
-//! If two feet pull one way and two the other way, there is a tie: the body may follow either pair, every twist
-//! in between costs the same friction, and the slightest difference between the pads decides. The model cannot know
-//! that difference, so it does not predict the components of a movement that depend on ties.
+//! If two feet pull one way and two the other way, there is a tie: the body may follow either pair, every twist in
+//! between costs the same friction, and the slightest difference between the pads decides. The model does not include
+//! such differences, so it does not predict the components of a displacement that depend on ties.
 
 use crate::friction::Twist;
 use crate::ground::Ground;
@@ -10,16 +10,16 @@ use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
 /// Relative change of a load or of the friction ratio in the test for ties. No printed pad and no floor is more even.
-const UNEVENNESS_SHARE: f64 = 0.01;
-/// Largest difference between walks on uneven and on even pads at which a component of the movement counts as decided,
-/// as a share of the path's length, or of the sum of all turns.
-const TOLERANCE_SHARE: f64 = 0.05;
-/// Difference up to which a distance ahead or to the left is always decided, mm.
+const UNEVENNESS: f64 = 0.01;
+/// Largest difference between walks on uneven and on even pads at which a component counts as decided, as a fraction
+/// of the path's length or of the sum of all turns.
+const RELATIVE_TOLERANCE: f64 = 0.05;
+/// Difference up to which a distance forward or to the left is always decided, mm.
 const MIN_LENGTH_TOLERANCE: f64 = 1.0;
 /// Difference up to which a turn is always decided, rad.
 const MIN_TURN_TOLERANCE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
-/// A walk on slightly uneven pads, compared with the walk on even ones.
+/// A walk on slightly uneven pads, compared with the walk on even pads.
 struct UnevenWalk {
     /// The robot on the uneven pads.
     walker: Walker,
@@ -28,28 +28,27 @@ struct UnevenWalk {
 }
 
 impl UnevenWalk {
-    /// Makes six walks: four in which one pad has a larger load, and two with a larger or a smaller ratio of backward
-    /// to forward friction.
-    fn variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
+    /// Creates six walks: four with a larger load on one pad, and two with a larger or smaller friction ratio.
+    fn create_variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
         let walk_with = |load_factors, ratio_factor| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load_factors, ratio_factor),
             total_differences: [0.0; 3],
         };
         let even_loads = [1.0; 4];
         std::array::from_fn(|i| match i {
-            4 => walk_with(even_loads, 1.0 + UNEVENNESS_SHARE),
-            5 => walk_with(even_loads, 1.0 - UNEVENNESS_SHARE),
+            4 => walk_with(even_loads, 1.0 + UNEVENNESS),
+            5 => walk_with(even_loads, 1.0 - UNEVENNESS),
             pad => {
                 let mut load_factors = even_loads;
-                load_factors[pad] += UNEVENNESS_SHARE;
+                load_factors[pad] += UNEVENNESS;
                 walk_with(load_factors, 1.0)
             }
         })
     }
 
-    /// Moves the servos to these sweeps, deg, and adds up the differences between the twist of each step and that of
+    /// Moves the servos to these sweeps, deg, and adds up the differences between each step's twist and the twist of
     /// the same step on even pads, listed in `even_twists`.
-    fn follow(&mut self, sweeps: [f64; 4], even_twists: &[Twist]) {
+    fn move_and_compare(&mut self, sweeps: [f64; 4], even_twists: &[Twist]) {
         let (mut even_twists, total_differences) =
             (even_twists.iter(), &mut self.total_differences);
         self.walker.move_servos(sweeps, |_, displacement| {
@@ -62,25 +61,24 @@ impl UnevenWalk {
 }
 
 impl Ground {
-    /// Predicts the movement for a series of sweeps (deg, foot forward positive, servo order), as far as
-    /// it does not depend on ties.
+    /// Predicts the displacement for a series of sweeps (deg, foot forward positive, servo order), as far as it does
+    /// not depend on ties.
     ///
-    /// The same sweeps are followed on six sets of uneven pads: the load of each pad in turn, or the backward friction
-    /// of all of them, is changed by one percent. In a tie the body then follows one pair of feet or the other. A
-    /// component is decided if its difference from the walk on even pads is within a tolerance: 1 mm or a twentieth
-    /// of the path's length for a distance; 0.5 deg or a twentieth of the sum of all turns for the turn; whichever is
-    /// larger.
+    /// Six walkers follow the same sweeps on uneven pads: one percent changes either the load of one pad or the
+    /// backward friction of all pads. In a tie the body then follows one pair of feet or the other. A component is
+    /// decided if its difference from the walk on even pads is within a tolerance. For a distance, the tolerance is the
+    /// larger of 1 mm and a twentieth of the path's length; for the turn, the larger of 0.5 deg and a twentieth of the
+    /// sum of all turns.
     ///
-    /// For the distance ahead and the turn, the differences of all steps are added up, and the sum must be within the
-    /// tolerance, too. Otherwise ties could cancel: a body that one pair of feet drags to and fro ends where it
-    /// started, whichever pair it is, but if the pairs change in between, it may end anywhere on that path. For the
-    /// distance to the left only the end counts: legs that swing together always spread and close, and bring the body
-    /// back within one swing.
+    /// For the distance forward and the turn, the sum of the differences of all steps must also be within the
+    /// tolerance. Otherwise ties could cancel: a body that either pair of feet drags to and fro ends at its start, but
+    /// if the pairs change in between, it may end anywhere on that path. For the distance to the left, only the end
+    /// counts: legs that swing together always spread and close, and bring the body back within one swing.
     pub fn predict(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Prediction {
         let mut sweeps = sweeps.into_iter();
         let first_sweeps = sweeps.next().unwrap_or_default();
         let mut even_walker = Walker::new(*self, first_sweeps);
-        let mut uneven_walks = UnevenWalk::variants(self, first_sweeps);
+        let mut uneven_walks = UnevenWalk::create_variants(self, first_sweeps);
         let (mut path_length, mut total_turn) = (0.0, 0.0);
         let mut twists = Vec::new();
         for next_sweeps in sweeps {
@@ -92,13 +90,13 @@ impl Ground {
                 twists.push(displacement.twist);
             });
             for walk in &mut uneven_walks {
-                walk.follow(next_sweeps, &twists);
+                walk.move_and_compare(next_sweeps, &twists);
             }
         }
-        let length_tolerance = MIN_LENGTH_TOLERANCE.max(TOLERANCE_SHARE * path_length);
-        let turn_tolerance = MIN_TURN_TOLERANCE.max(TOLERANCE_SHARE * total_turn);
+        let length_tolerance = MIN_LENGTH_TOLERANCE.max(RELATIVE_TOLERANCE * path_length);
+        let turn_tolerance = MIN_TURN_TOLERANCE.max(RELATIVE_TOLERANCE * total_turn);
         let place = even_walker.place();
-        let deviation_of = |walk: &UnevenWalk| {
+        let deviation = |walk: &UnevenWalk| {
             let uneven_place = walk.walker.place();
             [
                 uneven_place.forward - place.forward,
@@ -111,9 +109,9 @@ impl Ground {
         let is_decided = [
             holds_for_all_walks(&|walk| {
                 walk.total_differences[0] <= length_tolerance
-                    && deviation_of(walk)[0] <= length_tolerance
+                    && deviation(walk)[0] <= length_tolerance
             }),
-            holds_for_all_walks(&|walk| deviation_of(walk)[1] <= length_tolerance),
+            holds_for_all_walks(&|walk| deviation(walk)[1] <= length_tolerance),
             holds_for_all_walks(&|walk| walk.total_differences[2] <= turn_tolerance),
         ];
         let travel = place.travel();
@@ -124,8 +122,8 @@ impl Ground {
         }
     }
 
-    /// Computes the movement for a series of sweeps (deg, foot forward positive, servo order), even if it depends on
-    /// ties. In a tie the body moves by the twist midway between those of the two pairs of feet.
+    /// Computes the displacement for a series of sweeps (deg, foot forward positive, servo order), even if it depends
+    /// on ties. In a tie the body moves by the twist midway between the twists of the two pairs of feet.
     pub fn travel(&self, sweeps: impl IntoIterator<Item = [f64; 4]>) -> Travel {
         let mut sweeps = sweeps.into_iter();
         let mut walker = Walker::new(*self, sweeps.next().unwrap_or_default());
@@ -155,14 +153,14 @@ mod tests {
         stance: Stance::LEVEL,
     };
 
-    /// A cycle in which all legs follow the same wave, each from its own starting phase.
-    fn cycle_of(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
+    /// Builds a cycle in which all legs follow the same wave, each from its own starting phase.
+    fn build_cycle(starts: [f64; 4], wave: impl Fn(f64) -> f64) -> Vec<[f64; 4]> {
         let sweeps_at =
             |i: i32| starts.map(|start| wave((f64::from(i) / 400.0 - start).rem_euclid(1.0)));
         (0..=400).map(sweeps_at).collect()
     }
 
-    /// A wave that goes backward at constant speed for the fraction `duty` of the cycle, then forward.
+    /// Returns a wave that moves backward at constant speed for the fraction `duty` of the cycle, then forward.
     fn stroke_wave(duty: f64) -> impl Fn(f64) -> f64 {
         move |phase| {
             20.0 * match phase < duty {
@@ -180,35 +178,35 @@ mod tests {
     const DIAGONAL_STARTS: [f64; 4] = [0.0, 0.5, 0.0, 0.5];
 
     #[test]
-    fn with_three_feet_against_one_the_movement_is_decided() {
-        let prediction = GROUND.predict(cycle_of(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
+    fn with_three_feet_against_one_the_displacement_is_decided() {
+        let prediction = GROUND.predict(build_cycle(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
         let is_forward = prediction.forward > Some(25.0);
         assert!(prediction.is_decided() && is_forward, "{prediction:?}");
     }
 
     #[test]
-    fn if_the_legs_stand_still_or_swing_together_the_movement_is_decided() {
-        const NO_MOVEMENT: Prediction = Prediction {
+    fn if_the_legs_stand_still_or_swing_together_the_displacement_is_decided() {
+        const NO_DISPLACEMENT: Prediction = Prediction {
             forward: Some(0.0),
             left: Some(0.0),
             turn: Some(0.0),
         };
-        assert_eq!(GROUND.predict([[0.0; 4]; 10]), NO_MOVEMENT);
-        assert_eq!(GROUND.predict([]), NO_MOVEMENT);
+        assert_eq!(GROUND.predict([[0.0; 4]; 10]), NO_DISPLACEMENT);
+        assert_eq!(GROUND.predict([]), NO_DISPLACEMENT);
         let prediction = GROUND.predict([[20.0; 4], [-20.0; 4]]);
-        let forward = prediction.forward.expect("the distance ahead is decided");
         assert!(prediction.is_decided());
+        let forward = prediction.forward.expect("the distance forward is decided");
         assert_near(forward, 90.0 * 20f64.to_radians().sin(), 1e-3);
     }
 
     #[test]
-    fn with_two_feet_against_two_the_distance_ahead_is_undecided() {
+    fn with_two_feet_against_two_the_distance_forward_is_undecided() {
         for duty in [0.5, 0.75] {
-            let prediction = GROUND.predict(cycle_of(DIAGONAL_STARTS, stroke_wave(duty)));
+            let prediction = GROUND.predict(build_cycle(DIAGONAL_STARTS, stroke_wave(duty)));
             assert_eq!(prediction.forward, None);
         }
         for starts in [DIAGONAL_STARTS, ONE_BY_ONE_STARTS] {
-            assert_eq!(GROUND.predict(cycle_of(starts, sine_wave)).forward, None);
+            assert_eq!(GROUND.predict(build_cycle(starts, sine_wave)).forward, None);
         }
         // In a gesture of the head, the front feet pull against the hind feet.
         let sweeps_at = |phase: f64| [sine_wave(phase), sine_wave(phase), 0.0, 0.0];
@@ -217,9 +215,9 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_over_less_than_the_tolerance_leaves_the_movement_decided() {
+    fn a_tie_within_the_tolerance_leaves_the_displacement_decided() {
         let shrink_sweeps = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
-        let cycle = cycle_of(DIAGONAL_STARTS, sine_wave).into_iter();
+        let cycle = build_cycle(DIAGONAL_STARTS, sine_wave).into_iter();
         let prediction = GROUND.predict(cycle.map(shrink_sweeps));
         assert!(prediction.is_decided(), "{prediction:?}");
     }

@@ -1,9 +1,9 @@
 //! The body's travel over the floor, and its prediction.
 
-/// A movement of the body over the floor, in the axes of the body at the start of the movement.
+/// A displacement of the body over the floor, in the body's axes at its start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Travel {
-    /// Distance ahead, mm.
+    /// Distance forward, mm.
     pub forward: f64,
     /// Distance to the left, mm.
     pub left: f64,
@@ -15,7 +15,7 @@ pub struct Travel {
 /// other way, the slightest difference between the pads decides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
-    /// Distance ahead, mm.
+    /// Distance forward, mm.
     pub forward: Option<f64>,
     /// Distance to the left, mm.
     pub left: Option<f64>,
@@ -29,8 +29,8 @@ impl Prediction {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
 
-    /// Returns a prediction with the components of `travel`, without those that this prediction leaves undecided.
-    pub fn known_components_of(&self, travel: Travel) -> Self {
+    /// Returns the components of `travel` that this prediction decides.
+    pub fn keep_decided(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),
             left: self.left.and(Some(travel.left)),

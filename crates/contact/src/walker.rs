@@ -1,7 +1,7 @@
 //! The simulation of a robot on its floor, step by step.
 //!
-//! The body's movement in a step depends on earlier steps, because they leave each leg with a lag behind its
-//! servo. So a [`Walker`] keeps the state of a walk: the servos' sweeps, the lags and the place on the floor.
+//! The body's displacement in a step depends on earlier steps, because they leave each leg with a lag behind its servo.
+//! A [`Walker`] therefore keeps the state of a walk: the servos' sweeps, the lags and the place on the floor.
 
 use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
@@ -13,14 +13,14 @@ use crate::place::Place;
 
 /// Largest sweep in one step, deg. A larger sweep is divided into equal steps.
 const MAX_STEP_SWEEP: f64 = 0.5;
-/// The largest number of iterations in a step. The pads' positions in the middle of the step depend on the lags after
-/// it; each iteration improves the estimate of these lags.
+/// Largest number of iterations in a step. The pads' positions in the middle of the step depend on the lags after the
+/// step; each iteration improves the estimate of these lags.
 const MAX_ITERATIONS: usize = 4;
-/// Error of a lag's estimate up to which no further iteration is needed, rad.
+/// Largest error of a lag's estimate that needs no further iteration, rad.
 const LAG_TOLERANCE: f64 = 1e-4;
 /// Largest rounding error of a computed number of steps.
 const STEP_COUNT_TOLERANCE: f64 = 1e-6;
-/// Width over which kinks of the energy are smoothed when a lag is divided between servo and leg, rad.
+/// Width over which the energy's kinks are smoothed when a lag is divided between servo and leg, rad.
 const KINK_WIDTH: f64 = 1e-12;
 
 /// A robot that walks on a floor.
@@ -28,7 +28,7 @@ const KINK_WIDTH: f64 = 1e-12;
 pub struct Walker {
     /// The robot and its floor.
     ground: Ground,
-    /// Factors on the pads' loads, and the factor on the ratio of backward to forward friction.
+    /// Factors of the pads' loads, and the factor of the ratio of backward to forward friction.
     unevenness: ([f64; 4], f64),
     /// Sweeps of the servos, deg.
     servo_sweeps: [f64; 4],
@@ -36,20 +36,20 @@ pub struct Walker {
     servo_rates: [f64; 4],
     /// Lags of the legs behind their servos, deg.
     lags: [f64; 4],
-    /// Velocity of the body while motors drive it, mm/s and rad/s.
+    /// Velocity of the body while motors drive the robot, mm/s and rad/s.
     body_velocity: Twist,
     /// Velocities of the pads over the floor while motors drive them, mm/s.
     pad_velocities: [Point; 4],
-    /// The place of the body on the floor.
+    /// Place of the body on the floor.
     place: Place,
 }
 
-/// The slides and the loads of the feet in a movement from one pose to the next.
+/// The slides and the loads of the feet in a motion from one pose to the next.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slip {
     /// Distance that each foot slid over the floor, mm.
     pub slid_distances: [f64; 4],
-    /// Load of each foot at the end of the movement, relative to the mean.
+    /// Load of each foot at the end of the motion, relative to the mean.
     pub loads: [f64; 4],
 }
 
@@ -62,25 +62,21 @@ impl Slip {
     /// Adds the slides of a step, and keeps its loads.
     fn add(&mut self, pads: &Pads, displacement: &Displacement) {
         self.loads = pads.loads;
-        for (sum, [x, y]) in self
-            .slid_distances
-            .iter_mut()
-            .zip(pads.slides(displacement))
-        {
+        let slides = pads.slides(displacement);
+        for (sum, [x, y]) in self.slid_distances.iter_mut().zip(slides) {
             *sum += x.hypot(y);
         }
     }
 }
 
 impl Walker {
-    /// Makes a walker that stands with its servos at these sweeps (deg, foot forward positive,
-    /// servo order) and no lags.
+    /// Creates a walker without lags, with its servos at these sweeps (deg, foot forward positive, servo order).
     pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
-    /// Makes a walker that stands with its servos at these sweeps (deg) and no lags, with factors on
-    /// the loads of the pads and on the ratio of backward to forward friction.
+    /// Creates a walker without lags, with its servos at these sweeps (deg), and with factors of the pads' loads and of
+    /// the ratio of backward to forward friction.
     pub fn with_unevenness(
         ground: Ground,
         sweeps: [f64; 4],
@@ -99,7 +95,7 @@ impl Walker {
         }
     }
 
-    /// The place of the body on the floor.
+    /// Place of the body on the floor.
     pub fn place(&self) -> Place {
         self.place
     }
@@ -114,12 +110,11 @@ impl Walker {
         &self.ground
     }
 
-    /// Changes the robot or its floor from the next step on. A leg that lags more than its new drive
-    /// allows moves to the stop.
+    /// Changes the robot or its floor. A leg that lags more than its new drive allows moves to the stop.
     pub fn set_ground(&mut self, ground: Ground) {
         self.ground = ground;
         let (drive, servo_sweeps) = (&self.ground.drive, self.servo_sweeps);
-        self.lags = std::array::from_fn(|i| drive.limit_lag(i, servo_sweeps[i], self.lags[i]));
+        self.lags = std::array::from_fn(|i| drive.clamp_lag(i, servo_sweeps[i], self.lags[i]));
     }
 
     /// Lag of each leg behind its servo, deg.
@@ -137,15 +132,15 @@ impl Walker {
         self.servo_sweeps
     }
 
-    /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. A servo
-    /// without a target does not turn, because the friction of its gears holds it.
+    /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. The friction of its gears
+    /// holds a servo without a target.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
         let mut slip = Slip::NONE;
-        let step_count = (seconds / motors.time_step() - STEP_COUNT_TOLERANCE)
+        let step_count = (seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE)
             .ceil()
             .max(1.0);
         for _ in 0..step_count as usize {
-            let (pads, displacement) = self.drive_step(targets, seconds / step_count, motors);
+            let (pads, displacement) = self.advance_step(targets, seconds / step_count, motors);
             self.place = self.place.moved_by_twist(displacement.twist);
             slip.add(&pads, &displacement);
         }
@@ -153,46 +148,46 @@ impl Walker {
     }
 
     /// Finds the displacement in a short time step, and updates servos, lags and velocities.
-    fn drive_step(
+    fn advance_step(
         &mut self,
         targets: [Option<f64>; 4],
         seconds: f64,
         motors: &Motors,
     ) -> (Pads, Displacement) {
-        let (mean_pad_friction, joints) = (self.ground.mean_pad_friction(), &motors.joints);
+        let joint_friction = &motors.joint_friction;
         let (start_sweeps, start_rates) =
             (self.servo_sweeps, self.servo_rates.map(f64::to_radians));
+        let smoothing_speed = motors.compute_smoothing_speed(seconds);
         let slider_torques =
-            joints.slider_torques(start_sweeps, start_rates, motors.fade_speed(seconds));
+            joint_friction.slider_torques(start_sweeps, start_rates, smoothing_speed);
         let motor_steps: [Option<MotorStep>; 4] = std::array::from_fn(|i| {
             let state = ServoState {
                 target_angle: targets[i]?.to_radians(),
                 angle: start_sweeps[i].to_radians(),
                 rate: start_rates[i],
             };
-            let dry_friction_torques = [joints.pin_torque, slider_torques[i]];
             Some(MotorStep::new(
                 &motors.per_servo[i],
                 state,
                 seconds,
-                dry_friction_torques,
-                mean_pad_friction,
+                [joint_friction.pin_torque, slider_torques[i]],
+                self.ground.mean_pad_friction(),
             ))
         });
-        // The sweeps that the servos would reach at unchanged rates: the servos' lags are relative to them.
+        // The servos' lags are relative to the sweeps that the servos would reach at unchanged rates.
         let reference_sweeps: [f64; 4] = std::array::from_fn(|i| match targets[i] {
             Some(_) => start_sweeps[i] + self.servo_rates[i] * seconds,
             None => start_sweeps[i],
         });
         let start_points = self.ground.feet.positions(self.leg_sweeps());
-        // In a short step a loaded motor turns nearly as far as an unloaded one, so this is a good estimate.
+        // In a short step a loaded motor turns nearly as far as an unloaded motor, so this is a good estimate.
         let lag_estimates = std::array::from_fn(|i| {
             self.lags[i].to_radians()
                 + motor_steps[i].map_or(0.0, |motor_step| motor_step.unloaded_lag())
         });
         let pads = Pads {
-            inertia: Some(self.inertia(seconds)),
-            ..self.pads(start_points, reference_sweeps, lag_estimates, motor_steps)
+            inertia: Some(self.compute_inertia(seconds)),
+            ..self.build_pads(start_points, reference_sweeps, lag_estimates, motor_steps)
         };
         let displacement = pads.minimise_cost();
         for (i, total_lag) in displacement.lags.into_iter().enumerate() {
@@ -209,9 +204,9 @@ impl Walker {
         (pads, displacement)
     }
 
-    /// The inertia in a time step of `seconds`. The mass of the body counts as if it were at the hips, that of the
-    /// legs as if it were at the pads.
-    fn inertia(&self, seconds: f64) -> Inertia {
+    /// Computes the inertia in a time step of `seconds`. The body's mass counts as if it were at the hips, the legs'
+    /// mass as if it were at the pads.
+    fn compute_inertia(&self, seconds: f64) -> Inertia {
         const KG_PER_G: f64 = 1e-3;
         const M_PER_MM: f64 = 1e-3;
         let Feet {
@@ -221,15 +216,15 @@ impl Walker {
         } = self.ground.feet;
         let Body { mass, .. } = self.ground.body;
         let leg_mass = self.ground.body.leg_mass();
-        let stiffness_of = |mass: f64| {
+        let to_stiffness = |mass: f64| {
             mass * KG_PER_G * M_PER_MM / (seconds * seconds * self.ground.mean_pad_friction())
         };
-        let stiffness = stiffness_of(mass - 4.0 * leg_mass);
-        let hip_square = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
+        let stiffness = to_stiffness(mass - 4.0 * leg_mass);
+        let squared_hip_distance = hip_forward * hip_forward + (front * front + hind * hind) / 2.0;
         Inertia {
-            stiffness: [stiffness, stiffness, stiffness * hip_square],
+            stiffness: [stiffness, stiffness, stiffness * squared_hip_distance],
             previous_twist: self.body_velocity.map(|component| component * seconds),
-            leg_stiffness: stiffness_of(leg_mass),
+            leg_stiffness: to_stiffness(leg_mass),
             previous_slides: self
                 .pad_velocities
                 .map(|velocity| velocity.map(|component| component * seconds)),
@@ -252,9 +247,8 @@ impl Walker {
         let start_sweeps = self.servo_sweeps;
         (self.servo_rates, self.body_velocity) = ([0.0; 4], [0.0; 3]);
         self.pad_velocities = [[0.0; 2]; 4];
-        let max_turn = (0..4).fold(0.0f64, |max, i| {
-            max.max((sweeps[i] - start_sweeps[i]).abs())
-        });
+        let turns = (0..4).map(|i| (sweeps[i] - start_sweeps[i]).abs());
+        let max_turn = turns.fold(0.0, f64::max);
         let step_count = (max_turn / MAX_STEP_SWEEP).ceil().max(1.0) as usize;
         for step in 1..=step_count {
             let fraction = step as f64 / step_count as f64;
@@ -272,25 +266,23 @@ impl Walker {
     fn find_displacement(&self, servo_sweeps: [f64; 4]) -> (Pads, Displacement) {
         let start_points = self.ground.feet.positions(self.leg_sweeps());
         let mut lag_estimates = self.lags.map(f64::to_radians);
-        let mut pads = self.pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
+        let mut pads = self.build_pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
         let mut displacement = pads.minimise_cost();
         for _ in 1..MAX_ITERATIONS {
-            let max_error = (0..4).fold(0.0f64, |error, i| {
-                error.max((displacement.lags[i] - lag_estimates[i]).abs())
-            });
-            if max_error < LAG_TOLERANCE {
+            let errors = (0..4).map(|i| (displacement.lags[i] - lag_estimates[i]).abs());
+            if errors.fold(0.0, f64::max) < LAG_TOLERANCE {
                 break;
             }
             lag_estimates = displacement.lags;
-            pads = self.pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
+            pads = self.build_pads(start_points, servo_sweeps, lag_estimates, [None; 4]);
             displacement = pads.minimise_cost_from(Some(&displacement));
         }
         (pads, displacement)
     }
 
-    /// Sets up the pads in a small step of the servos to `servo_sweeps` (deg), after which the lags are
-    /// about `lag_estimates` (rad).
-    fn pads(
+    /// Builds the pads for a small step of the servos to `servo_sweeps` (deg), after which the lags are about
+    /// `lag_estimates` (rad).
+    fn build_pads(
         &self,
         start_points: [Point; 4],
         servo_sweeps: [f64; 4],
@@ -302,22 +294,23 @@ impl Walker {
             std::array::from_fn(|i| servo_sweeps[i] - lag_estimates[i].to_degrees());
         let end_points = feet.positions(end_sweeps);
         let derivatives = feet.sweep_derivatives(end_sweeps);
-        // The positions in the middle of the step, so that the reverse step is its exact inverse.
-        let positions = points_from(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
+        // With the positions in the middle of the step, the reverse step is its exact inverse.
+        let positions = build_points(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
         let previous_lags = self.lags.map(f64::to_radians);
         let (load_factors, ratio_factor) = self.unevenness;
+        let friction_ratio = self.ground.friction_ratio * ratio_factor;
         let loads = self.ground.loads(positions);
-        let (drive, mean_pad_friction) = (&self.ground.drive, self.ground.mean_pad_friction());
+        let drive = &self.ground.drive;
         // No pad carries more than the whole robot.
-        let max_pad_torque =
-            4.0 * feet.reach * (self.ground.friction_ratio * ratio_factor).max(1.0);
+        let max_pad_torque = 4.0 * feet.reach * friction_ratio.max(1.0);
+        let force_unit = self.ground.mean_pad_friction();
         Pads {
             positions,
-            swings: points_from(&|i, j| {
+            swings: build_points(&|i, j| {
                 end_points[i][j] - start_points[i][j]
                     + (lag_estimates[i] - previous_lags[i]) * derivatives[i][j]
             }),
-            friction_ratio: self.ground.friction_ratio * ratio_factor,
+            friction_ratio,
             loads: std::array::from_fn(|i| loads[i] * load_factors[i]),
             inertia: None,
             compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
@@ -326,12 +319,7 @@ impl Walker {
                     previous_lags,
                     lag_energies: std::array::from_fn(|i| LagEnergy {
                         motor: motors[i],
-                        ..drive.lag_energy_of_leg(
-                            i,
-                            servo_sweeps[i],
-                            mean_pad_friction,
-                            max_pad_torque,
-                        )
+                        ..drive.lag_energy(i, servo_sweeps[i], force_unit, max_pad_torque)
                     }),
                 }
             }),
@@ -339,7 +327,7 @@ impl Walker {
     }
 }
 
-/// Four points from their components, given as a function of the pad and the axis.
-fn points_from(component: &dyn Fn(usize, usize) -> f64) -> [Point; 4] {
+/// Builds four points from their components, a function of the pad and the axis.
+fn build_points(component: &dyn Fn(usize, usize) -> f64) -> [Point; 4] {
     std::array::from_fn(|i| std::array::from_fn(|j| component(i, j)))
 }

@@ -1,11 +1,11 @@
 //! The core of a robotic lizard's firmware, for any such robot and any board.
 //!
-//! Four hobby servos drive two five-bar linkages and four legs, whose feet drag on the floor. A line of text requests
-//! a gait or a pose; fifty times a second the core turns the request into four pulse widths that the servos
-//! can follow and that cannot break a linkage of the robot.
+//! Four hobby servos drive two five-bar linkages and four legs, whose feet drag on the floor. A line of text requests a
+//! gait or a pose. Fifty times a second the core converts the request to four pulse widths, which the servos can follow
+//! and which cannot break a linkage.
 //!
-//! Commands pass from the console to the pulses through the types of the first row, and answers return through those
-//! of the second row:
+//! Commands pass from the console to the pulses through the types in the first row; answers return through the types in
+//! the second row:
 //!
 //! ```text
 //!         Console                     Controller                             Board
@@ -13,22 +13,20 @@
 //! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
 //!
-//! [`step::Main`] joins a [`console::Console`] and a [`control::Controller`]: it is the loop
-//! that a board repeats. Below it are six modules, each of which uses only those below
-//! it in this table:
+//! [`step::Main`], the main loop of a board, connects a [`console::Console`] with a [`control::Controller`]. Below it
+//! are six modules, each of which uses only the modules below it in this table:
 //!
 //! | module | contents |
 //! |---|---|
 //! | [`console`] | bytes, lines, commands, messages |
-//! | [`control`] | orders, refusals, the [`control::supervisor`]'s table, faults, supplies |
-//! | [`motion`] | gaits, moves between poses, and the changes from one to the next |
+//! | [`control`] | orders, refusals, the tables of the [`control::supervisor`], faults, supplies |
+//! | [`motion`] | gaits, moves between poses, and the transitions between them |
 //! | [`guard`] | the geometry: margins to the singularities, strokes, the limit that a pose violates |
 //! | [`memory`] | settings and poses that survive power-off, and a state that survives a reset |
 //! | [`numbers`] | units, and the section of flash with the numbers of a robot |
 //!
-//! This example shows two parts that need no robot: bytes become a line, and an angle
-//! becomes the pulse that turns a servo to it. A whole robot on a simulated board is in
-//! `virtual_board` (feature `host`).
+//! This example shows two parts that require no robot: bytes form a line, and an angle is converted to a servo's pulse.
+//! `virtual_board` (feature `host`) runs a whole robot on a simulated board.
 //!
 //! ```
 //! use lizard_core::numbers::calibration::Calibration;
@@ -39,8 +37,8 @@
 //! let line_end = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
 //! assert_eq!((line_end, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
 //!
-//! // A servo that holds 90 degrees at 1500 us and turns 90 degrees either way, 10 us for
-//! // each degree: that makes 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles for a step.
+//! // A servo that is at 90 degrees with a pulse of 1500 us and turns 90 degrees either way, at 10 us per degree:
+//! // 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles per step.
 //! let servo = Calibration {
 //!     neutral_width: PulseWidth(1500 * CYCLES_PER_US),
 //!     gain: (57_600 << 14 >> 16) as i16,
@@ -54,22 +52,20 @@
 //!
 //! The goals, in order of priority:
 //!
-//! 1. **Safe.** No frame is sent without the guard, no two servos wake together, and after
-//!    a fault the robot stands still and reports the reason.
-//! 2. **Exact.** A pulse is correct to the cycle, and a frame on the host equals the chip's
-//!    to the bit.
+//! 1. **Safe.** Every frame passes the guard, no two servos wake at the same time, and after a fault the robot stands
+//!    still and reports the reason.
+//! 2. **Exact.** A pulse is correct to the cycle, and a frame on the host equals the chip's frame to the bit.
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
-//! 4. **Small.** Flash and RAM come last: a type that costs a few bytes is kept as long as
-//!    the program fits.
+//! 4. **Small.** Flash and RAM have the lowest priority: a type that costs a few bytes is kept while the program fits.
 //!
-//! Everything here is integer arithmetic and runs unchanged on the microcontroller and on
-//! the host, where the tests compare it with floating point. The numbers of a robot come
-//! from its section of flash ([`numbers::section`], [`numbers::robot::Robot`]), the board
-//! through the trait [`step::Board`]; this crate can name neither a register nor a file.
+//! All arithmetic uses integers and runs unchanged on the microcontroller and on the host, where the tests compare it
+//! with floating point. A robot's numbers come from its section of flash ([`numbers::section`],
+//! [`numbers::robot::Robot`]); the trait [`step::Board`] gives access to the board. This crate accesses neither
+//! registers nor files.
 //!
-//! Do not use this crate for a robot of another build: head, tail and sides have to be five-bars on
-//! exactly four servos. To send pulses alone, use `servo-pulses`; to explore a linkage on
-//! a host, use the floating-point crate `lizard-kinematics`.
+//! Do not use this crate for a robot with other mechanics: head, tail and sides must be five-bars on exactly four
+//! servos. To generate only pulses, use `servo-pulses`; to explore a linkage on a host, use the floating-point crate
+//! `lizard-kinematics`.
 
 #![no_std]
 

@@ -1,9 +1,9 @@
 //! Robots for the tests of this crate, made at run time from floating-point measurements. The tests compare the core's
 //! integer arithmetic with exact results for the same measurements.
 //!
-//! [`Sample::asymmetric`] and the random robots have no symmetry at all: no two bars are equally long, each kind of
-//! limit differs, and every servo has its own gain, neutral width and travel. So a test fails if the code confuses the
-//! numbers of two parts.
+//! [`Sample::asymmetric`] and the random robots have no symmetry: no two bars have the same length, each kind of limit
+//! has another value, and every servo has its own gain, neutral width and travel. Therefore a test fails if the code
+//! confuses the numbers of two parts.
 
 pub mod bounds;
 mod end;
@@ -21,7 +21,7 @@ use proptest::prelude::*;
 use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::guard::clearance::Clearance;
-use crate::numbers::calibration::NeededTravel;
+use crate::numbers::calibration::SweepRange;
 use crate::numbers::checksum::Checksum;
 use crate::numbers::gaits::{Channel, Gait, GaitId, Input, SAMPLES_PER_WAVE, Step, Wave};
 use crate::numbers::limits::Limits;
@@ -41,30 +41,30 @@ use end::to_steps;
 /// The number of steps of an [`Angle`] in a degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
 
-/// The names of the gaits of every sample. The last of them becomes unsafe halfway through its cycle.
+/// The names of every sample's gaits. The last gait becomes unsafe halfway through its cycle.
 pub const GAIT_NAMES: [&str; 6] = ["stand", "sway", "sway left", "swing", "back", "stray"];
 
-/// The range of sweeps that the gaits need of each servo; see [`make_waves`] and [`make_gaits`].
-const GAIT_TRAVEL: [NeededTravel; 4] = [
-    NeededTravel {
+/// The range of each servo's sweeps that the gaits need; see [`make_waves`] and [`make_gaits`].
+const GAIT_TRAVEL: [SweepRange; 4] = [
+    SweepRange {
         min: Sweep(-2000),
         max: Sweep(2100),
     },
-    NeededTravel {
+    SweepRange {
         min: Sweep(-1100),
         max: Sweep(1000),
     },
-    NeededTravel {
+    SweepRange {
         min: Sweep(-1500),
         max: Sweep(1600),
     },
-    NeededTravel {
+    SweepRange {
         min: Sweep(-900),
         max: Sweep(800),
     },
 ];
 
-/// A reference voltage of 1.08 V, and the servos' rail measured through a divider of 10 and 4.7 kiloohms.
+/// Supplies with a reference voltage of 1.08 V, and a rail that is measured through a divider of 10 and 4.7 kiloohms.
 const SUPPLIES: Supplies = Supplies {
     reference_mv: 1080,
     board: Thresholds {
@@ -80,10 +80,10 @@ const SUPPLIES: Supplies = Supplies {
     },
 };
 
-/// The pace on a low supply, percent; it differs from that of robots without a measured rail.
+/// The pace on a low supply, percent, which differs from the pace of robots without a measured rail.
 pub const SLOW_PACE: u8 = 67;
 
-/// A robot in integers, and the measurements from which it was made.
+/// A robot in integers, with the measurements from which it was made.
 #[derive(Clone, Debug)]
 pub struct Sample {
     pub measurements: Measurements,
@@ -103,7 +103,7 @@ impl Deref for Sample {
 }
 
 impl Sample {
-    /// Creates the robot of these measurements, in integers.
+    /// Converts measurements to a robot in integers.
     pub fn new(measurements: Measurements) -> Self {
         let Measurements {
             lizard,
@@ -111,18 +111,18 @@ impl Sample {
             servos,
             slew_deg_per_s,
         } = measurements;
-        let five_bar_of =
+        let make_five_bar =
             |end| SampleFiveBar::new(&lizard.end(end)).expect("the couplers are long enough");
-        let slider_of = |side| {
+        let make_slider = |side| {
             let slider = lizard.side(side);
             slider_in_steps(&slider, limits.stroke_min, limits.stroke_max)
         };
-        let sine_of = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
+        let to_sine = |margin: f64| Sine((margin * 32768.0).ceil() as i16);
         let mut names = Vec::new();
         let gaits = make_gaits(&mut names);
         let ends = [
-            five_bar_of(kinematics::End::Head),
-            five_bar_of(kinematics::End::Tail),
+            make_five_bar(kinematics::End::Head),
+            make_five_bar(kinematics::End::Tail),
         ];
         let content = Content {
             name: "sample".to_string(),
@@ -132,13 +132,13 @@ impl Sample {
             maps: core::array::from_fn(|_| Map::default()),
             ends: ends.each_ref().map(SampleFiveBar::content),
             sliders: [
-                slider_of(kinematics::Side::Left),
-                slider_of(kinematics::Side::Right),
+                make_slider(kinematics::Side::Left),
+                make_slider(kinematics::Side::Right),
             ],
             limits: Limits {
-                type2: sine_of(limits.type2),
-                type1: sine_of(limits.type1),
-                leg: sine_of(limits.leg),
+                type2: to_sine(limits.type2),
+                type1: to_sine(limits.type1),
+                leg: to_sine(limits.leg),
             },
             slew: Slew::new((slew_deg_per_s * STEPS_PER_DEGREE / 50.0) as u16),
             neutral_angles: servos
@@ -150,7 +150,7 @@ impl Sample {
             waves: make_waves(),
             needed_travel: core::array::from_fn(|servo| {
                 let travel = servos[servo].calibration();
-                NeededTravel {
+                SweepRange {
                     min: GAIT_TRAVEL[servo].min.max(travel.travel_min),
                     max: GAIT_TRAVEL[servo].max.min(travel.travel_max),
                 }
@@ -159,32 +159,32 @@ impl Sample {
             servo_hash: 0x7b5d_2e81,
         };
         Self {
-            robot: robot_from(&content),
+            robot: leak_robot(&content),
             measurements,
             content,
             ends,
         }
     }
 
-    /// Applies `change` to the content of the section, and rebuilds the robot.
+    /// Applies `change` to the content of the section and rebuilds the robot.
     pub fn with_changes(mut self, change: impl FnOnce(&mut Content)) -> Self {
         change(&mut self.content);
-        self.robot = robot_from(&self.content);
+        self.robot = leak_robot(&self.content);
         self
     }
 
-    /// The robot of [`Measurements::paper`].
+    /// Creates the robot of [`Measurements::paper`].
     pub fn paper() -> Self {
         Self::new(Measurements::paper())
     }
 
-    /// The robot of [`Measurements::asymmetric`].
+    /// Creates the robot of [`Measurements::asymmetric`].
     pub fn asymmetric() -> Self {
         Self::new(Measurements::asymmetric())
     }
 
-    /// Yields random robots of [`Measurements::random`] whose neutral pose the integer guard accepts, as it must for
-    /// every robot of a firmware. Because of rounding, some poses are safe in floating point but not in integers.
+    /// Yields random robots of [`Measurements::random`] whose neutral pose the integer guard accepts, as
+    /// [`Robot::open`] requires. Because of rounding, some poses are safe in floating point but not in integers.
     pub fn random() -> impl Strategy<Value = Self> {
         Measurements::random()
             .prop_map(Self::new)
@@ -193,17 +193,17 @@ impl Sample {
 
     /// True if the integer guard accepts the neutral pose.
     pub fn stands_safely(&self) -> bool {
-        Clearance::of(self, &Pose::NEUTRAL)
+        Clearance::measure(self, &Pose::NEUTRAL)
             .first_hazard(self)
             .is_none()
     }
 
-    /// Returns this robot with the given hash, in a section with a correct checksum.
+    /// Builds this robot with another hash, in a section with a correct checksum.
     pub fn with_hash(&self, hash: u32) -> Robot<'static> {
         let mut section = self.content.section_bytes();
         let offset = offset_of!(Header, hash);
         section[offset..offset + 4].copy_from_slice(&hash.to_le_bytes());
-        let crc = Checksum::of(&section[offset_of!(Header, name)..]).0;
+        let crc = Checksum::compute(&section[offset_of!(Header, name)..]).0;
         let offset = offset_of!(Header, crc);
         section[offset..offset + 2].copy_from_slice(&crc.to_le_bytes());
         Robot::unchecked(Region::new(Vec::leak(section))).expect("the section is complete")
@@ -222,8 +222,8 @@ impl Sample {
         })
     }
 
-    /// Adds a routine that carries out `steps` this many times, or endlessly if `rounds` is 0. Each step is a kind, the
-    /// name of a gait or an input, and a count.
+    /// Adds a routine that executes `steps` `rounds` times, or endlessly if that is 0. Each step consists of its kind,
+    /// the name of a gait or an input, and a count.
     pub fn with_routine(self, name: &str, rounds: u16, steps: &[(u8, &str, u16)]) -> Self {
         let steps: Vec<Step> = steps
             .iter()
@@ -249,12 +249,12 @@ impl Sample {
         })
     }
 
-    /// Returns the chassis angles of a pose, deg.
+    /// Computes the chassis angles of a pose, deg.
     pub fn degrees(&self, pose: &Pose) -> [f64; 4] {
         pose.angles(&self.neutral_angles()).map(degrees)
     }
 
-    /// Solves a pose exactly; returns `None` if a linkage cannot be assembled in it.
+    /// Solves a pose in floating point; returns `None` if a linkage cannot be assembled in this pose.
     pub fn solve(&self, pose: &Pose) -> Option<kinematics::Solution> {
         let angles = self.degrees(pose);
         self.measurements.lizard.solve(&angles.into()).ok()
@@ -277,8 +277,8 @@ impl Robot<'_> {
     }
 }
 
-/// Makes the robot of a section, which stays in memory until the tests end.
-fn robot_from(content: &Content) -> Robot<'static> {
+/// Builds a robot and its section, which stays in memory until the tests end.
+fn leak_robot(content: &Content) -> Robot<'static> {
     Robot::unchecked(Region::new(Vec::leak(content.section_bytes())))
         .expect("the section is complete")
 }
@@ -293,7 +293,7 @@ pub fn sine(sine: Sine) -> f64 {
     f64::from(sine.0) / 32768.0
 }
 
-/// Converts a side's slider to the finest steps that its lengths allow. The stroke, given in mm, is rounded inwards.
+/// Converts a slider to the finest steps that its lengths allow. Rounds the stroke, given in mm, inwards.
 pub fn slider_in_steps(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
     let total = side.base + side.front_arm + side.rear_arm + side.front_offset.abs();
     let arms = side.front_arm + side.rear_arm + side.front_offset.abs();
@@ -331,31 +331,31 @@ pub const HEALTHY_BOARD: Health = Health {
     is_contact_closed: false,
 };
 
-/// The button that routines wait for.
+/// The button for which routines wait.
 pub const BUTTON: Input = Input::button(15);
-/// The obstacle switch that routines wait for.
+/// The obstacle switch for which routines wait.
 pub const NOSE: Input = Input::nose(16);
 
-/// Makes three waveforms: a sine, a slow rise with a quick fall, and a hump. Each channel of a gait scales its waveform
-/// by a gain.
+/// Makes three waveforms: a sine, a slow rise with a fast fall, and a hump. Each channel of a gait multiplies its
+/// waveform by a gain.
 fn make_waves() -> Vec<Wave> {
-    let wave_of = |function: fn(f64) -> f64| -> Wave {
+    let make_wave = |function: fn(f64) -> f64| -> Wave {
         core::array::from_fn(|n| {
             (function(n as f64 / SAMPLES_PER_WAVE as f64) * 1820.0).round() as i16
         })
     };
     std::vec![
-        wave_of(|u| (u * core::f64::consts::TAU).sin()),
-        wave_of(|u| if u < 0.75 {
+        make_wave(|u| (u * core::f64::consts::TAU).sin()),
+        make_wave(|u| if u < 0.75 {
             u / 0.75 - 0.5
         } else {
             3.5 - 4.0 * u
         }),
-        wave_of(|u| 4.0 * (1.0 - (u * core::f64::consts::TAU).cos())),
+        make_wave(|u| 4.0 * (1.0 - (u * core::f64::consts::TAU).cos())),
     ]
 }
 
-/// Makes the gaits of [`GAIT_NAMES`], and appends their names to `names`.
+/// Makes the gaits of [`GAIT_NAMES`] and appends their names to `names`.
 fn make_gaits(names: &mut Vec<u8>) -> Vec<Gait> {
     let channel = |wave, offset, gain| Channel { wave, offset, gain };
     let still_channels = [channel(0, 0, 0); 4];

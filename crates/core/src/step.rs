@@ -1,13 +1,12 @@
 //! The step that a firmware's main loop repeats.
 //!
-//! A tick of the pulses or a received byte wakes the main loop. Each step does one thing, and a tick comes first,
-//! so a frame waits for one byte or one line at most. The loop takes no input while it writes the EEPROM (3.4 ms per
-//! byte), or while an answer waits for room in the transmit buffer; but frames continue even if nobody reads the
-//! answers.
+//! A tick of the pulses or a received byte wakes the main loop. Each step does one task, and a tick has priority, so a
+//! frame waits for at most one byte or one line. The loop takes no input while it writes the EEPROM (3.4 ms per byte),
+//! or while an answer waits for room in the transmit buffer; but frames continue even if the answers are not read.
 //!
-//! The loop computes one frame per tick. If several ticks have passed, it still computes only one frame: of several
-//! frames only the last would be played, and the servos would jump. While the pulses run, it also skips a tick if
-//! the previous frame still waits to be played.
+//! The loop computes one frame per tick. If several ticks have passed, the loop still computes only one frame: of
+//! several frames only the last would be played, and the servos would jump. While the pulses run, the loop also skips a
+//! tick if the previous frame still waits to be played.
 
 use lizard_avr::Region;
 
@@ -18,98 +17,98 @@ use crate::control::Controller;
 use crate::control::safety::Health;
 use crate::control::supply::Reading;
 use crate::memory::record::Memory;
-use crate::memory::restart::{Restart, Stance};
+use crate::memory::restart::{Restart, ServoState};
 use crate::numbers::pose::Pulses;
 use crate::numbers::rate::BaudRate;
 use crate::numbers::units::CYCLES_PER_US;
 
-/// The hardware that the main loop needs.
+/// The hardware that the main loop requires.
 pub trait Board {
-    /// The writer of the serial line.
+    /// The writer to the serial port.
     type Writer: Output;
 
-    /// The memory that keeps its bytes without power, an EEPROM.
+    /// The non-volatile memory, an EEPROM.
     type Memory: Memory;
 
-    /// Number of bytes that an idle writer accepts without waiting; at least [`MAX_OUTPUT_LINE_BYTES`], since a
-    /// line is written only when there is room for all of it.
+    /// The number of bytes that an idle writer accepts without waiting; at least [`MAX_OUTPUT_LINE_BYTES`], because a
+    /// line is written only when there is room for the whole line.
     const WRITER_CAPACITY: u8;
 
-    /// Units of a pulse width in a microsecond; the core counts in 1/16 us.
+    /// The number of units of a pulse width in a microsecond, which must be 16, as in the core.
     const CYCLES_PER_US: u16;
 
-    /// Connects the servos A1 to A4, and the measured rail if there is one, to the pins with these Arduino numbers;
-    /// 14 to 19 are the pins A0 to A5. Called once, before the first pulses.
+    /// Connects the servos A1 to A4, and the measured rail if any, to the pins with these Arduino numbers; 14 to 19 are
+    /// A0 to A5. Called once, before the first pulses.
     fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
 
-    /// The number of ticks since the program started, modulo 256; there is one every 20 ms.
+    /// The number of ticks since the program's start, modulo 256; the interval is 20 ms.
     fn ticks(&self) -> u8;
 
-    /// True if the last submitted pulses have been taken over, or none were submitted. Then the clock and everything
-    /// that makes pulses are working.
+    /// True if the last submitted pulses have been taken over, or no pulses were submitted. The clock and the
+    /// generation of pulses are then working.
     fn is_frame_taken(&self) -> bool;
 
-    /// Submits the pulses of the next frame; they replace any that have not been taken over.
+    /// Submits the pulses of the next frame, which replace submitted pulses that have not been taken over.
     fn submit(&mut self, pulses: Pulses);
 
-    /// Feeds the watchdog, which resets the program if it hangs. Once the watchdog has ended the pulses, nothing
-    /// may delay the reset, and the main loop must not continue.
+    /// Feeds the watchdog, which resets a program that hangs. Once the watchdog has ended the pulses, nothing may delay
+    /// the reset, and the main loop must not continue.
     fn feed_watchdog(&mut self);
 
-    /// Stores the servos' state, and the number of consecutive resets that a weak supply may have caused, in memory
-    /// that survives a reset of the processor.
-    fn store_stance(&mut self, stance: &Stance, brown_outs: u8);
+    /// Stores the servo state, and the number of consecutive resets that a weak supply may have caused, in RAM that
+    /// survives a reset of the processor.
+    fn store_servo_state(&mut self, servo_state: &ServoState, suspected_brown_outs: u8);
 
-    /// The cause of the last reset, and the state stored before it.
+    /// The information that survived the last reset.
     fn last_restart(&self) -> &Restart;
 
-    /// Returns the last measurement of the supplies and starts the next one.
+    /// Returns the last measurement of the supplies, and starts the next measurement.
     fn read_supply(&mut self) -> Reading;
 
     /// True unless the stack has grown into the data.
     fn is_stack_intact(&self) -> bool;
 
-    /// True while the contact between a pin, given by its Arduino number, and ground is closed. Also switches the
-    /// pin's pull-up on.
+    /// Reads the contact between a pin, given by its Arduino number, and ground: true while the contact is closed. Also
+    /// switches the pin's pull-up on.
     fn is_contact_closed(&mut self, pin: u8) -> bool;
 
-    /// The memory that keeps its bytes without power.
+    /// The non-volatile memory.
     fn memory(&mut self) -> &mut Self::Memory;
 
     /// Switches the LED on or off.
     fn set_led(&mut self, is_on: bool);
 
-    /// Number of bytes that the writer accepts now without waiting.
+    /// The number of bytes that the writer accepts now without waiting.
     fn room(&self) -> u8;
 
-    /// The serial line's writer.
+    /// The writer to the serial port.
     fn writer(&mut self) -> &mut Self::Writer;
 
-    /// Returns the next received byte, if any; [`crate::console::line::GARBLED_BYTE`] if the byte arrived garbled.
+    /// Takes the next received byte, if any, or [`crate::console::line::GARBLED_BYTE`] in place of a garbled byte.
     fn receive(&mut self) -> Option<u8>;
 
-    /// Changes the rate of the serial line, and stores the rate in memory that survives a reset.
+    /// Changes the baud rate, and stores it in RAM that survives a reset.
     fn set_rate(&mut self, rate: BaudRate);
 
-    /// The numbers of late pulse edges and of lost bytes since the program started.
+    /// The numbers of late pulse edges and of lost bytes since the program's start.
     fn counters(&self) -> Counters;
 }
 
-/// The main loop: the robot's controller, and its console on the serial line.
+/// The main loop: the robot's controller, and its console on the serial port.
 #[derive(Clone, Debug)]
 pub struct Main {
     control: Controller,
     console: Console,
-    /// The tick for which the main loop last computed or skipped a frame.
+    /// The last tick for which the main loop computed or skipped a frame.
     last_tick: u8,
 }
 
 /// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// The step did something; there may be more to do.
+    /// The step did a task; there may be more tasks.
     Worked,
-    /// There is nothing to do until [`Board::ticks`] differs from this number or a byte is received.
+    /// There is no task until [`Board::ticks`] differs from this number or a byte is received.
     Idle(u8),
 }
 
@@ -122,8 +121,8 @@ impl Default for Main {
 impl Main {
     /// Creates a main loop without a robot; [`Main::begin`] must follow.
     ///
-    /// All its bits are zero, so that a firmware's `Main` needs no initial values in flash; the linker script rejects
-    /// initial values.
+    /// All bits of the main loop are zero, so that a firmware's `Main` requires no initial values in flash; the linker
+    /// script rejects initial values.
     pub const fn new() -> Self {
         Self {
             control: Controller::new(),
@@ -132,8 +131,8 @@ impl Main {
         }
     }
 
-    /// Starts the main loop on a board, with the robot at the beginning of `flash`. Call it once, before the first
-    /// step.
+    /// Starts the main loop on a board, with the robot at the beginning of `flash`. Call this function once, before the
+    /// first step.
     #[inline(always)]
     pub fn begin<B: Board>(&mut self, flash: Region<'static>, board: &mut B) {
         const {
@@ -155,7 +154,7 @@ impl Main {
         &self.control
     }
 
-    /// The console on the serial line.
+    /// The console on the serial port.
     pub const fn console(&self) -> &Console {
         &self.console
     }
@@ -181,7 +180,7 @@ impl Main {
                 },
             };
             board.submit(self.control.compute_frame(&health));
-            self.store_stance(board);
+            self.store_servo_state(board);
             board.set_led(self.control.is_lit());
             if let Some(rate) = self.console.advance_frame(&self.control) {
                 board.set_rate(rate);
@@ -202,9 +201,9 @@ impl Main {
         } else if let Some(byte) = board.receive() {
             let was_resting = self.control.motion().is_resting();
             self.console.receive(byte, &mut self.control);
-            // The state is stored before the answer is written, because a reset may follow the answer at once.
+            // The servo state is stored before the answer is written, because a reset may follow the answer at once.
             if self.control.motion().is_resting() != was_resting {
-                self.store_stance(board);
+                self.store_servo_state(board);
             }
         } else {
             return Step::Idle(self.last_tick);
@@ -212,8 +211,11 @@ impl Main {
         Step::Worked
     }
 
-    fn store_stance<B: Board>(&self, board: &mut B) {
-        board.store_stance(self.control.motion().stance(), self.control.brown_outs());
+    fn store_servo_state<B: Board>(&self, board: &mut B) {
+        board.store_servo_state(
+            self.control.motion().servo_state(),
+            self.control.suspected_brown_outs(),
+        );
     }
 }
 

@@ -1,15 +1,15 @@
-//! The virtual board, for hosts: it behaves like the UNO with its registers, pins and interrupts, but needs no chip.
+//! The virtual board, for hosts: behaves like the UNO with its registers, pins and interrupts, but requires no chip.
 //!
 //! Every program that runs the core on a host (tests, the fuzzer, the page in a browser, the comparison with the
-//! simulated UNO) runs [`Main::step`] on this board. So they all test the same loop that the UNO repeats.
-//! [`RunningRobot`] combines the board and the loop for them.
+//! simulated UNO) runs [`Main::step`] on this board. Therefore all of them test the loop that the UNO repeats.
+//! [`RunningRobot`] combines the board and the loop.
 //!
-//! Time passes only when [`VirtualBoard::pass_time`] is called, in milliseconds. The events in a frame of 20 ms:
+//! Time passes only in calls of [`VirtualBoard::pass_time`], in milliseconds. The events in a frame of 20 ms:
 //!
 //! | ms | event |
 //! |---|---|
 //! | 0 | the tick, for which the main loop computes a frame |
-//! | 4 | the frame that the main loop submitted is taken over, and A1's pulse begins |
+//! | 4 | the board takes over the submitted frame, and A1's pulse begins |
 //! | 8, 12, 16 | the pulses of A2, A3 and A4 begin |
 //!
 //! The board is compact, because it is cloned and hashed millions of times.
@@ -26,7 +26,7 @@ use std::collections::VecDeque;
 
 use crate::console::answer::Counters;
 use crate::control::supply::Reading;
-use crate::memory::restart::{Cause, Restart, Stance};
+use crate::memory::restart::{Cause, Restart, ServoState};
 use crate::numbers::pose::Pulses;
 use crate::numbers::rate::BaudRate;
 use crate::numbers::units::{self, CYCLES_PER_US, PulseWidth};
@@ -42,37 +42,37 @@ pub use transmitter::Transmitter;
 pub const FRAME_MS: u8 = units::FRAME_MS as u8;
 
 /// Milliseconds from the tick until the submitted frame is taken over, and from the start of each servo's pulse to the
-/// start of the next.
+/// start of the next servo's pulse.
 const SLOT_MS: u8 = 4;
 
-/// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time, the watchdog
+/// Milliseconds without feeding after which the watchdog interrupts the program. After twice this time the watchdog
 /// resets the processor.
 pub const WATCHDOG_MS: u16 = 125;
 
-/// Capacity of the receive buffer, bytes.
+/// The capacity of the receive buffer, bytes.
 const RECEIVE_CAPACITY: usize = 64;
 
-/// Pulse widths that fit a slot, 1/16 us; any other width gives no pulse.
+/// The pulse widths that fit into a slot, 1/16 us; any other width results in no pulse.
 const VALID_WIDTHS: core::ops::RangeInclusive<u16> = 1_000..=63_000;
 
-/// The state of a virtual board: that of a UNO's registers, memories and pins.
+/// A virtual board, with the state of a UNO's registers, memories and pins.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct VirtualBoard {
     /// Milliseconds since the last tick.
     ms_since_tick: u8,
     ticks: u8,
-    /// The frame that the main loop submitted last.
+    /// The last frame that the main loop submitted.
     submitted_pulses: Pulses,
     /// True while the submitted frame waits to be taken over.
     is_frame_pending: bool,
-    /// The frame that was taken over last; it repeats until the next one is taken over.
+    /// The last frame that was taken over, which repeats until the next frame is taken over.
     played_pulses: Pulses,
     /// The pulses that have begun since the frame was taken over.
     started_pulses: Pulses,
     is_lit: bool,
     received_bytes: VecDeque<u8>,
     lost_bytes: u16,
-    /// Number of late pulse edges.
+    /// The number of late pulse edges.
     pub late_edges: u16,
     /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
@@ -80,19 +80,19 @@ pub struct VirtualBoard {
     pub closed_pins: u32,
     /// The pins whose pull-ups are on, one bit for each Arduino number.
     pub pulled_up_pins: u32,
-    /// The transmitter of the serial line.
+    /// The transmitter of the serial port.
     pub transmitter: Transmitter,
-    /// The memory that keeps its bytes without power.
+    /// The non-volatile memory.
     pub memory: Eeprom,
     /// The analogue-to-digital converter that measures the supplies.
     pub converter: Converter,
-    /// The bytes that survive a reset.
+    /// The RAM that survives a reset.
     pub ram: Ram,
     /// True if a boot loader hides the cause of a reset from the program.
     pub has_boot_loader: bool,
     /// The last restart, as reported to the main loop.
     last_restart: Restart,
-    /// The rate of the serial line.
+    /// The baud rate of the serial port.
     pub rate: BaudRate,
     /// Milliseconds since the watchdog was fed.
     ms_since_fed: u16,
@@ -109,7 +109,7 @@ impl Default for VirtualBoard {
 }
 
 impl VirtualBoard {
-    /// Creates a board at power-on with this memory. Its supplies are not measured: every reading is 0.
+    /// Creates a board at power-on with this memory. Its supplies are not measured, so every reading is 0.
     pub fn new(memory: Eeprom) -> Self {
         Self {
             ms_since_tick: FRAME_MS - 1,
@@ -141,8 +141,9 @@ impl VirtualBoard {
     /// Returns the board after a reset with this cause and state.
     #[must_use]
     pub fn after_restart(self, restart: Restart) -> Self {
-        if let Some(stance) = &restart.stance_before {
-            self.ram.store_stance(stance, restart.brown_outs);
+        if let Some(servo_state) = &restart.servo_state_before {
+            self.ram
+                .store_servo_state(servo_state, restart.suspected_brown_outs);
         }
         let rate = restart.rate;
         Self {
@@ -158,8 +159,8 @@ impl VirtualBoard {
         Self { ticks, ..self }
     }
 
-    /// Lets milliseconds pass while the main loop does not run. Stops and returns true as soon as the
-    /// watchdog resets the processor; [`VirtualBoard::reset`] must follow then.
+    /// Lets milliseconds pass while the main loop does not run. Stops and returns true as soon as the watchdog resets
+    /// the processor; [`VirtualBoard::reset`] must then follow.
     pub fn pass_time(&mut self, ms: u16) -> bool {
         for _ in 0..ms {
             self.ms_since_fed = self.ms_since_fed.saturating_add(1);
@@ -197,7 +198,7 @@ impl VirtualBoard {
         }
     }
 
-    /// Takes over the submitted frame and counts a tick, without any time passing.
+    /// Takes over the submitted frame and counts a tick, without letting time pass.
     pub fn tick(&mut self) {
         self.take_over_frame();
         self.ticks = self.ticks.wrapping_add(1);
@@ -216,13 +217,13 @@ impl VirtualBoard {
         (FRAME_MS - self.ms_since_tick) as u16
     }
 
-    /// Resets the processor: its state is lost, and the main loop must start again.
+    /// Resets the processor, whose state is lost. The main loop must then start again.
     pub fn reset(&mut self, cause: Cause) {
         let is_power_on = cause == Cause::Power;
         let reported_cause = (!self.has_boot_loader).then_some(cause);
         let ram = core::mem::take(&mut self.ram);
         let mut memory = core::mem::take(&mut self.memory);
-        // The start of the program takes longer than writing a byte to the memory.
+        // The program's start takes longer than writing a byte to the memory.
         memory.complete_write();
         *self = Self {
             transmitter: core::mem::take(&mut self.transmitter).reset(),
@@ -240,8 +241,8 @@ impl VirtualBoard {
         self.rate = self.last_restart.rate;
     }
 
-    /// Turns the power off and on. A byte that is being written to the memory gets the value `torn_byte`, because it
-    /// may hold any value after a power cut; for `None`, the write is completed.
+    /// Switches the power off and on. A byte that is being written to the memory gets the value `torn_byte`, because it
+    /// may have any value after a power cut; for `None`, the write is completed.
     pub fn lose_power(&mut self, torn_byte: Option<u8>) {
         if let Some(byte) = torn_byte {
             self.memory.cut_power(byte);
@@ -249,7 +250,7 @@ impl VirtualBoard {
         self.reset(Cause::Power);
     }
 
-    /// Sends bytes to the board. Bytes that do not fit into its receive buffer are lost.
+    /// Sends bytes to the board, and counts those that do not fit into its receive buffer as lost.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             if self.received_bytes.len() < RECEIVE_CAPACITY {
@@ -270,7 +271,7 @@ impl VirtualBoard {
         self.lost_bytes = self.lost_bytes.saturating_add(bytes);
     }
 
-    /// The frame that the main loop submitted last.
+    /// The last frame that the main loop submitted.
     pub const fn submitted_pulses(&self) -> Pulses {
         self.submitted_pulses
     }
@@ -280,7 +281,7 @@ impl VirtualBoard {
         self.is_frame_pending
     }
 
-    /// The pulses that have begun since a frame was last taken over.
+    /// The pulses that have begun since a frame was taken over.
     pub const fn started_pulses(&self) -> Pulses {
         self.started_pulses
     }
@@ -295,9 +296,9 @@ impl VirtualBoard {
         self.ms_since_fed
     }
 
-    /// The servos' state that would survive a reset.
-    pub fn stored_stance(&self) -> Option<Stance> {
-        self.ram.peek_restart(None).stance_before
+    /// The stored servo state, which would survive a reset.
+    pub fn stored_servo_state(&self) -> Option<ServoState> {
+        self.ram.peek_restart(None).servo_state_before
     }
 
     /// True once the watchdog has ended the pulses.
@@ -334,8 +335,9 @@ impl Board for VirtualBoard {
         self.ms_since_fed = 0;
     }
 
-    fn store_stance(&mut self, stance: &Stance, brown_outs: u8) {
-        self.ram.store_stance(stance, brown_outs);
+    fn store_servo_state(&mut self, servo_state: &ServoState, suspected_brown_outs: u8) {
+        self.ram
+            .store_servo_state(servo_state, suspected_brown_outs);
     }
 
     fn last_restart(&self) -> &Restart {

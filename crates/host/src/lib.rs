@@ -1,4 +1,4 @@
-//! The program `lizard`. Its modules are grouped by the user's tasks; `commands` has the table of commands.
+//! The program `lizard`. Its modules are grouped by the user's tasks; `commands` contains the table of commands.
 
 mod change;
 pub mod commands;

@@ -1,11 +1,11 @@
-//! The mounting error of the card with the tag on the robot's deck.
+//! The mounting error of the tag card on the robot's deck.
 //!
-//! With a rotated card, a part of the forward movement looks like drift. A card away from the robot's centre moves on
-//! an arc when the robot turns. Both would look like an error of the mass centre or of a foot.
+//! With a rotated card, part of the forward movement looks like drift. A card away from the robot's centre moves on an
+//! arc when the robot turns. Both effects would look like an error of the centre of mass or of a foot.
 
 use lizard_robot::{Place, Travel};
 
-/// The place of the card on the robot, relative to the chassis centre and its forward direction.
+/// The card's position and direction on the robot, relative to the chassis centre and the forward direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Card {
     /// Rotation from the robot's forward direction, deg, counter-clockwise.
@@ -16,16 +16,16 @@ pub struct Card {
     pub left: f64,
 }
 
-/// Number of parameters of a card.
+/// Number of card parameters.
 pub(crate) const PARAMETER_COUNT: usize = 3;
 
 impl Card {
-    /// Standard deviations of the mounting errors of hand-glued cards: deg, mm, mm.
+    /// Standard deviations of the mounting errors of hand-glued cards: turn (deg), ahead (mm) and left (mm).
     pub(crate) const PRIOR_ERRORS: [f64; PARAMETER_COUNT] = [2.0, 2.0, 2.0];
 
-    /// Converts a movement of the robot to that of the card, in the card's frame at the start.
-    pub(crate) fn card_travel(&self, robot_travel: Travel) -> Travel {
-        let card_place_of = |body: Place| {
+    /// Converts the robot's movement to the card's movement, in the card's frame at the start.
+    pub(crate) fn convert_travel(&self, robot_travel: Travel) -> Travel {
+        let to_card_place = |body: Place| {
             let [forward, left] = body.to_floor([self.ahead, self.left]);
             let heading = body.heading + self.turn.to_radians();
             Place {
@@ -39,7 +39,7 @@ impl Card {
             left: robot_travel.left,
             heading: robot_travel.turn.to_radians(),
         };
-        card_place_of(end).travel_from(card_place_of(Place::START))
+        to_card_place(end).travel_from(to_card_place(Place::START))
     }
 }
 
@@ -59,7 +59,7 @@ mod tests {
         expected_travel: [f64; 3],
     ) {
         let [forward, left, turn] = robot_travel;
-        let travel = Card::from(card).card_travel(Travel {
+        let travel = Card::from(card).convert_travel(Travel {
             forward,
             left,
             turn,
@@ -68,13 +68,13 @@ mod tests {
         for (actual, expected) in travel.into_iter().zip(expected_travel) {
             assert!(
                 (actual - expected).abs() < 1e-9,
-                "{card:?}: {actual} {expected}"
+                "{card:?}: expected {expected}, got {actual}"
             );
         }
     }
 
     #[test]
-    fn a_card_at_its_nominal_place_moves_like_the_robot() {
+    fn a_card_at_its_nominal_position_moves_like_the_robot() {
         assert_card_travel([0.0; 3], [30.0, 2.0, 15.0], [30.0, 2.0, 15.0]);
     }
 

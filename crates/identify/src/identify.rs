@@ -1,48 +1,47 @@
-//! The fit of all keys, and the choice of the keys whose value changes.
+//! The fit of all keys, and the choice of the keys to change.
 //!
-//! First all keys are free. The reported standard errors are those of this fit, because the file's values enter it only
-//! through wide priors. Then keys return to their file values one at a time. The next key is always the one that is
-//! nearest to its file value, measured in its standard errors. Keys return as long as this distance is less than two.
-//! After each return the free keys are adjusted. So if two keys have the same effect, only one of them changes.
+//! First, a fit has all keys free. It provides the reported standard errors, because the file's values enter this fit
+//! only through wide priors. Then keys return to their file values one at a time, always the key with the smallest
+//! distance in standard errors, until every distance is at least two. After each return, the free keys are adjusted.
+//! Therefore, if two keys have the same effect, only one of them changes.
 
 use lizard_robot::{CheckedGait, Robot, Travel};
 use nalgebra::DMatrix;
 
-use crate::card::{self, Card};
-use crate::chi_square::percentile_99;
+use crate::chi_square::compute_percentile_99;
 use crate::error::IdentifyError;
 use crate::key::{FRICTION_RATIO_INDEX, KEY_COUNT, KEYS, PLAY_INDEX, TWIST_INDEX};
 use crate::movement::MeasuredMovement;
-use crate::outcome::{GoodnessOfFit, Identified, KeyResult, MovementResult, Verdict};
-use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split};
+use crate::outcome::{GoodnessOfFit, Identification, KeyResult, MovementResult, Verdict};
+use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split_unknowns};
 
-/// Indices in [`KEYS`] of the keys for which the model is least linear near the file's value.
+/// Indices in [`KEYS`] of the keys with the strongest nonlinearity near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
-/// Smallest distance from the file's value, in standard errors, at which a key takes its new value.
+/// Smallest distance from the file's value, in standard errors, at which a key changes.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
 /// Lower bound for the rise of the sum of squares when a key is shifted by [`MIN_DISTANCE_ERRORS`] standard errors. A
-/// smaller rise may be only roughness of the model. The bound limits the enlargement of an error to a factor of four.
+/// smaller rise may be due to the model's roughness. The bound limits the enlargement of an error to a factor of four.
 const MIN_RISE: f64 = 0.25;
-/// Largest standard error of a key that counts as determined, as a share of its prior standard deviation.
-const MAX_ERROR_SHARE: f64 = 0.5;
+/// Largest standard error of a determined key, as a fraction of the prior standard deviation.
+const MAX_ERROR_FRACTION: f64 = 0.5;
 /// Correlation of errors above which two keys are reported as hard to distinguish.
 const MIN_CORRELATION: f64 = 0.8;
 
-/// A function that runs a job for each index below a count, one after another or on all cores, and returns the results
-/// in order.
-pub type RunAll<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
+/// A function that runs a job for each index below a count, sequentially or on all cores, and returns the results in
+/// order.
+pub type Executor<'a> = &'a dyn Fn(usize, &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel>;
 
-/// Identifies the keys of a robot from its measured movements. `run_all` runs the simulations of the gaits: a few
-/// hundred of about a tenth of a second each.
+/// Identifies a robot's keys from its measured movements. `run_all` runs the gait simulations: a few hundred of about
+/// 0.1 s each.
 ///
 /// # Errors
-/// Fails for a gait that the robot does not have or that moves no servo, for measured values that are not finite or out
-/// of range, and if no movement determines a key.
+/// Fails if a gait does not exist or moves no servo, if a measured value is not finite or out of range, or if no
+/// movement determines a key.
 pub fn identify(
     robot: &Robot,
     movements: &[MeasuredMovement],
-    run_all: RunAll,
-) -> Result<Identified, IdentifyError> {
+    run_all: Executor,
+) -> Result<Identification, IdentifyError> {
     let mut movements = movements.to_vec();
     let mut gait_runs = Vec::new();
     for movement in &mut movements {
@@ -55,19 +54,15 @@ pub fn identify(
         let are_all_finite = values
             .chain([&movement.pace])
             .all(|value| value.is_finite());
-        if !are_all_finite
-            || movement.pace <= 0.0
-            || movement.error.iter().any(|error| *error < 0.0)
-        {
+        let has_negative_error = movement.error.iter().any(|error| *error < 0.0);
+        if !are_all_finite || movement.pace <= 0.0 || has_negative_error {
             return Err(IdentifyError::InvalidValue(movement.gait.clone()));
         }
         let prediction = robot.predict(gait);
-        for (i, component) in [prediction.forward, prediction.left, prediction.turn]
-            .iter()
-            .enumerate()
-        {
+        let components = [prediction.forward, prediction.left, prediction.turn];
+        for (error, component) in movement.error.iter_mut().zip(components) {
             if component.is_none() {
-                movement.error[i] = f64::INFINITY;
+                *error = f64::INFINITY;
             }
         }
         gait_runs.push((gait, movement.pace));
@@ -76,23 +71,23 @@ pub fn identify(
     let predict = |values: &Values| -> Vec<Travel> {
         let mut ground = *robot.ground();
         for (key, value) in KEYS.iter().zip(values) {
-            key.set(&mut ground, *value);
+            key.write_value(&mut ground, *value);
         }
         run_all(gait_runs.len(), &|i| {
             let (gait, pace): (&CheckedGait, f64) = gait_runs[i];
             gait.simulate_driven_cycle(&ground, &motors, pace)
         })
     };
-    let file_values = std::array::from_fn(|i| KEYS[i].value_in(robot.ground()));
+    let file_values = std::array::from_fn(|i| KEYS[i].read_value(robot.ground()));
     solve(&movements, file_values, &predict)
 }
 
-/// Identifies the keys with which the model `predict` reproduces the measured movements.
+/// Identifies the keys with which the model `predict` best reproduces the measured movements.
 pub(crate) fn solve(
     movements: &[MeasuredMovement],
     file_values: Values,
     predict: &dyn Fn(&Values) -> Vec<Travel>,
-) -> Result<Identified, IdentifyError> {
+) -> Result<Identification, IdentifyError> {
     let problem = Problem::new(movements, file_values, predict);
     if problem.value_count() == 0 {
         return Err(IdentifyError::NothingDetermined);
@@ -109,12 +104,12 @@ pub(crate) fn solve(
         true => 1.0,
         false => (full_fit.chi_square / degrees_of_freedom).sqrt().max(1.0),
     };
-    let errors = standard_errors(&problem, &full_fit).map(|error| error_factor * error);
+    let errors = compute_standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
     let card_only_solution = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
     let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
     let residuals = problem
-        .residuals(&last_fit.unknowns)
+        .compute_residuals(&last_fit.unknowns)
         .into_iter()
         .enumerate();
     let indexed_residuals = residuals.flat_map(|(movement, components)| {
@@ -122,31 +117,32 @@ pub(crate) fn solve(
         components.map(move |(component, residual)| (movement, component, residual))
     });
     let largest_residual = indexed_residuals.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()));
-    let new_values = split(&last_fit.unknowns).0;
-    let key_result_of = |(i, key): (usize, &'static crate::Key)| KeyResult {
+    let (new_values, card) = split_unknowns(&last_fit.unknowns);
+    let key_results = KEYS.iter().enumerate().map(|(i, key)| KeyResult {
         key,
         file_value: file_values[i],
         new_value: new_values[i],
         error: errors[i],
         verdict: verdicts[i],
-    };
+    });
     let predictions = problem
-        .predicted_on_card(&card_only_fit.unknowns)
+        .predict_card_movements(&card_only_fit.unknowns)
         .into_iter()
-        .zip(problem.predicted_on_card(&last_fit.unknowns));
+        .zip(problem.predict_card_movements(&last_fit.unknowns));
     let measured_and_predicted = movements.iter().zip(predictions);
-    let result_of =
-        |(movement, (predicted_before, predicted_after)): (&MeasuredMovement, _)| MovementResult {
-            measured: movement.clone(),
-            predicted_before,
-            predicted_after,
-        };
-    let card_errors: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| errors[KEY_COUNT + i]);
-    Ok(Identified {
-        keys: KEYS.iter().enumerate().map(key_result_of).collect(),
-        card: split(&last_fit.unknowns).1,
-        card_error: Card::from(card_errors),
-        correlated_pairs: correlated_pairs(&full_fit.covariance),
+    let movement_results =
+        measured_and_predicted.map(|(movement, (predicted_before, predicted_after))| {
+            MovementResult {
+                measured: movement.clone(),
+                predicted_before,
+                predicted_after,
+            }
+        });
+    Ok(Identification {
+        keys: key_results.collect(),
+        card,
+        card_error: split_unknowns(&errors).1,
+        correlated_pairs: find_correlated_pairs(&full_fit.covariance),
         goodness: GoodnessOfFit {
             value_count: problem.value_count(),
             chi_squares: [
@@ -160,27 +156,27 @@ pub(crate) fn solve(
             error_factor,
             largest_residual: largest_residual.ok_or(IdentifyError::NothingDetermined)?,
         },
-        movements: measured_and_predicted.map(result_of).collect(),
+        movements: movement_results.collect(),
     })
 }
 
-/// A fit of all unknowns, and its agreement with the measurements.
+/// A fit of all unknowns, and the agreement with the measurements.
 struct Fit {
     solution: Solution,
     degrees_of_freedom: f64,
-    /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 without degrees of freedom.
     chi_square_limit: f64,
     /// True if the model explains the measurements.
     is_explained: bool,
 }
 
-/// Fits all unknowns, from several starts if the first fit is poor.
+/// Fits all unknowns, from several start points if the first fit is poor.
 ///
 /// The model is not linear: another foot length changes which feet carry the body, and small play may have no effect
-/// at all. So the first fit may end in a local minimum. If it leaves a larger sum of squares than a correct model does
-/// on average, it is repeated from other starts. In each of them, one nonlinear key is one prior standard deviation
-/// above or below the file's value. The limit that 1 % of correct models exceed is not used here, because a local
-/// minimum may also be below this limit.
+/// at all. Therefore the first fit may end in a local minimum. If its sum of squares is larger than a correct model's
+/// average, the fit is repeated from other start points, in each of which one nonlinear key is one prior standard
+/// deviation above or below the file's value. The limit that 1 % of correct models exceed would be too high a
+/// threshold, because a local minimum may also be below this limit.
 fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start_unknowns();
@@ -196,11 +192,11 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
         let Some(full_fit) = problem.fit(&all_unknowns, &guess) else {
             continue;
         };
-        let degrees_of_freedom = degrees_of_freedom_of(problem, &full_fit);
+        let degrees_of_freedom = compute_degrees_of_freedom(problem, &full_fit);
         let chi_square_limit = if degrees_of_freedom < 1.0 {
             0.0
         } else {
-            percentile_99(degrees_of_freedom)
+            compute_percentile_99(degrees_of_freedom)
         };
         let is_explained = degrees_of_freedom < 1.0 || full_fit.chi_square <= chi_square_limit;
         let is_typical = degrees_of_freedom < 1.0 || full_fit.chi_square <= degrees_of_freedom;
@@ -220,42 +216,41 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     best_fit.ok_or(IdentifyError::NoFit)
 }
 
-/// Standard errors of a fit of all unknowns.
+/// Computes the standard errors of a fit of all unknowns.
 ///
-/// The errors from the derivatives are exact only for a linear model. The contact model has folds: a foot that is a
-/// little longer takes over a load, and an even longer foot changes nothing more. So each key is shifted by two
-/// standard errors in both directions, and the other unknowns follow according to their correlation with the key. In a
-/// linear model the sum of squares rises by four. If it rises less, the error is enlarged accordingly.
-fn standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
-    let min_cost = problem.cost(&full_fit.unknowns);
+/// The errors from the derivatives are exact only for a linear model. The contact model has folds: a slightly longer
+/// foot takes over a load, and an even longer foot has no further effect. Therefore each key is shifted by two standard
+/// errors in both directions, and the other unknowns follow according to their correlation with the key. In a linear
+/// model, the sum of squares rises by four. If the rise is smaller, the error is enlarged accordingly.
+fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKNOWN_COUNT] {
+    let min_cost = problem.compute_cost(&full_fit.unknowns);
     std::array::from_fn(|i| {
         let error = full_fit.covariance[(i, i)].max(0.0).sqrt();
-        if i >= KEY_COUNT || error > MAX_ERROR_SHARE * problem.prior_errors[i] {
+        if i >= KEY_COUNT || error > MAX_ERROR_FRACTION * problem.prior_errors[i] {
             return error;
         }
-        let rise_on_side = |side: f64| {
-            let shifted_unknown_at = |j: usize| {
+        let compute_rise = |side: f64| {
+            let shift = |j: usize| {
                 full_fit.unknowns[j]
                     + side * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
             };
-            problem.cost(&std::array::from_fn(shifted_unknown_at)) - min_cost
+            problem.compute_cost(&std::array::from_fn(shift)) - min_cost
         };
-        let rise = rise_on_side(1.0).min(rise_on_side(-1.0)).max(MIN_RISE);
+        let rise = compute_rise(1.0).min(compute_rise(-1.0)).max(MIN_RISE);
         error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)
     })
 }
 
-/// Degrees of freedom of a fit of all unknowns: the number of measured values minus, for each unknown, the share that
-/// the measurements determine instead of the prior.
-fn degrees_of_freedom_of(problem: &Problem, full_fit: &Solution) -> f64 {
-    let shares = (0..UNKNOWN_COUNT)
+/// Computes the degrees of freedom of a fit of all unknowns: the number of measured values minus, for each unknown, the
+/// fraction that the measurements determine instead of the prior.
+fn compute_degrees_of_freedom(problem: &Problem, full_fit: &Solution) -> f64 {
+    let fractions = (0..UNKNOWN_COUNT)
         .map(|i| 1.0 - full_fit.covariance[(i, i)] / problem.prior_errors[i].powi(2));
-    problem.value_count() as f64 - shares.sum::<f64>()
+    problem.value_count() as f64 - fractions.sum::<f64>()
 }
 
-/// Returns keys to the file's values until every free key differs from its file value by at least
-/// [`MIN_DISTANCE_ERRORS`] standard errors. Undetermined keys return first. Returns the last fit and the verdict on
-/// each key.
+/// Resets keys, undetermined keys first, until every free key differs from its file value by at least
+/// [`MIN_DISTANCE_ERRORS`] standard errors. Returns the last fit and the verdict on each key.
 fn choose_keys(
     problem: &Problem,
     full_fit: &Solution,
@@ -266,16 +261,16 @@ fn choose_keys(
     let mut covariance = full_fit.covariance.clone();
     let start = problem.start_unknowns();
     for key in 0..KEY_COUNT {
-        if errors[key] > MAX_ERROR_SHARE * problem.prior_errors[key] {
+        if errors[key] > MAX_ERROR_FRACTION * problem.prior_errors[key] {
             verdicts[key] = Verdict::Undetermined;
-            hold(key, &start, &mut guess, &mut covariance);
+            hold_key(key, &start, &mut guess, &mut covariance);
         }
     }
     loop {
-        // Keys are first held in the linear model, because it needs no run of the gaits.
-        while let Some((key, verdict)) = next_key_to_hold(&verdicts, &guess, &start, errors) {
+        // Keys are first held in the linear model, since this needs no simulations.
+        while let Some((key, verdict)) = find_key_to_hold(&verdicts, &guess, &start, errors) {
             verdicts[key] = verdict;
-            hold(key, &start, &mut guess, &mut covariance);
+            hold_key(key, &start, &mut guess, &mut covariance);
         }
         let is_free = |i: &usize| {
             verdicts
@@ -287,23 +282,23 @@ fn choose_keys(
             .fit(&free_unknowns, &guess)
             .ok_or(IdentifyError::NoFit)?;
         guess = last_fit.unknowns;
-        if next_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
+        if find_key_to_hold(&verdicts, &guess, &start, errors).is_none() {
             return Ok((last_fit, verdicts));
         }
     }
 }
 
-/// The next key to return to the file's value, and its verdict; `None` if all free keys may keep their new values.
-fn next_key_to_hold(
+/// Finds the next key to hold at its file value, and its verdict; returns `None` if all free keys may change.
+fn find_key_to_hold(
     verdicts: &[Verdict; KEY_COUNT],
     unknowns: &[f64; UNKNOWN_COUNT],
     start: &[f64; UNKNOWN_COUNT],
     errors: &[f64; UNKNOWN_COUNT],
 ) -> Option<(usize, Verdict)> {
     let free_keys = || (0..KEY_COUNT).filter(|&i| verdicts[i] == Verdict::Changed);
-    let distance_of = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
-    let nearest_key = free_keys().min_by(|&a, &b| distance_of(a).total_cmp(&distance_of(b)))?;
-    if distance_of(nearest_key) < MIN_DISTANCE_ERRORS {
+    let distance = |i: usize| (unknowns[i] - start[i]).abs() / errors[i];
+    let nearest_key = free_keys().min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+    if distance(nearest_key) < MIN_DISTANCE_ERRORS {
         return Some((nearest_key, Verdict::Unchanged));
     }
     let infeasible_key = free_keys().find(|&i| unknowns[i] < KEYS[i].min_value)?;
@@ -313,8 +308,8 @@ fn next_key_to_hold(
     ))
 }
 
-/// Holds a key at the file's value, and shifts the other unknowns according to their correlation with the key.
-fn hold(
+/// Holds a key at its file value, and shifts the other unknowns and the covariance according to the correlations.
+fn hold_key(
     key: usize,
     start: &[f64; UNKNOWN_COUNT],
     unknowns: &mut [f64; UNKNOWN_COUNT],
@@ -332,8 +327,8 @@ fn hold(
     unknowns[key] = start[key];
 }
 
-/// Pairs of keys whose errors are strongly correlated, with the correlation.
-fn correlated_pairs(
+/// Finds the pairs of keys with strongly correlated errors; returns the keys and their correlation.
+fn find_correlated_pairs(
     covariance: &DMatrix<f64>,
 ) -> Vec<(&'static crate::Key, &'static crate::Key, f64)> {
     let pairs = (0..KEY_COUNT).flat_map(|i| (0..i).map(move |j| (j, i)));

@@ -1,43 +1,40 @@
-//! The keys of robot.toml that measured movements can determine.
+//! The robot.toml keys that measured movements can determine.
 
 use lizard_robot::{Ground, plausible_range};
 
-/// A number of robot.toml that changes the movement of the gaits.
+/// A number in robot.toml that affects the gaits' movements.
 #[derive(Debug)]
 pub struct Key {
     /// Full name in robot.toml.
     pub name: &'static str,
     /// Index of the number in the key's list; `None` if the key is a single number.
     pub(crate) list_index: Option<usize>,
-    /// Meaning of the number, in words.
-    pub meaning: &'static str,
     /// Unit, empty for a ratio.
     pub unit: &'static str,
-    /// Another method to measure the number, in words.
+    /// Instruction for measuring the number in another way.
     pub other_method: &'static str,
-    /// Name of the assumption in `lizard_robot` whose plausible range is that of the key.
+    /// Name of the assumption in `lizard_robot` that has the key's plausible range.
     assumption_name: &'static str,
     /// Step of the numerical derivative: large compared with the roughness of the model, and small compared with its
     /// curvature.
     pub(crate) derivative_step: f64,
     /// Smallest possible value.
     pub(crate) min_value: f64,
-    /// The number's place in the ground of a robot.
+    /// Returns the number's field in a robot's ground.
     field: fn(&mut Ground) -> &mut f64,
 }
 
 /// Number of keys.
 pub(crate) const KEY_COUNT: usize = 7;
 
-/// The keys, in the order of robot.toml. Other numbers of the ground cannot be distinguished from these: a stiffer
-/// foot acts like a longer one, and more mass like more friction.
+/// The keys, in the order of robot.toml. Other numbers of the ground cannot be distinguished from these keys: a stiffer
+/// foot acts like a longer foot, and more mass acts like more friction.
 pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "leg.mount",
         list_index: None,
-        meaning: "mounting of the legs",
         unit: "deg",
-        other_method: "a photo from above shows it",
+        other_method: "measure it on a photo from above",
         assumption_name: "mounting of the legs",
         derivative_step: 1.0,
         min_value: f64::NEG_INFINITY,
@@ -46,10 +43,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "leg.drive.play",
         list_index: None,
-        meaning: "play of a leg",
         unit: "deg",
-        other_method: "trial 2 of docs/measure.md measures it",
-        assumption_name: "play of a leg",
+        other_method: "use trial 2 in docs/measure.md",
+        assumption_name: "leg play",
         derivative_step: 0.1,
         min_value: 0.0,
         field: |ground| &mut ground.drive.play,
@@ -57,31 +53,28 @@ pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "body.centre",
         list_index: Some(0),
-        meaning: "mass centre ahead",
         unit: "mm",
         other_method: "balance the robot on an edge",
-        assumption_name: "mass centre ahead",
+        assumption_name: "centre of mass ahead",
         derivative_step: 1.0,
         min_value: f64::NEG_INFINITY,
-        field: |ground| &mut ground.body.mass_centre[0],
+        field: |ground| &mut ground.body.centre_of_mass[0],
     },
     Key {
         name: "body.centre",
         list_index: Some(1),
-        meaning: "mass centre to the left",
         unit: "mm",
         other_method: "balance the robot on an edge",
-        assumption_name: "mass centre ahead",
+        assumption_name: "centre of mass ahead",
         derivative_step: 1.0,
         min_value: f64::NEG_INFINITY,
-        field: |ground| &mut ground.body.mass_centre[1],
+        field: |ground| &mut ground.body.centre_of_mass[1],
     },
     Key {
         name: "feet.twist",
         list_index: None,
-        meaning: "front left foot too long",
         unit: "mm",
-        other_method: "a scale under each foot tells it, by docs/measure.md",
+        other_method: "put a scale under each foot, as in docs/measure.md",
         assumption_name: "front left foot too long",
         derivative_step: 0.2,
         min_value: f64::NEG_INFINITY,
@@ -90,10 +83,9 @@ pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "ground.friction",
         list_index: None,
-        meaning: "friction of a pad",
         unit: "",
-        other_method: "it cancels, but for the load of the servos; a board that is tilted until the robot slides gives it",
-        assumption_name: "friction of a pad",
+        other_method: "tilt a board until the robot slides; friction affects gaits only through the servo loads",
+        assumption_name: "pad friction",
         derivative_step: 0.05,
         min_value: 0.05,
         field: |ground| &mut ground.friction_coefficient,
@@ -101,21 +93,20 @@ pub const KEYS: [Key; KEY_COUNT] = [
     Key {
         name: "ground.friction_back_over_forward",
         list_index: None,
-        meaning: "friction backward over forward",
         unit: "",
-        other_method: "trial 1 of docs/measure.md measures it",
-        assumption_name: "friction backward over forward",
+        other_method: "use trial 1 in docs/measure.md",
+        assumption_name: "backward over forward friction",
         derivative_step: 0.03,
         min_value: 0.1,
         field: |ground| &mut ground.friction_ratio,
     },
 ];
 
-/// Index in [`KEYS`] of the play of a leg.
+/// Index in [`KEYS`] of a leg's play.
 pub(crate) const PLAY_INDEX: usize = 1;
 /// Index in [`KEYS`] of the excess length of the front left foot.
 pub(crate) const TWIST_INDEX: usize = 4;
-/// Index in [`KEYS`] of the ratio of the friction backward to the friction forward.
+/// Index in [`KEYS`] of the friction ratio, backward over forward.
 pub(crate) const FRICTION_RATIO_INDEX: usize = 6;
 
 impl Key {
@@ -127,16 +118,16 @@ impl Key {
         }
     }
 
-    /// The key's value in the ground of a robot.
-    pub fn value_in(&self, ground: &Ground) -> f64 {
+    /// Reads the key's value from a robot's ground.
+    pub fn read_value(&self, ground: &Ground) -> f64 {
         *(self.field)(&mut { *ground })
     }
 
-    pub(crate) fn set(&self, ground: &mut Ground, value: f64) {
+    pub(crate) fn write_value(&self, ground: &mut Ground, value: f64) {
         *(self.field)(ground) = value;
     }
 
-    /// Standard deviation of the value before anything is measured: half of the width of its plausible range.
+    /// Standard deviation of the value before any measurement: half the width of the plausible range.
     pub fn prior_error(&self) -> f64 {
         let [low, high] =
             plausible_range(self.assumption_name).expect("a test checks that each key has a range");
@@ -149,11 +140,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_key_has_a_plausible_range_much_wider_than_its_derivative_step() {
+    fn the_plausible_range_of_every_key_is_much_wider_than_its_derivative_step() {
         for key in KEYS {
             assert!(
                 key.prior_error() >= 5.0 * key.derivative_step,
-                "{} {}",
+                "{}: prior error {}",
                 key.name,
                 key.prior_error()
             );

@@ -6,18 +6,18 @@ use crate::movement::MeasuredMovement;
 
 /// The identified keys and their agreement with the measurements.
 #[derive(Clone, Debug)]
-pub struct Identified {
+pub struct Identification {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
-    /// Estimated place of the card.
+    /// Estimated position and direction of the card.
     pub card: Card,
-    /// Standard errors of the place of the card.
+    /// Standard errors of the card's parameters.
     pub card_error: Card,
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
     pub goodness: GoodnessOfFit,
-    /// The measured movements and the predictions of the model.
+    /// The measured movements and the model's predictions.
     pub movements: Vec<MovementResult>,
 }
 
@@ -28,12 +28,11 @@ pub struct KeyResult {
     pub key: &'static Key,
     /// Value in the file.
     pub file_value: f64,
-    /// Value with which the model fits the measurements best; the file's value unless the verdict is
-    /// [`Verdict::Changed`].
+    /// Value with the best fit if the verdict is [`Verdict::Changed`]; otherwise the file's value.
     pub new_value: f64,
-    /// Standard error of the value that the measurements determine.
+    /// Standard error of the value according to the measurements.
     pub error: f64,
-    /// The decision about the key.
+    /// Decision about the key.
     pub verdict: Verdict,
 }
 
@@ -58,27 +57,24 @@ pub struct GoodnessOfFit {
     /// Sums of the squared residuals, each residual in units of its standard error: with the file's values, with the
     /// new values, and with all keys free.
     pub chi_squares: [f64; 3],
-    /// Degrees of freedom: the number of measured values minus the effective number of parameters in the fit of all
-    /// keys.
+    /// Number of measured values minus the effective number of parameters in the fit of all keys.
     pub degrees_of_freedom: f64,
-    /// Sum of squares that 1 % of correct models exceed; 0 without a degree of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 without degrees of freedom.
     pub chi_square_limit: f64,
-    /// True if the model explains the measurements: with all keys free, the sum of squares is not above the limit
-    /// that 1 % of correct models exceed, or there is no degree of freedom.
+    /// True if the model explains the measurements: with all keys free, the sum of squares is at most
+    /// `chi_square_limit`, or there are no degrees of freedom.
     pub is_explained: bool,
-    /// Factor by which all standard errors were multiplied because the model fits badly (Birge ratio); 1 for a good
-    /// fit.
+    /// Factor by which a bad fit enlarges all standard errors (Birge ratio); 1 for a good fit.
     pub error_factor: f64,
-    /// Index of the movement, index of the component, and value of the largest residual with the new values, in
-    /// standard errors.
+    /// The largest residual with the new values: movement index, component index, and residual in standard errors.
     pub largest_residual: (usize, usize, f64),
 }
 
-/// A measured movement and the predictions of the model.
+/// A measured movement and the model's predictions.
 #[derive(Clone, Debug)]
 pub struct MovementResult {
-    /// The measured movement. A component has an infinite error and no weight if the model cannot predict it, because
-    /// two feet pull against the other two.
+    /// The measured movement. A component that the model cannot predict has an infinite error and no weight; two feet
+    /// then pull against the other two.
     pub measured: MeasuredMovement,
     /// The model's movement with the file's values.
     pub predicted_before: [f64; 3],
@@ -86,7 +82,7 @@ pub struct MovementResult {
     pub predicted_after: [f64; 3],
 }
 
-impl Identified {
+impl Identification {
     /// The keys with a new value.
     pub fn changed_keys(&self) -> impl Iterator<Item = &KeyResult> {
         let keys = self.keys.iter();
@@ -95,7 +91,7 @@ impl Identified {
 }
 
 impl KeyResult {
-    /// Number of decimals at which the standard error has two significant digits.
+    /// Number of decimals with which the standard error has two significant digits.
     pub fn decimal_count(&self) -> usize {
         let first_digit_decimal = -self.error.log10().floor();
         (first_digit_decimal + 1.0).clamp(0.0, 6.0) as usize

@@ -1,10 +1,9 @@
 //! The least-squares problem: residuals of the measured movements against the model, in units of their standard errors.
 //!
-//! The model takes tens of milliseconds for one movement. So each result is stored, and derivatives with respect to
-//! the keys are reused for values near those at which they were computed. Prior knowledge counts as a measurement:
-//! each key is near the file's value, within its prior standard deviation, and the card is near its nominal place. So a
-//! key that the movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the
-//! other keys.
+//! The model takes tens of milliseconds for one movement. Therefore each result is cached, and derivatives with respect
+//! to the keys are reused for nearby values. Prior knowledge counts as a measurement: each key has the file's value,
+//! with the prior standard deviation as its error, and the card is near its nominal position. Therefore a key that the
+//! movements do not determine keeps the file's value, and its uncertainty enlarges the errors of the other keys.
 
 use std::cell::RefCell;
 
@@ -19,14 +18,14 @@ use crate::movement::MeasuredMovement;
 pub(crate) type Values = [f64; KEY_COUNT];
 /// Number of unknowns: the keys, then the card's parameters.
 pub(crate) const UNKNOWN_COUNT: usize = KEY_COUNT + card::PARAMETER_COUNT;
-/// Standard deviation of the model's roughness around a smooth model, mm and deg: servos have a dead band and pads
-/// stick, so a small change of a key may shift a step of the gait by a frame.
+/// Standard deviation of the model's roughness, mm and deg: servos have a dead band and pads stick, so a small change
+/// of a key may shift a step of the gait by a frame.
 pub(crate) const MODEL_ERROR: f64 = 0.05;
-/// Smallest predicted reduction of the sum of squares for which a fit takes another step. At the end of a fit, each
-/// unknown is then within a third of its standard error.
+/// Smallest predicted reduction of the sum of squares for another step of a fit. At the end of a fit, the error of each
+/// unknown due to the remaining step is at most a third of its standard error.
 const MIN_PREDICTED_REDUCTION: f64 = 0.1;
-/// Largest predicted reduction for which a step without any gain is attributed to the model's roughness and not to
-/// wrong derivatives.
+/// Largest predicted reduction for which an unsuccessful step is attributed to the model's roughness and not to wrong
+/// derivatives.
 const MAX_ROUGHNESS_REDUCTION: f64 = 2.0;
 /// Largest number of iterations of a fit.
 const MAX_ITERATIONS: usize = 12;
@@ -39,7 +38,7 @@ const REUSE_STEPS_AT_END: f64 = 1.0;
 
 /// The measured movements of a robot, and a model of it.
 pub(crate) struct Problem<'a> {
-    /// The measured movements. Components that the model leaves undetermined have an infinite error.
+    /// The measured movements. Components that the model cannot predict have an infinite error.
     movements: &'a [MeasuredMovement],
     /// The file's values.
     pub file_values: Values,
@@ -47,20 +46,21 @@ pub(crate) struct Problem<'a> {
     pub prior_errors: [f64; UNKNOWN_COUNT],
     /// The model: predicts the movements for values of the keys.
     predict: &'a dyn Fn(&Values) -> Vec<Travel>,
-    /// Results of the model for all values so far.
+    /// The model's results for all values so far.
     cached_results: RefCell<Vec<(Values, Vec<Travel>)>>,
-    /// Values of the keys at which the derivatives are computed; `None` if the next step of a fit has to choose them.
+    /// Values of the keys at which the derivatives are computed; `None` if the next step of a fit must choose new
+    /// values.
     jacobian_point: RefCell<Option<Values>>,
 }
 
 /// The result of a fit.
 #[derive(Clone, Debug)]
 pub(crate) struct Solution {
-    /// Values of all unknowns; those that were not free have their start values.
+    /// Values of all unknowns; the unknowns that were not free have their start values.
     pub unknowns: [f64; UNKNOWN_COUNT],
     /// Covariance of the free unknowns, in their order.
     pub covariance: DMatrix<f64>,
-    /// Sum of squares of the measured movements alone, without the prior.
+    /// Sum of the squared residuals of the movements, without the prior.
     pub chi_square: f64,
 }
 
@@ -88,32 +88,32 @@ impl<'a> Problem<'a> {
         errors.filter(|error| error.is_finite()).count()
     }
 
-    /// Start values of the unknowns: the file's values of the keys, and a card exactly in its nominal place.
+    /// Start values of the unknowns: the file's values of the keys, and a card exactly in its nominal position.
     pub fn start_unknowns(&self) -> [f64; UNKNOWN_COUNT] {
         std::array::from_fn(|i| self.file_values.get(i).copied().unwrap_or_default())
     }
 
-    /// The movements of the card that the model predicts.
-    pub fn predicted_on_card(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
-        let (values, card) = split(unknowns);
-        let travels = self.robot_travels(&values);
-        let card_travels = travels.into_iter().map(|travel| card.card_travel(travel));
-        card_travels
+    /// Predicts the card's movements with the model.
+    pub fn predict_card_movements(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
+        let (values, card) = split_unknowns(unknowns);
+        let travels = self.predict_robot_travels(&values).into_iter();
+        travels
+            .map(|travel| card.convert_travel(travel))
             .map(|travel| [travel.forward, travel.left, travel.turn])
             .collect()
     }
 
-    /// Residuals of the movements, measured minus predicted, in standard errors.
-    pub fn residuals(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
-        self.divide_by_errors(&self.predicted_on_card(unknowns), |predicted, mean| {
+    /// Computes the residuals of the movements, measured minus predicted, in standard errors.
+    pub fn compute_residuals(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> Vec<[f64; 3]> {
+        self.divide_by_errors(&self.predict_card_movements(unknowns), |predicted, mean| {
             mean - predicted
         })
     }
 
-    /// Sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations from the prior
-    /// values.
-    pub fn cost(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> f64 {
-        let residuals = self.residuals(unknowns).into_flattened();
+    /// Computes the sum of squares that a fit of all unknowns minimises: residuals of the movements, and deviations
+    /// from the prior values.
+    pub fn compute_cost(&self, unknowns: &[f64; UNKNOWN_COUNT]) -> f64 {
+        let residuals = self.compute_residuals(unknowns).into_flattened();
         let start = self.start_unknowns();
         let prior_deviations =
             (0..UNKNOWN_COUNT).map(|i| (unknowns[i] - start[i]) / self.prior_errors[i]);
@@ -124,35 +124,35 @@ impl<'a> Problem<'a> {
             .sum()
     }
 
-    /// Combines each predicted component with the measured one by `combine`, and divides the result by its standard
-    /// error, which includes the model's roughness.
+    /// Combines each predicted component with the measured mean, and divides the result by the standard error, which
+    /// includes the model's roughness.
     fn divide_by_errors(
         &self,
         predicted: &[[f64; 3]],
         combine: impl Fn(f64, f64) -> f64,
     ) -> Vec<[f64; 3]> {
         let rows = self.movements.iter().zip(predicted);
-        let divided_row_of = |(movement, predicted): (&MeasuredMovement, &[f64; 3])| {
+        let divided_rows = rows.map(|(movement, predicted)| {
             std::array::from_fn(|i| {
                 combine(predicted[i], movement.mean[i]) / movement.error[i].hypot(MODEL_ERROR)
             })
-        };
-        rows.map(divided_row_of).collect()
+        });
+        divided_rows.collect()
     }
 
-    /// The movements of the robot that the model predicts. No robot has negative play, but a fit may try it: then the
-    /// fit of a robot without play can err in both directions. The movements for negative play are extrapolated as
-    /// `2 f(0) - f(-play)`. Other keys are raised to their smallest possible values.
-    fn robot_travels(&self, values: &Values) -> Vec<Travel> {
+    /// Predicts the robot's movements with the model, and caches them. No robot has negative play, but a fit may try
+    /// it, so that the fit of a robot without play can err in both directions. Movements for negative play are
+    /// extrapolated as `2 f(0) - f(-play)`. Other keys are raised to their smallest possible values.
+    fn predict_robot_travels(&self, values: &Values) -> Vec<Travel> {
         if values[PLAY_INDEX] < 0.0 {
-            let travels_with_play = |play: f64| {
+            let predict_with_play = |play: f64| {
                 let mut values = *values;
                 values[PLAY_INDEX] = play;
-                self.robot_travels(&values)
+                self.predict_robot_travels(&values)
             };
-            let travel_pairs = travels_with_play(0.0)
+            let travel_pairs = predict_with_play(0.0)
                 .into_iter()
-                .zip(travels_with_play(-values[PLAY_INDEX]));
+                .zip(predict_with_play(-values[PLAY_INDEX]));
             let extrapolate = |at_zero: f64, mirrored: f64| 2.0 * at_zero - mirrored;
             return travel_pairs
                 .map(|(at_zero, mirrored)| Travel {
@@ -169,23 +169,27 @@ impl<'a> Problem<'a> {
             return travels.clone();
         }
         let travels = (self.predict)(&values);
-        let mut cached_results = self.cached_results.borrow_mut();
-        cached_results.push((values, travels.clone()));
+        self.cached_results
+            .borrow_mut()
+            .push((values, travels.clone()));
         travels
     }
 
     /// Fits the free unknowns, starting from a guess; the other unknowns keep their start values.
     ///
-    /// The method is Gauss-Newton; a step that does not reduce the sum of squares is halved. A finer search is useless,
-    /// since the model is rough: servos have a dead band and pads stick.
+    /// Uses the Gauss-Newton method, and halves a step that does not reduce the sum of squares. A finer search would be
+    /// useless, since the model is rough: servos have a dead band and pads stick.
     pub fn fit(&self, free_unknowns: &[usize], guess: &[f64; UNKNOWN_COUNT]) -> Option<Solution> {
         let start = self.start_unknowns();
         let mut unknowns = start;
         for &unknown in free_unknowns {
             unknowns[unknown] = guess[unknown];
         }
-        let residuals_at = |unknowns: &[f64; UNKNOWN_COUNT]| {
-            let movement_residuals = self.residuals(unknowns).into_flattened().into_iter();
+        let compute_all_residuals = |unknowns: &[f64; UNKNOWN_COUNT]| {
+            let movement_residuals = self
+                .compute_residuals(unknowns)
+                .into_flattened()
+                .into_iter();
             let prior_deviations = free_unknowns
                 .iter()
                 .map(|&i| (unknowns[i] - start[i]) / self.prior_errors[i]);
@@ -194,18 +198,18 @@ impl<'a> Problem<'a> {
                 movement_residuals.chain(prior_deviations),
             )
         };
-        let mut current_residuals = residuals_at(&unknowns);
+        let mut current_residuals = compute_all_residuals(&unknowns);
         let mut covariance = DMatrix::zeros(0, 0);
         for _ in 0..MAX_ITERATIONS {
-            let jacobian = self.jacobian_at(free_unknowns, &unknowns);
+            let jacobian = self.compute_jacobian(free_unknowns, &unknowns);
             let gradient = jacobian.tr_mul(&current_residuals);
             covariance = jacobian.tr_mul(&jacobian).cholesky()?.inverse();
             let step = &covariance * &gradient;
             let predicted_reduction = step.dot(&gradient);
             if predicted_reduction < MIN_PREDICTED_REDUCTION {
-                // The standard errors follow from the derivatives, so the derivatives must be from near the end of the
+                // The standard errors follow from the derivatives, which must therefore be from near the end of the
                 // fit.
-                match self.discard_distant_jacobian(split(&unknowns).0, REUSE_STEPS_AT_END) {
+                match self.discard_distant_jacobian(&unknowns, REUSE_STEPS_AT_END) {
                     true => continue,
                     false => break,
                 }
@@ -215,7 +219,10 @@ impl<'a> Problem<'a> {
                 for (unknown, step) in free_unknowns.iter().zip(step.iter()) {
                     shortened_unknowns[*unknown] -= step / f64::from(1 << halvings);
                 }
-                (shortened_unknowns, residuals_at(&shortened_unknowns))
+                (
+                    shortened_unknowns,
+                    compute_all_residuals(&shortened_unknowns),
+                )
             });
             let mut better_steps = shortened_steps.filter(|(_, residuals)| {
                 residuals.norm_squared() < current_residuals.norm_squared()
@@ -224,12 +231,12 @@ impl<'a> Problem<'a> {
                 Some(next_step) => (unknowns, current_residuals) = next_step,
                 // Derivatives from another point may give a wrong direction.
                 None if predicted_reduction > MAX_ROUGHNESS_REDUCTION
-                    && self.discard_distant_jacobian(split(&unknowns).0, 0.0) => {}
-                None if self.discard_distant_jacobian(split(&unknowns).0, REUSE_STEPS_AT_END) => {}
+                    && self.discard_distant_jacobian(&unknowns, 0.0) => {}
+                None if self.discard_distant_jacobian(&unknowns, REUSE_STEPS_AT_END) => {}
                 None => break,
             }
         }
-        let residuals = self.residuals(&unknowns).into_flattened();
+        let residuals = self.compute_residuals(&unknowns).into_flattened();
         let chi_square: f64 = residuals.iter().map(|residual| residual * residual).sum();
         let is_finite = chi_square.is_finite() && covariance.iter().all(|value| value.is_finite());
         is_finite.then_some(Solution {
@@ -239,27 +246,28 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Discards the derivatives if any key was more than `step_count` of its derivative steps away from these values.
-    /// Returns true if no derivatives are left.
-    fn discard_distant_jacobian(&self, values: Values, step_count: f64) -> bool {
+    /// Discards the derivatives if any key was more than `step_count` derivative steps away from its value in
+    /// `unknowns`. Returns true if no derivatives are left.
+    fn discard_distant_jacobian(&self, unknowns: &[f64; UNKNOWN_COUNT], step_count: f64) -> bool {
+        let values = raise_to_min_values(split_unknowns(unknowns).0);
         let mut jacobian_point = self.jacobian_point.borrow_mut();
-        let is_distant = !jacobian_point
-            .is_some_and(|point| is_within(step_count, point, raise_to_min_values(values)));
+        let is_distant =
+            !jacobian_point.is_some_and(|point| are_within_steps(step_count, point, values));
         if is_distant {
             *jacobian_point = None;
         }
         is_distant
     }
 
-    /// Derivatives of the residuals with respect to the free unknowns.
-    fn jacobian_at(
+    /// Computes the derivatives of the residuals with respect to the free unknowns.
+    fn compute_jacobian(
         &self,
         free_unknowns: &[usize],
         unknowns: &[f64; UNKNOWN_COUNT],
     ) -> DMatrix<f64> {
-        let near_values = self.jacobian_point_near(split(unknowns).0);
+        let near_values = self.choose_jacobian_point(split_unknowns(unknowns).0);
         let base = std::array::from_fn(|i| near_values.get(i).copied().unwrap_or(unknowns[i]));
-        let base_movements = self.predicted_on_card(&base);
+        let base_movements = self.predict_card_movements(&base);
         let mut jacobian = DMatrix::zeros(
             3 * self.movements.len() + free_unknowns.len(),
             free_unknowns.len(),
@@ -268,7 +276,7 @@ impl<'a> Problem<'a> {
             let step = KEYS.get(unknown).map_or(0.1, |key| key.derivative_step);
             let mut shifted_unknowns = base;
             shifted_unknowns[unknown] += step;
-            let shifted_movements = self.predicted_on_card(&shifted_unknowns);
+            let shifted_movements = self.predict_card_movements(&shifted_unknowns);
             let slopes: Vec<[f64; 3]> = base_movements
                 .iter()
                 .zip(&shifted_movements)
@@ -285,35 +293,34 @@ impl<'a> Problem<'a> {
         jacobian
     }
 
-    /// The point at which derivatives for these values are computed: the previous point if it is near enough, else
-    /// these values.
-    fn jacobian_point_near(&self, values: Values) -> Values {
+    /// Returns the previous point of the derivatives if it is near enough to `values`; otherwise chooses `values`.
+    fn choose_jacobian_point(&self, values: Values) -> Values {
         let mut jacobian_point = self.jacobian_point.borrow_mut();
         if let Some(point) =
-            jacobian_point.filter(|point| is_within(REUSE_STEPS_DURING_FIT, *point, values))
+            jacobian_point.filter(|point| are_within_steps(REUSE_STEPS_DURING_FIT, *point, values))
         {
             return point;
         }
-        // At a key's smallest value, the derivatives are those of its feasible side.
+        // At a key's smallest value, the derivative is taken on the feasible side.
         let values = raise_to_min_values(values);
         *jacobian_point = Some(values);
         values
     }
 }
 
-/// True if each key differs by at most `step_count` of its derivative steps.
-fn is_within(step_count: f64, a: Values, b: Values) -> bool {
+/// Returns true if each key differs by at most `step_count` of its derivative steps.
+fn are_within_steps(step_count: f64, a: Values, b: Values) -> bool {
     let mut pairs = a.iter().zip(b).zip(&KEYS);
     pairs.all(|((a, b), key)| (a - b).abs() <= step_count * key.derivative_step)
 }
 
-/// Raises each value to the smallest possible value of its key.
+/// Raises each value to its key's smallest possible value.
 fn raise_to_min_values(values: Values) -> Values {
     std::array::from_fn(|i| values[i].max(KEYS[i].min_value))
 }
 
 /// Splits the unknowns into the values of the keys and the card.
-pub(crate) fn split(unknowns: &[f64; UNKNOWN_COUNT]) -> (Values, Card) {
+pub(crate) fn split_unknowns(unknowns: &[f64; UNKNOWN_COUNT]) -> (Values, Card) {
     let card: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| unknowns[KEY_COUNT + i]);
     (std::array::from_fn(|i| unknowns[i]), card.into())
 }

@@ -3,14 +3,13 @@
 use lizard_robot::{Robot, edit};
 
 use crate::error::IdentifyError;
-use crate::outcome::{Identified, KeyResult};
+use crate::outcome::{Identification, KeyResult};
 
-impl Identified {
-    /// Writes the keys with a new value into the text of robot.toml, each with a comment. All other bytes stay
-    /// unchanged.
+impl Identification {
+    /// Writes the changed keys, each with a comment, into the text of robot.toml. All other bytes stay unchanged.
     ///
     /// # Errors
-    /// Fails if the text does not contain a key, or if the robot with the new values is refused.
+    /// Fails if the text does not contain a key, or if the new values make robot.toml invalid.
     pub fn updated_robot_toml(&self, text: &str) -> Result<String, IdentifyError> {
         let mut new_text = text.to_owned();
         let mut names: Vec<&str> = self.changed_keys().map(|result| result.key.name).collect();
@@ -20,17 +19,17 @@ impl Identified {
             new_text = write_key(&new_text, &key_results.collect::<Vec<_>>())
                 .map_err(|error| IdentifyError::TextNotWritable(error.to_string()))?;
         }
-        Robot::parse(&new_text).map_err(|error| IdentifyError::RobotRefused(error.to_string()))?;
+        Robot::parse(&new_text).map_err(|error| IdentifyError::InvalidRobot(error.to_string()))?;
         Ok(new_text)
     }
 }
 
-/// Writes the value of a key, which is one number or a list, with a comment about the numbers that changed.
-fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchKey> {
+/// Writes a key's value, a number or a list, with a comment about the changed numbers.
+fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::KeyError> {
     let name = results[0].key.name;
     let values: Vec<f64> = results
         .iter()
-        .map(|result| result.written_value())
+        .map(|result| result.rounded_value())
         .collect();
     let new_text = match results[0].key.list_index {
         Some(_) => edit::with_numbers(text, name, &values)?,
@@ -38,7 +37,7 @@ fn write_key(text: &str, results: &[&KeyResult]) -> Result<String, edit::NoSuchK
     };
     let changed_results = results.iter().filter(|result| result.is_changed());
     let comments: Vec<String> = changed_results
-        .map(|result| result.comment_text())
+        .map(|result| result.format_comment())
         .collect();
     edit::with_comment(&new_text, name, "measured:", &comments.join("; "))
 }
@@ -48,8 +47,8 @@ impl KeyResult {
         self.verdict == crate::Verdict::Changed
     }
 
-    /// The value for the new file, rounded if it changed.
-    fn written_value(&self) -> f64 {
+    /// The value for the new file, rounded if the verdict is `Changed`.
+    fn rounded_value(&self) -> f64 {
         if !self.is_changed() {
             return self.file_value;
         }
@@ -57,7 +56,7 @@ impl KeyResult {
         (self.new_value * scale).round() / scale
     }
 
-    fn comment_text(&self) -> String {
+    fn format_comment(&self) -> String {
         let decimals = self.decimal_count();
         let index_text = match self.key.list_index {
             Some(index) => format!("[{index}] "),

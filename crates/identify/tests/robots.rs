@@ -1,25 +1,25 @@
-//! A test of the identification of deliberately changed keys from simulated movements, for each robot of `robots/`.
+//! Tests the identification of deliberately changed keys from simulated movements, for each robot of `robots/`.
 
 use std::path::{Path, PathBuf};
 use std::thread;
 
 use fastrand::Rng;
-use lizard_identify::{Identified, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
+use lizard_identify::{Identification, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
 use lizard_robot::{CheckedGait, Ground, Robot, Travel};
 
 /// Standard error of a mean of about eight cycles, mm and deg.
 const MEAN_ERROR: f64 = 0.03;
-/// Number of gaits that are filmed.
+/// Number of recorded gaits.
 const GAIT_COUNT: usize = 8;
-/// Size of the change of each key, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
+/// Size of each key's change, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
 const CHANGE_SIZES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
 fn change_key(ground: &mut Ground, key: usize, change: f64) {
     let value = match key {
         0 => &mut ground.feet.mount_angle,
         1 => &mut ground.drive.play,
-        2 => &mut ground.body.mass_centre[0],
-        3 => &mut ground.body.mass_centre[1],
+        2 => &mut ground.body.centre_of_mass[0],
+        3 => &mut ground.body.centre_of_mass[1],
         4 => &mut ground.stance.twist,
         5 => &mut ground.friction_coefficient,
         _ => &mut ground.friction_ratio,
@@ -27,23 +27,23 @@ fn change_key(ground: &mut Ground, key: usize, change: f64) {
     *value += change;
 }
 
-/// A random number with an approximately normal distribution: mean 0, standard deviation 1.
-fn normal_deviate(rng: &mut Rng) -> f64 {
+/// Returns a random number with an approximately normal distribution: mean 0, standard deviation 1.
+fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64()).sum::<f64>() - 6.0
 }
 
-/// Runs the simulations one after another.
+/// Runs the simulations sequentially.
 fn run_sequentially(count: usize, simulate: &(dyn Fn(usize) -> Travel + Sync)) -> Vec<Travel> {
     (0..count).map(simulate).collect()
 }
 
-/// Movements of a robot's fastest gaits on a changed ground, with the random errors of a film.
-fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
-    let speed_of = |gait: &CheckedGait| {
+/// Simulates a robot's fastest gaits on a changed ground, with the random errors of a video.
+fn record_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
+    let compute_speed = |gait: &CheckedGait| {
         let prediction = robot.predict(gait);
         let [forward, turn] =
             [prediction.forward, prediction.turn].map(|component| component.unwrap_or(0.0).abs());
-        // A rough measure: mm and deg count the same.
+        // A rough measure that weighs mm and deg equally.
         (forward + turn) / gait.period()
     };
     let mut gaits: Vec<&CheckedGait> = robot
@@ -51,10 +51,10 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
         .iter()
         .filter(|gait| gait.has_movement())
         .collect();
-    gaits.sort_by(|a, b| speed_of(b).total_cmp(&speed_of(a)));
+    gaits.sort_by(|a, b| compute_speed(b).total_cmp(&compute_speed(a)));
     gaits.truncate(GAIT_COUNT);
     let motors = robot.motors();
-    let movement_of = |gait: &&CheckedGait| {
+    let movements = gaits.iter().map(|gait| {
         let Travel {
             forward,
             left,
@@ -64,26 +64,24 @@ fn filmed_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<Measur
             gait: gait.name().to_owned(),
             pace: 1.0,
             mean: [forward, left, turn]
-                .map(|component| component + MEAN_ERROR * normal_deviate(rng)),
+                .map(|component| component + MEAN_ERROR * random_deviate(rng)),
             error: [MEAN_ERROR; 3],
         }
-    };
-    gaits.iter().map(movement_of).collect()
+    });
+    movements.collect()
 }
 
-/// The true changes of a robot's keys, and the keys that are identified from the robot's movements.
+/// The true changes of a robot's keys, and the identification from the robot's movements.
 struct Trial {
     name: String,
     changes: [f64; 7],
-    identified: Identified,
+    identification: Identification,
 }
 
 impl Trial {
-    fn new(path: &Path, seed: u64) -> Self {
+    fn run(path: &Path, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let robot =
-            Robot::parse(&std::fs::read_to_string(path).expect("the robot file is readable"))
-                .expect("the robot file is valid");
+        let robot = Robot::load(path).expect("the robot file is valid");
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
@@ -95,22 +93,17 @@ impl Trial {
         for (key, change) in changes.into_iter().enumerate() {
             change_key(&mut ground, key, change);
         }
-        let movements = filmed_movements(&robot, &ground, &mut rng);
+        let movements = record_movements(&robot, &ground, &mut rng);
         Self {
-            name: format!(
-                "{} {seed}",
-                path.file_stem()
-                    .expect("the path has a file name")
-                    .to_string_lossy()
-            ),
+            name: format!("{} with seed {seed}", path.display()),
             changes,
-            identified: identify(&robot, &movements, &run_sequentially)
+            identification: identify(&robot, &movements, &run_sequentially)
                 .expect("the movements determine the keys"),
         }
     }
 
     fn changes_and_results(&self) -> impl Iterator<Item = (f64, &KeyResult)> {
-        self.changes.into_iter().zip(&self.identified.keys)
+        self.changes.into_iter().zip(&self.identification.keys)
     }
 }
 
@@ -119,26 +112,24 @@ impl Trial {
 #[ignore = "takes minutes; make measure-test"]
 fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
-    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+    let mut robot_paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("the folder robots/ is readable")
-        .map(|file| file.expect("the folder entry is readable").path())
+        .map(|entry| entry.expect("the folder entry is readable").path())
         .collect();
-    files.sort();
-    assert_eq!(files.len(), 5);
-    // Two variants of each file; another SEED gives other variants.
+    robot_paths.sort();
+    assert_eq!(robot_paths.len(), 5);
+    // Each robot file is tested with two seeds; another SEED selects two other seeds.
     let seed = std::env::var("SEED")
         .ok()
         .and_then(|text| text.parse().ok());
     let first_seed = 2 * seed.unwrap_or(1) - 1;
     let trials: Vec<Trial> = thread::scope(|scope| {
-        let variants = files
+        let paths_and_seeds = robot_paths
             .iter()
-            .flat_map(|file| [(file, first_seed), (file, first_seed + 1)]);
-        let start_trial = |(file, seed): (&PathBuf, u64)| {
-            let file = file.clone();
-            scope.spawn(move || Trial::new(&file, seed))
-        };
-        let threads: Vec<_> = variants.map(start_trial).collect();
+            .flat_map(|path| [(path, first_seed), (path, first_seed + 1)]);
+        let threads: Vec<_> = paths_and_seeds
+            .map(|(path, seed)| scope.spawn(move || Trial::run(path, seed)))
+            .collect();
         let trials = threads.into_iter().map(|thread| thread.join());
         trials
             .map(|trial| trial.expect("the trial does not panic"))
@@ -147,9 +138,9 @@ fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
     let (mut changed_count, mut hit_count, mut unchanged_count, mut false_change_count) =
         (0, 0, 0, 0);
     for trial in &trials {
-        let goodness = &trial.identified.goodness;
+        let goodness = &trial.identification.goodness;
         println!(
-            "{}: chi-square {:.0} of {:.0}",
+            "{}: chi-square {:.0}, limit {:.0}",
             trial.name, goodness.chi_squares[1], goodness.chi_square_limit
         );
         for (change, result) in trial.changes_and_results() {
@@ -165,34 +156,28 @@ fn changed_keys_are_found_within_two_standard_errors_and_correct_keys_stay() {
             if result.verdict == Verdict::Undetermined {
                 continue;
             }
-            match change == 0.0 {
-                true => {
-                    (unchanged_count, false_change_count) = (
-                        unchanged_count + 1,
-                        false_change_count + usize::from(shift != 0.0),
-                    )
-                }
-                false => {
-                    (changed_count, hit_count) =
-                        (changed_count + 1, hit_count + usize::from(is_hit))
-                }
+            if change == 0.0 {
+                unchanged_count += 1;
+                false_change_count += usize::from(shift != 0.0);
+            } else {
+                changed_count += 1;
+                hit_count += usize::from(is_hit);
             }
         }
     }
     println!(
-        "{hit_count} of {changed_count} changed keys within two standard errors, {false_change_count} of {unchanged_count} correct keys changed"
+        "{hit_count} of {changed_count} changed keys are within two standard errors, \
+         {false_change_count} of {unchanged_count} correct keys changed"
     );
-    assert!(
-        changed_count >= 12 && unchanged_count >= 20,
-        "{changed_count} {unchanged_count}"
-    );
+    assert!(changed_count >= 12, "{changed_count} changed keys");
+    assert!(unchanged_count >= 20, "{unchanged_count} correct keys");
     assert!(
         hit_count as f64 >= 0.9 * f64::from(changed_count),
-        "{hit_count} of {changed_count}"
+        "only {hit_count} of {changed_count} changed keys are within two standard errors"
     );
     assert!(
         false_change_count as f64 <= 0.1 * f64::from(unchanged_count),
-        "{false_change_count} of {unchanged_count}"
+        "{false_change_count} of {unchanged_count} correct keys changed"
     );
     assert_eq!(KEYS.len(), CHANGE_SIZES.len());
 }

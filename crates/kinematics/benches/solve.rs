@@ -17,9 +17,9 @@ const LINKS: [f64; 20] = [
 /// The neutral angles of the servos, degrees, in servo order.
 const NEUTRAL_POSE: [f64; 4] = [138.59, 41.41, 318.59, 221.41];
 
-/// Servo angles (degrees) in the paper's safe box, within 34 degrees of neutral. Multiples of these
+/// Returns servo angles (degrees) in the paper's safe box, within 34 degrees of neutral. The multiples of
 /// irrational steps fill the box evenly.
-fn pose_of(index: usize) -> [f64; 4] {
+fn sample_pose(index: usize) -> [f64; 4] {
     let steps = [0.856_674_883, 0.733_891_856, 0.628_706_720, 0.538_597_257];
     std::array::from_fn(|servo| {
         NEUTRAL_POSE[servo] + 68.0 * (index as f64 * steps[servo]).fract() - 34.0
@@ -37,7 +37,7 @@ fn main() {
         links: LINKS.into(),
         leg,
     };
-    let poses: Vec<[f64; 4]> = (0..POSE_COUNT).map(pose_of).collect();
+    let poses: Vec<[f64; 4]> = (0..POSE_COUNT).map(sample_pose).collect();
     // The fastest of five passes over all poses.
     let pass_durations = (0..5).map(|_| {
         let start = Instant::now();

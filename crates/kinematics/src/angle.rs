@@ -1,11 +1,11 @@
 //! Trigonometry in degrees, the unit of all angles in the crate's interface.
 //!
-//! Reducing an angle by multiples of 90 degrees is exact, by multiples of pi/2 it is not. So sin 180
-//! is exactly 0, and angles that differ by whole turns have the same sine, bit for bit. Only for odd
-//! multiples of 45 degrees may the last bit differ, because either of the two neighbouring quadrants
-//! may be used. Sine, cosine and arc tangent do not branch on ordinary arguments, so they are several
-//! times faster than the general functions of a mathematics library. They use only IEEE additions,
-//! multiplications, divisions and comparisons, never fused, and give the same bits on every host.
+//! Reducing an angle by multiples of 90 degrees is exact, but reducing it by multiples of pi/2 is not. With degrees,
+//! sin 180 is therefore exactly 0, and angles that differ by whole turns have the same sine, bit for bit. Only for odd
+//! multiples of 45 degrees may the last bit differ, because either of the two neighbouring quadrants may be used. Sine,
+//! cosine and arc tangent do not branch on ordinary arguments, so they are several times faster than the general
+//! functions of a mathematics library. They use only IEEE additions, multiplications, divisions and comparisons, never
+//! fused, and give the same bits on every host.
 //!
 //! The polynomials come from `src/angle/polynomials.rs`, which computes them with a precision of 256
 //! bits. Their approximation errors are at most 2.1e-17 of the result, a fifth of the rounding error
@@ -60,7 +60,7 @@ const MIN_HUGE_ANGLE: f64 = 1e15;
 
 /// Evaluates a polynomial by Horner's rule.
 #[inline(always)]
-fn horner<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
+fn evaluate_polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     let mut sum = coefficients[N - 1];
     let mut i = N - 1;
     while i > 0 {
@@ -79,7 +79,7 @@ fn select(mask: u64, if_ones: f64, if_zero: f64) -> f64 {
 
 /// Returns a mask of all ones if the condition is true, otherwise zero.
 #[inline(always)]
-fn mask_of(condition: bool) -> u64 {
+fn to_mask(condition: bool) -> u64 {
     u64::from(condition).wrapping_neg()
 }
 
@@ -118,11 +118,12 @@ pub fn sin_cos_all<const N: usize>(degrees: [f64; N]) -> ([f64; N], [f64; N]) {
         let quadrant = rounded.to_bits();
         let r = (degrees[i] - (rounded - ROUNDING_CONSTANT) * 90.0) * (PI / 180.0);
         let z = r * r;
-        let sin = r + r * (z * horner(&SIN, z));
+        let sin = r + r * (z * evaluate_polynomial(&SIN, z));
         // The difference 1 - z/2 is rounded; its rounding error is added together with the small terms.
         let half_square = 0.5 * z;
         let main_term = 1.0 - half_square;
-        let cos = main_term + (((1.0 - main_term) - half_square) + z * (z * horner(&COS, z)));
+        let cos = main_term
+            + (((1.0 - main_term) - half_square) + z * (z * evaluate_polynomial(&COS, z)));
         // In the odd quadrants sine and cosine change places. The sine is negative in quadrants 2 and
         // 3, the cosine in 1 and 2. Adding 0.0 makes a negative zero positive.
         let odd_mask = (quadrant & 1).wrapping_neg();
@@ -152,21 +153,21 @@ fn reduce_huge_angles(degrees: &mut [f64]) {
 #[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
-    let steep_mask = mask_of(ay > ax);
+    let steep_mask = to_mask(ay > ax);
     let (long, short) = (select(steep_mask, ay, ax), select(steep_mask, ax, ay));
     // Within the first 45 degrees, the polynomial is evaluated relative to 0 or to 45 degrees,
     // whichever is nearer.
-    let diagonal_mask = mask_of(short > TAN_HALF_EIGHTH * long);
+    let diagonal_mask = to_mask(short > TAN_HALF_EIGHTH * long);
     let numerator = select(diagonal_mask, short - long, short);
     let denominator = select(diagonal_mask, short + long, long);
-    let zero_mask = mask_of(denominator == 0.0);
+    let zero_mask = to_mask(denominator == 0.0);
     let u = numerator / select(zero_mask, 1.0, denominator);
     let z = u * u;
     let base = select(diagonal_mask, 45.0, 0.0);
-    let eighth = base + (u + u * (z * horner(&ATAN, z))) * (180.0 / PI);
+    let eighth = base + (u + u * (z * evaluate_polynomial(&ATAN, z))) * (180.0 / PI);
     let quarter = select(steep_mask, 90.0 - eighth, eighth);
-    let half = select(mask_of(x < 0.0), 180.0 - quarter, quarter);
-    select(mask_of(y < 0.0), -half, half)
+    let half = select(to_mask(x < 0.0), 180.0 - quarter, quarter);
+    select(to_mask(y < 0.0), -half, half)
 }
 
 /// Wraps an angle to (-180, 180] degrees, exactly. NaN if the angle is infinite.
@@ -209,9 +210,9 @@ mod tests {
             // Within 45 degrees the only error of libm's argument is the rounding of its conversion to
             // radians.
             let (sin, cos) = sin_cos(degrees);
-            let (s, c) = libm::sincos(degrees.to_radians());
-            prop_assert!((sin - s).abs() <= 3.0 * f64::EPSILON * s.abs(), "{sin} {s}");
-            prop_assert!((cos - c).abs() <= 2.0 * f64::EPSILON * c, "{cos} {c}");
+            let (expected_sin, expected_cos) = libm::sincos(degrees.to_radians());
+            prop_assert!((sin - expected_sin).abs() <= 3.0 * f64::EPSILON * expected_sin.abs(), "{sin}, expected {expected_sin}");
+            prop_assert!((cos - expected_cos).abs() <= 2.0 * f64::EPSILON * expected_cos, "{cos}, expected {expected_cos}");
         }
 
         #[test]
@@ -236,7 +237,7 @@ mod tests {
             let scale = 10f64.powi(exponent);
             let computed = atan2(y * scale, x * scale);
             let expected = libm::atan2(y * scale, x * scale).to_degrees();
-            prop_assert!((computed - expected).abs() <= 3.0 * f64::EPSILON * expected.abs(), "{computed} {expected}");
+            prop_assert!((computed - expected).abs() <= 3.0 * f64::EPSILON * expected.abs(), "{computed}, expected {expected}");
         }
 
         #[test]
@@ -264,7 +265,7 @@ mod tests {
             (0.0, 0.0, 0.0),
             (-0.0, -0.0, 0.0),
         ] {
-            assert_eq!(atan2(y, x), degrees, "{y} {x}");
+            assert_eq!(atan2(y, x), degrees, "atan2({y}, {x})");
         }
     }
 
@@ -279,13 +280,13 @@ mod tests {
     }
 
     #[test]
-    fn the_coefficients_equal_the_generated_ones_and_are_accurate() {
+    fn coefficients_are_accurate_and_match_the_generator() {
         let tables: [&[f64]; 3] = [&SIN, &COS, &ATAN];
         for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(tables) {
             let name = polynomial.name;
-            assert_eq!(polynomial.coefficients(), coefficients, "{name}");
-            let error = polynomial.error(coefficients);
-            assert!(error < 2.1e-17, "{name} {error:e}");
+            assert_eq!(polynomial.compute_coefficients(), coefficients, "{name}");
+            let error = polynomial.compute_max_error(coefficients);
+            assert!(error < 2.1e-17, "{name}: the error is {error:e}");
         }
     }
 
@@ -297,11 +298,11 @@ mod tests {
             (-179.5, -179.5),
             (181.0, -179.0),
             (-181.0, 179.0),
-            (36e20 + 0.0, 0.0),
+            (36e20, 0.0),
             (1e308, 1e308 % 360.0),
             (-1e308, -1e308 % 360.0),
         ] {
-            // The expected angle is the one in range of these three angles, which are a turn apart.
+            // Exactly one of these three angles, which are a turn apart, is in range.
             let turns = [expected - 360.0, expected, expected + 360.0];
             let expected = turns
                 .into_iter()

@@ -86,17 +86,17 @@ mod tests {
 
         #[test]
         fn the_jacobian_gives_the_velocity_of_the_head(
-            (_, _, solution) in any_solved_robot(), rate in [-300.0..300.0, -300.0..300.0f64],
+            (_, _, solution) in any_solved_robot(), rates in [-300.0..300.0, -300.0..300.0f64],
         ) {
             prop_assume!(solution.head.type2 > 1e-3);
-            let motion = ServoMotion { rate: [rate[0], rate[1], 0.0, 0.0], ..ServoMotion::default() };
+            let motion = ServoMotion { rates: [rates[0], rates[1], 0.0, 0.0], ..ServoMotion::default() };
             let expected = solution.derivatives(&motion).head.rate;
-            let j = solution.head.jacobian();
-            let computed = j.left * rate[0].to_radians() + j.right * rate[1].to_radians();
+            let jacobian = solution.head.jacobian();
+            let computed = jacobian.left * rates[0].to_radians() + jacobian.right * rates[1].to_radians();
             prop_assert!((expected - computed).length() < 1e-9 * (1.0 + expected.length()) / solution.head.type2);
-            let [largest, smallest] = j.singular_values();
+            let [largest, smallest] = jacobian.singular_values();
             prop_assert!((smallest / largest - solution.head.lci()).abs() < 1e-9);
-            prop_assert!((largest * smallest - j.determinant().abs()).abs() < 1e-9 * largest * largest);
+            prop_assert!((largest * smallest - jacobian.determinant().abs()).abs() < 1e-9 * largest * largest);
         }
     }
 }

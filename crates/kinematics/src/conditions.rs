@@ -1,4 +1,4 @@
-//! The values of the conditions of a safe pose, which [`crate::Limits`] compares with the robot's limits.
+//! The values of a safe pose's conditions, which [`crate::Limits`] compares with the robot's limits.
 
 use crate::end::End;
 use crate::five_bar::FiveBarPose;
@@ -8,7 +8,7 @@ use crate::margins::Check;
 use crate::real::Real;
 
 impl Solution {
-    /// The values of all conditions of a safe pose: margins, slider travels, and the distances of
+    /// The values of all conditions for a safe pose: margins, slider travels, and the distances of
     /// the crank tips from crossing.
     pub fn conditions(&self) -> impl Iterator<Item = (Check, f64)> + use<> {
         self.margins
@@ -22,23 +22,22 @@ impl Solution {
 }
 
 impl<T: Real> FiveBarPose<T> {
-    /// The values of the conditions of a safe pose that depend on this end alone: the type-2
-    /// margin, the type-1 margins, the leg margins, and the distance of the crank tips from
-    /// crossing. In each pair the left crank's margin comes first.
+    /// The values of the conditions that depend only on this end: the type-2 margin, the type-1 margins, the leg
+    /// margins, and the distance of the crank tips from crossing. In each pair the left crank's margin comes first.
     pub fn conditions(&self, end: End) -> [(Check, T); 6] {
-        let check_of_end = |[head, tail]: [Check; 2]| match end {
+        let pick_check = |[head, tail]: [Check; 2]| match end {
             End::Head => head,
             End::Tail => tail,
         };
         let [left_arm, right_arm] = end.pick(Check::TYPE1);
         let [left_leg, right_leg] = end.pick(Check::LEG);
         [
-            (check_of_end(Check::TYPE2), self.type2),
+            (pick_check(Check::TYPE2), self.type2),
             (left_arm, self.type1_left()),
             (right_arm, self.type1_right()),
             (left_leg, leg::margin(self.left_crank)),
             (right_leg, leg::margin(self.right_crank)),
-            (check_of_end(Check::UNCROSSED), self.gap.x),
+            (pick_check(Check::UNCROSSED), self.gap.x),
         ]
     }
 }

@@ -4,7 +4,7 @@
 //! joints. The paper prints K as 8x8 and takes its determinant, but there are only four active joints, so K is 8x4 and
 //! has no determinant. K* is 8x8 and block diagonal; its determinant is the product of four block determinants. The
 //! rows are the x and y components of the head, tail, left and right loops, mm, all in the chassis frame with
-//! counter-clockwise angles. So several entries have the opposite sign to the printed ones.
+//! counter-clockwise angles; therefore several entries and their printed forms have opposite signs.
 
 use crate::end::End;
 use crate::lizard::{Lizard, Solution};
@@ -92,7 +92,7 @@ impl Solution {
     pub fn passive_matrix(&self) -> [[f64; 8]; 8] {
         let mut k = [[0.0; 8]; 8];
         for (row, end) in LOOP_ROWS.into_iter().zip(End::ALL) {
-            let ([left, right], five_bar) = (self.couplers(end), &self.end(end).five_bar);
+            let ([left, right], five_bar) = (self.coupler_directions(end), &self.end(end).five_bar);
             put_derivative(
                 &mut k,
                 row,
@@ -116,15 +116,15 @@ impl Solution {
 
     /// The determinants of the blocks of K*, whose product is det K*.
     pub fn block_determinants(&self) -> BlockDeterminants {
-        let block_of = |end: End| {
+        let five_bar_determinant = |end: End| {
             let pose = self.end(end);
             let lengths = pose.five_bar.left_coupler_length * pose.five_bar.right_coupler_length;
             // Mirroring changes the sign of the sine.
             -end.sign() * lengths * pose.type2
         };
         BlockDeterminants {
-            head: block_of(End::Head),
-            tail: block_of(End::Tail),
+            head: five_bar_determinant(End::Head),
+            tail: five_bar_determinant(End::Tail),
             left: -self.left.d,
             right: -self.right.d,
         }
@@ -212,7 +212,7 @@ mod tests {
                 let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
                     let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
-                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K {row} {column}");
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K[{row}][{column}] is not {slope}");
                 }
             }
             let k = solution.passive_matrix();
@@ -229,7 +229,7 @@ mod tests {
                 let (residual_above, residual_below) = (residual_after(step), residual_after(-step));
                 for row in 0..8 {
                     let slope = (residual_above[row] - residual_below[row]) / (2.0 * step);
-                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K* {row} {column}");
+                    prop_assert!((slope - k[row][column]).abs() < 1e-6 * 200.0, "K*[{row}][{column}] is not {slope}");
                 }
             }
         }
@@ -239,15 +239,15 @@ mod tests {
             (robot, _, solution) in any_solved_robot(),
         ) {
             let product = solution.block_determinants().determinant();
-            let determinant = determinant_of(solution.passive_matrix());
+            let determinant = compute_determinant(solution.passive_matrix());
             let l = robot.links;
             let scale = l.l2 * l.l3 * l.l7 * l.l8 * solution.left.d * solution.right.d;
-            prop_assert!((product - determinant).abs() < 1e-9 * scale, "{product} {determinant}");
+            prop_assert!((product - determinant).abs() < 1e-9 * scale, "product {product}, determinant {determinant}");
         }
     }
 
-    /// The determinant by Gaussian elimination with pivoting.
-    fn determinant_of(mut m: [[f64; 8]; 8]) -> f64 {
+    /// Computes the determinant by Gaussian elimination with pivoting.
+    fn compute_determinant(mut m: [[f64; 8]; 8]) -> f64 {
         let mut product = 1.0;
         for i in 0..8 {
             let pivot = (i..8)

@@ -5,8 +5,6 @@
 //! K*. Projecting the equation of a five-bar onto one coupler eliminates the other coupler's unknown,
 //! so the 2x2 system needs only two divisions by sin(theta3 - theta2).
 
-use core::f64::consts::PI;
-
 use crate::end::End;
 use crate::five_bar::FiveBarPose;
 use crate::lizard::Solution;
@@ -18,9 +16,9 @@ use crate::vector::Vector;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoMotion {
     /// Rates, deg/s.
-    pub rate: [f64; 4],
+    pub rates: [f64; 4],
     /// Accelerations, deg/s^2.
-    pub acceleration: [f64; 4],
+    pub accelerations: [f64; 4],
 }
 
 /// The first and second time derivatives of a quantity in degrees or mm.
@@ -65,8 +63,8 @@ impl Solution {
     /// The rates and accelerations of the passive joints and of the end points. Not finite at a type-2
     /// singularity, where the servos' rates do not determine them.
     pub fn derivatives(&self, motion: &ServoMotion) -> Derivatives {
-        let spin_of = |servo: usize| Spin::new(motion.rate[servo], motion.acceleration[servo]);
-        let spins = [0, 1, 2, 3].map(|servo| spin_of(servo).map(|degrees| degrees * (PI / 180.0)));
+        let spin = |servo: usize| Spin::new(motion.rates[servo], motion.accelerations[servo]);
+        let spins = [0, 1, 2, 3].map(|servo| spin(servo).map(f64::to_radians));
         let derivatives_of_end = |end: End| {
             let apply_sign = |w: f64| end.sign() * w;
             let [left, right] = end.pick(spins).map(|spin| spin.map(apply_sign));
@@ -74,10 +72,10 @@ impl Solution {
                 left_coupler: left,
                 right_coupler: right,
                 point,
-            } = loop_derivatives(self.end(end), left, right);
+            } = solve_loop_derivatives(self.end(end), left, right);
             LoopDerivatives {
-                left_coupler: left.map(apply_sign).map(degrees_of),
-                right_coupler: right.map(apply_sign).map(degrees_of),
+                left_coupler: left.map(apply_sign).map(f64::to_degrees),
+                right_coupler: right.map(apply_sign).map(f64::to_degrees),
                 point: point.map(|v| end.mirror(v)),
             }
         };
@@ -85,8 +83,8 @@ impl Solution {
         let derivatives_of_slider = |side: Side| {
             let ([front, rear], pose) = (side.pick(spins), self.side(side));
             let (phi, s) =
-                slider_derivatives(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
-            (phi.map(degrees_of), s)
+                compute_slider_derivatives(pose, (pose.rear_tip, rear), (pose.front_arm(), front));
+            (phi.map(f64::to_degrees), s)
         };
         let (phi_left, s_left) = derivatives_of_slider(Side::Left);
         let (phi_right, s_right) = derivatives_of_slider(Side::Right);
@@ -115,11 +113,6 @@ impl<T> Derivative<T> {
     }
 }
 
-/// Converts radians to degrees.
-fn degrees_of(radians: f64) -> f64 {
-    radians * (180.0 / PI)
-}
-
 /// The rates and accelerations of a five-bar, in the end's own frame.
 struct LoopDerivatives {
     /// The left coupler's rotation.
@@ -132,7 +125,11 @@ struct LoopDerivatives {
 
 /// Solves the first and second time derivatives of l1 u1 + l2 u2 = l0 + l4 u4 + l3 u3 for the couplers, where u1 to
 /// u4 are the unit vectors of the links.
-fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> LoopDerivatives {
+fn solve_loop_derivatives(
+    pose: &FiveBarPose,
+    crank_left: Spin,
+    crank_right: Spin,
+) -> LoopDerivatives {
     let r1 = pose.left_crank * pose.five_bar.left_crank_length;
     let r2 = pose.left_coupler * pose.five_bar.left_coupler_length;
     let r3 = pose.right_coupler * pose.five_bar.right_coupler_length;
@@ -162,13 +159,13 @@ fn loop_derivatives(pose: &FiveBarPose, crank_left: Spin, crank_right: Spin) -> 
     }
 }
 
-/// The acceleration of a link's moving end relative to its other end.
+/// The acceleration of a link's moving end relative to the other end.
 fn end_acceleration(link: Vector, spin: Spin) -> Vector {
     link.rotated_left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
-/// The rates and accelerations of a slider's direction (rad) and length (mm), from its arms and their rates.
-fn slider_derivatives(
+/// Computes the rates and accelerations of a slider's direction (rad) and length (mm) from its arms' motion.
+fn compute_slider_derivatives(
     pose: &SliderPose,
     (rear, rear_spin): (Vector, Spin),
     (front, front_spin): (Vector, Spin),
@@ -205,7 +202,7 @@ mod tests {
 
     /// The values of all passive quantities: angles of couplers and sliders, coordinates of head and tail, travels
     /// of the sliders.
-    fn values_of(solution: &Solution) -> [f64; 12] {
+    fn passive_values(solution: &Solution) -> [f64; 12] {
         let (head, tail) = (solution.head_point(), solution.tail_point());
         [
             solution.theta2(),
@@ -223,8 +220,8 @@ mod tests {
         ]
     }
 
-    /// The rates and the accelerations of all passive quantities, in the order of [`values_of`].
-    fn derivatives_of(solution: &Solution, motion: &ServoMotion) -> ([f64; 12], [f64; 12]) {
+    /// The rates and the accelerations of all passive quantities, in the order of [`passive_values`].
+    fn passive_derivatives(solution: &Solution, motion: &ServoMotion) -> ([f64; 12], [f64; 12]) {
         let derivatives = solution.derivatives(motion);
         let angles = [
             derivatives.theta2,
@@ -261,16 +258,18 @@ mod tests {
     ) -> Option<Solution> {
         let mut later_pose = pose;
         for (i, angle) in later_pose.iter_mut().enumerate() {
-            *angle += motion.rate[i] * t + motion.acceleration[i] * t * t / 2.0;
+            *angle += motion.rates[i] * t + motion.accelerations[i] * t * t / 2.0;
         }
         robot.solve(&Pose::from(later_pose)).ok()
     }
 
     /// Random rates up to 300 deg/s and accelerations up to 2000 deg/s^2.
     fn any_motion() -> impl Strategy<Value = ServoMotion> {
-        let four_ranges_of = |max: f64| [-max..max, -max..max, -max..max, -max..max];
-        (four_ranges_of(300.0), four_ranges_of(2000.0))
-            .prop_map(|(rate, acceleration)| ServoMotion { rate, acceleration })
+        let four_ranges = |max: f64| [-max..max, -max..max, -max..max, -max..max];
+        (four_ranges(300.0), four_ranges(2000.0)).prop_map(|(rates, accelerations)| ServoMotion {
+            rates,
+            accelerations,
+        })
     }
 
     proptest! {
@@ -284,13 +283,13 @@ mod tests {
             prop_assume!(solution.margins.type2[0] > 0.3 && solution.margins.type2[1] > 0.3);
             prop_assume!(solution.head.gap.length() > 5.0 && solution.tail.gap.length() > 5.0);
             prop_assume!(solution.left.d > 20.0 && solution.right.d > 20.0);
-            let (rates, accelerations) = derivatives_of(&solution, &motion);
-            let largest_of = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
-            let (largest_rate, largest_acceleration) = (largest_of(&rates), largest_of(&accelerations));
+            let (rates, accelerations) = passive_derivatives(&solution, &motion);
+            let max_magnitude = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
+            let (largest_rate, largest_acceleration) = (max_magnitude(&rates), max_magnitude(&accelerations));
             let step = MAX_STEP.min(MAX_STEP_CHANGE / largest_rate);
             // The errors of the five-point formulas are of fourth order in the step.
-            let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| values_of(&s));
-            let start_values = values_of(&solution);
+            let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| passive_values(&s));
+            let start_values = passive_values(&solution);
             let [Some(a), Some(b), Some(d), Some(e)] = [-2.0, -1.0, 1.0, 2.0].map(values_at) else {
                 return Err(TestCaseError::fail("a loop does not close in a neighbouring pose"));
             };
@@ -301,10 +300,10 @@ mod tests {
                 let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(difference_from_start);
                 let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
                 let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
-                prop_assert!((rate - rates[i]).abs() < 1e-6 * largest_rate, "{i}: {rate} {}", rates[i]);
+                prop_assert!((rate - rates[i]).abs() < 1e-6 * largest_rate, "quantity {i}: rate {rate}, expected {}", rates[i]);
                 prop_assert!(
                     (acceleration - accelerations[i]).abs() < 1e-6 * largest_acceleration.max(100.0),
-                    "{i}: {acceleration} {}", accelerations[i]
+                    "quantity {i}: acceleration {acceleration}, expected {}", accelerations[i]
                 );
             }
         }

@@ -1,9 +1,8 @@
 //! The two ends of the robot, head and tail, each carried by a five-bar.
 //!
-//! The mechanism of the tail is that of the head, mirrored in the chassis frame's x axis. So each
-//! end has its own frame: x to the robot's right, y away from the chassis, origin in the middle of
-//! the end's base. In that frame one closed form solves both ends. Only this module knows the
-//! differences between them.
+//! The tail's mechanism is the head's, mirrored in the chassis frame's x axis. Each end has its own
+//! frame: x to the robot's right, y away from the chassis, origin in the middle of the end's base. In
+//! this frame one closed form solves both ends. Only this module contains their differences.
 
 use core::fmt;
 
@@ -41,8 +40,8 @@ impl End {
         }
     }
 
-    /// The end to which a servo belongs, by the servo's index in servo order, 0 to 3.
-    pub const fn of_servo(servo: usize) -> Self {
+    /// The end to which a servo belongs; `servo` is an index in servo order, 0 to 3.
+    pub const fn from_servo(servo: usize) -> Self {
         if servo < 2 { Self::Head } else { Self::Tail }
     }
 
@@ -89,19 +88,19 @@ mod tests {
 
     #[test]
     fn each_servo_belongs_to_the_end_that_lists_it() {
-        let mut count = [0; 4];
+        let mut end_counts = [0; 4];
         for end in End::ALL {
             for servo in end.servos() {
-                count[servo] += 1;
-                assert_eq!(End::of_servo(servo), end);
+                end_counts[servo] += 1;
+                assert_eq!(End::from_servo(servo), end);
             }
         }
-        assert_eq!(count, [1; 4]);
+        assert_eq!(end_counts, [1; 4]);
         assert_eq!(End::Tail.pick(["A1", "A2", "A3", "A4"]), ["A4", "A3"]);
     }
 
     #[test]
-    fn the_tails_frame_is_mirrored_and_the_heads_has_the_axes_of_the_chassis() {
+    fn only_the_tails_frame_is_mirrored() {
         assert_eq!(End::Tail.mirror_angle(221.5), 138.5);
         assert_eq!(End::Tail.mirror_angle(180.0), 180.0);
         assert_eq!(End::Head.mirror_angle(221.5), -138.5);

@@ -1,4 +1,4 @@
-//! The reasons why a mechanism has no position, with their messages for the user.
+//! The faults that leave a mechanism without a position, and their messages for the user.
 
 use core::fmt;
 
@@ -23,7 +23,7 @@ impl fmt::Display for Mechanism {
     }
 }
 
-/// A reason why a loop has no position, or no unique one. All lengths are in mm.
+/// A fault that leaves a loop without a position, or without a unique one. All lengths are in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fault {
     /// An input or a result is infinite or NaN. Lengths above about 1e75 mm overflow in the
@@ -49,7 +49,7 @@ pub enum Fault {
     OutOfReach {
         /// True for the left crank, false for the right one, in the five-bar's own frame.
         is_left: bool,
-        /// Distance of the point from that crank's shaft.
+        /// Distance of the point from the crank's shaft.
         distance: f64,
         /// Smallest distance from the shaft that crank and coupler can reach.
         min_reach: f64,
@@ -69,15 +69,15 @@ impl fmt::Display for Fault {
             Self::NotFinite => f.write_str("a value is not a finite number"),
             Self::TooFarApart { gap, max_gap } => write!(
                 f,
-                "the crank tips are {gap:.3} mm apart, the couplers reach {max_gap:.3} mm"
+                "the crank tips are {gap:.3} mm apart, but the couplers reach only {max_gap:.3} mm"
             ),
             Self::TooClose { gap, min_gap } => write!(
                 f,
-                "the crank tips are {gap:.3} mm apart, the couplers need {min_gap:.3} mm"
+                "the crank tips are {gap:.3} mm apart, but the couplers need at least {min_gap:.3} mm"
             ),
-            Self::Coincident => {
-                f.write_str("singular: the crank tips coincide, the end point is free on a circle")
-            }
+            Self::Coincident => f.write_str(
+                "singular: the crank tips coincide, so the end point can be anywhere on a circle",
+            ),
             Self::OutOfReach {
                 is_left,
                 distance,
@@ -85,12 +85,12 @@ impl fmt::Display for Fault {
                 max_reach,
             } => write!(
                 f,
-                "the point is {distance:.3} mm from the {} shaft, which reaches {min_reach:.3} to {max_reach:.3} mm",
+                "the point is {distance:.3} mm from the {} shaft, but must be between {min_reach:.3} and {max_reach:.3} mm away",
                 if is_left { "left" } else { "right" }
             ),
-            Self::OnShaft => {
-                f.write_str("singular: the point lies on a shaft, any crank angle will do")
-            }
+            Self::OnShaft => f.write_str(
+                "singular: the point lies on a shaft, so every crank angle is a solution",
+            ),
             Self::Collapsed => f.write_str("singular: the arm tips of the slider coincide"),
         }
     }
@@ -98,19 +98,19 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// The error for a pose that the robot cannot take: the mechanism and the reason.
+/// The error for a pose that the robot cannot take.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Infeasible {
+pub struct InfeasiblePose {
     /// The mechanism whose loop does not close.
     pub mechanism: Mechanism,
-    /// The reason why it does not close.
+    /// The fault that keeps the loop from closing.
     pub fault: Fault,
 }
 
-impl fmt::Display for Infeasible {
+impl fmt::Display for InfeasiblePose {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.mechanism, self.fault)
     }
 }
 
-impl core::error::Error for Infeasible {}
+impl core::error::Error for InfeasiblePose {}

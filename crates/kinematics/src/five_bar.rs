@@ -116,8 +116,7 @@ impl<T: Real> FiveBarPose<T> {
 }
 
 impl FiveBar {
-    /// The five-bar of five lengths in mm: base, then left crank, left coupler, right
-    /// coupler, right crank.
+    /// Creates a five-bar from its lengths in mm: base, left crank, left coupler, right coupler, right crank.
     pub const fn new(lengths: [f64; 5]) -> Self {
         let [
             base,
@@ -160,14 +159,14 @@ impl FiveBar {
     /// assert!((pose.end_point.y - 30.0 - 2400.0f64.sqrt()).abs() < 1e-12);
     /// ```
     pub fn forward(&self, theta_left: f64, theta_right: f64) -> Result<FiveBarPose, Fault> {
-        self.forward_in(AssemblyMode::Ahead, theta_left, theta_right)
+        self.forward_in_mode(AssemblyMode::Ahead, theta_left, theta_right)
     }
 
     /// The pose at two crank angles (degrees, own frame), in either assembly mode.
     ///
     /// # Errors
     /// Fails as [`FiveBar::forward`] does.
-    pub fn forward_in(
+    pub fn forward_in_mode(
         &self,
         mode: AssemblyMode,
         theta_left: f64,
@@ -177,7 +176,7 @@ impl FiveBar {
         self.close(mode, left, right)
     }
 
-    /// The pose at two crank directions of length one; like [`FiveBar::forward_in`], but without
+    /// The pose at two crank directions of length one; like [`FiveBar::forward_in_mode`], but without
     /// computing sines and cosines.
     ///
     /// # Errors
@@ -200,7 +199,7 @@ impl FiveBar {
         self.check_closure(pose.gap.length(), pose.finiteness_probe())
     }
 
-    /// True for each lane whose loop closes; [`FiveBar::close`] gives the reason why a loop does not.
+    /// True for each lane whose loop closes; [`FiveBar::close`] returns the fault of an open loop.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &FiveBarPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(probe)) = (pose.gap.length(), pose.finiteness_probe());
@@ -211,7 +210,7 @@ impl FiveBar {
         is_closed
     }
 
-    /// Checks a pose by the distance `d` between its crank tips, and by its [`FiveBarPose::finiteness_probe`].
+    /// Checks a pose, given the distance `d` between its crank tips and its [`FiveBarPose::finiteness_probe`].
     #[inline(always)]
     fn check_closure(&self, d: f64, probe: f64) -> Result<(), Fault> {
         let (l2, l3) = (self.left_coupler_length, self.right_coupler_length);
@@ -231,8 +230,8 @@ impl FiveBar {
         }
     }
 
-    /// The pose at crank directions of length one, without a check that the loop closes: if it does not (see
-    /// [`FiveBar::closes`]), the pose is meaningless. The compiler leaves out the parts that the caller does not use.
+    /// The pose at crank directions of length one, without a check that the loop closes. The pose of an open
+    /// loop (see [`FiveBar::closes`]) is meaningless. The compiler leaves out the parts that the caller does not use.
     #[inline(always)]
     pub fn pose_unchecked<T: Real>(
         &self,

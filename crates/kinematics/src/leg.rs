@@ -1,11 +1,10 @@
 //! A leg: a parallelogram linkage that carries the foot.
 //!
-//! Ground link and coupler are equally long, and so are crank and follower. So the follower stays
-//! parallel to the crank and the coupler never turns. At crank angles of 0 and 180 degrees, the
-//! change points, all four joints lie on one line, and the linkage may continue as an
-//! anti-parallelogram, whose coupler turns. Beyond a change point it is unknown which of the two
-//! linkages the leg has become. So the margin is signed: positive between the change points on the
-//! side on which the leg was assembled, negative beyond them.
+//! Ground link and coupler are equally long, and so are crank and follower. The follower therefore stays parallel to
+//! the crank, and the coupler never turns. At crank angles of 0 and 180 degrees, the change points, all four joints lie
+//! on one line, and the linkage may continue as an anti-parallelogram, whose coupler turns. Beyond a change point it is
+//! unknown which of the two linkages the leg has become. The margin is therefore signed: positive between the change
+//! points on the side on which the leg was assembled, negative beyond them.
 //!
 //! The paper's half-angle formulas for the follower give the anti-parallelogram for
 //! 0 < theta_lg < 180, have wrong signs in J and L, and have theta1 in H for all four legs.

@@ -19,9 +19,9 @@
 //! # Example
 //!
 //! ```
-//! use lizard_kinematics::{End, Infeasible, Leg, Lizard, Vector};
+//! use lizard_kinematics::{End, InfeasiblePose, Leg, Lizard, Vector};
 //!
-//! fn main() -> Result<(), Infeasible> {
+//! fn main() -> Result<(), InfeasiblePose> {
 //!     // The paper's robot: links l0 to l19, then the parallelogram of a leg, mm.
 //!     let (crank, coupler, arm, body) = (30.0, 50.0, 45.0, 135.0);
 //!     let head = [20.0, crank, coupler, coupler, crank];
@@ -45,8 +45,8 @@
 //!
 //!     // A point that is out of reach is an error that names the mechanism.
 //!     let error = lizard.point_angles(End::Head, Vector::new(0.0, 500.0)).unwrap_err();
-//!     let message = "head: the point is 500.100 mm from the left shaft, which reaches 20.000 to 80.000 mm";
-//!     assert_eq!(error.to_string(), message);
+//!     let text = "head: the point is 500.100 mm from the left shaft, but must be between 20.000 and 80.000 mm away";
+//!     assert_eq!(error.to_string(), text);
 //!     Ok(())
 //! }
 //! ```
@@ -64,15 +64,13 @@
 //!   and orders of servos.
 //! - Symbols (l0..l19, theta1..theta16, lg) are those of the paper: *Optimal Kinematic Design
 //!   of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*. Where a printed equation is
-//!   wrong, the documentation of the item that replaces it says so; `lizard errata` measures
-//!   its error.
+//!   wrong, the documentation of its replacement states this; `lizard errata` measures the error.
 //!
 //! # Determinism
-//! The crate uses only basic IEEE operations, including the square root, and `libm`. So the
-//! same input gives the same bits on every host, and programs, tests and the web page agree.
-//! The square root is that of the standard library. `libm`'s is an SSE instruction in inline
-//! assembly, which the compiler cannot vectorise and which is a hundred times slower among
-//! AVX instructions.
+//! The crate uses only basic IEEE operations, including the square root, and `libm`. The results are therefore
+//! bit-identical on every host, and programs, tests and the web page agree. The square root comes from the
+//! standard library. `libm` would use an SSE instruction in inline assembly, which the compiler cannot vectorise and
+//! which is a hundred times slower among AVX instructions.
 
 #[cfg(test)]
 extern crate self as lizard_kinematics;
@@ -110,7 +108,7 @@ pub use conditioning::Jacobian;
 pub use constraints::{BlockDeterminants, PassiveJoints};
 pub use derivatives::{Derivative, Derivatives, ServoMotion};
 pub use end::End;
-pub use fault::{Fault, Infeasible, Mechanism};
+pub use fault::{Fault, InfeasiblePose, Mechanism};
 pub use five_bar::{AssemblyMode, Elbow, FiveBar, FiveBarPose, InverseSolution, WorkingMode};
 pub use leg::{Leg, LegPose};
 pub use limits::{Limits, Violation};

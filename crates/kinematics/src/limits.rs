@@ -68,9 +68,9 @@ impl fmt::Display for Violation {
 }
 
 impl Limits {
-    /// The violation of a condition's limit by a value (a sine or mm); `None` if the value is safe.
-    /// A value at its limit is safe, but a distance of 0 mm between crank tips counts as crossed.
-    pub fn violation_of(&self, check: Check, value: f64) -> Option<Violation> {
+    /// Returns the violation of a condition's limit by a value (a sine or mm); `None` if the value is
+    /// safe. A value at its limit is safe, but a distance of 0 mm between crank tips counts as crossed.
+    pub fn find_violation(&self, check: Check, value: f64) -> Option<Violation> {
         let limit_if_below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
             Check::Type2Head | Check::Type2Tail => limit_if_below(self.type2),
@@ -91,8 +91,7 @@ impl Limits {
         })
     }
 
-    /// All violations of limits by a solved pose; none if it is safe. This is the only definition of a
-    /// safe pose.
+    /// All limits that a solved pose violates; none if the pose is safe. This is the only definition of a safe pose.
     ///
     /// In addition to margins and slider travels, a safe pose requires crank tips that are not crossed: the x of
     /// [`FiveBarPose::gap`], the paper's K2, must be above 0. Poses with crossed tips may have good margins, too, but
@@ -101,10 +100,10 @@ impl Limits {
         let limits = *self;
         solution
             .conditions()
-            .filter_map(move |(check, value)| limits.violation_of(check, value))
+            .filter_map(move |(check, value)| limits.find_violation(check, value))
     }
 
-    /// All violations of limits by the five-bar of one end, whatever the pose of the rest of the robot.
+    /// All limits that the five-bar of one end violates, regardless of the rest of the robot.
     pub fn end_violations(
         &self,
         end: End,
@@ -113,7 +112,7 @@ impl Limits {
         let limits = *self;
         pose.conditions(end)
             .into_iter()
-            .filter_map(move |(check, value)| limits.violation_of(check, value))
+            .filter_map(move |(check, value)| limits.find_violation(check, value))
     }
 
     /// True if a solved pose violates no limit.

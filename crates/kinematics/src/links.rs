@@ -1,6 +1,6 @@
 //! The paper's table of link lengths.
 
-/// The lengths of the body's links, mm, by the paper's symbols. All are above 0 except l0 and
+/// The lengths of the body's links, mm, with the paper's symbols. All are above 0 except l0 and
 /// l5, which may be 0. The paper's table prints l16 twice; the second one is l17.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Links {

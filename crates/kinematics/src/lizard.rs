@@ -2,7 +2,7 @@
 
 use crate::angle::sin_cos_all;
 use crate::end::End;
-use crate::fault::{Fault, Infeasible, Mechanism};
+use crate::fault::{Fault, InfeasiblePose, Mechanism};
 use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
 use crate::leg::{Leg, LegPose};
 use crate::links::Links;
@@ -15,7 +15,7 @@ use crate::vector::Vector;
 /// A pose of the robot: four servo angles in degrees, chassis frame, declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Angle of A1, front left. Like the other three it may be any finite angle.
+    /// Angle of A1, front left. All four may be any finite angle.
     pub theta1: f64,
     /// Angle of A2, front right.
     pub theta4: f64,
@@ -26,7 +26,7 @@ pub struct Pose {
 }
 
 impl From<[f64; 4]> for Pose {
-    /// Makes a pose from the angles of A1, A2, A3, A4.
+    /// Creates a pose from the angles of A1, A2, A3, A4.
     fn from([theta1, theta4, theta8, theta5]: [f64; 4]) -> Self {
         Self {
             theta1,
@@ -80,22 +80,22 @@ pub struct Solution {
 impl Solution {
     /// theta2: angle of the head's left coupler, degrees, chassis frame.
     pub fn theta2(&self) -> f64 {
-        self.couplers(End::Head)[0].angle()
+        self.coupler_directions(End::Head)[0].angle()
     }
 
     /// theta3: angle of the head's right coupler, degrees, chassis frame.
     pub fn theta3(&self) -> f64 {
-        self.couplers(End::Head)[1].angle()
+        self.coupler_directions(End::Head)[1].angle()
     }
 
     /// theta6: angle of the tail's left coupler, degrees, chassis frame.
     pub fn theta6(&self) -> f64 {
-        self.couplers(End::Tail)[0].angle()
+        self.coupler_directions(End::Tail)[0].angle()
     }
 
     /// theta7: angle of the tail's right coupler, degrees, chassis frame.
     pub fn theta7(&self) -> f64 {
-        self.couplers(End::Tail)[1].angle()
+        self.coupler_directions(End::Tail)[1].angle()
     }
 
     /// The five-bar of an end, in the end's own frame.
@@ -130,7 +130,7 @@ impl Solution {
     }
 
     /// The directions of an end's left and right couplers, length one, chassis frame.
-    pub fn couplers(&self, end: End) -> [Vector; 2] {
+    pub fn coupler_directions(&self, end: End) -> [Vector; 2] {
         let pose = self.end(end);
         [pose.left_coupler, pose.right_coupler].map(|coupler| end.mirror(coupler))
     }
@@ -207,10 +207,9 @@ impl Lizard {
     /// Solves the complete robot at a pose.
     ///
     /// # Errors
-    /// Returns the first loop that does not close, with the reason: see [`FiveBar::forward`] and
-    /// [`Slider::forward`].
+    /// Returns the first loop that does not close, and its fault: see [`FiveBar::forward`] and [`Slider::forward`].
     #[inline]
-    pub fn solve(&self, pose: &Pose) -> Result<Solution, Infeasible> {
+    pub fn solve(&self, pose: &Pose) -> Result<Solution, InfeasiblePose> {
         let solution = self.solve_unchecked(pose);
         self.check(&solution)?;
         Ok(solution)
@@ -218,9 +217,9 @@ impl Lizard {
 
     /// Checks that every loop of a solution closes.
     #[inline]
-    fn check(&self, solution: &Solution) -> Result<(), Infeasible> {
+    fn check(&self, solution: &Solution) -> Result<(), InfeasiblePose> {
         let infeasible_at =
-            |mechanism: Mechanism| move |fault: Fault| Infeasible { mechanism, fault };
+            |mechanism: Mechanism| move |fault: Fault| InfeasiblePose { mechanism, fault };
         for end in End::ALL {
             let closure = self.end(end).check(solution.end(end));
             closure.map_err(infeasible_at(Mechanism::End(end)))?;
@@ -240,8 +239,8 @@ impl Lizard {
         let cranks = core::array::from_fn(|i| Vector::new(cosines[i], sines[i]));
         let head = self.end_pose_unchecked(End::Head, cranks);
         let tail = self.end_pose_unchecked(End::Tail, cranks);
-        let leg_pose_of = |i: usize| self.leg.pose_at(End::of_servo(i), angles[i], cranks[i]);
-        let legs: [LegPose; 4] = core::array::from_fn(leg_pose_of);
+        let leg_pose = |i: usize| self.leg.pose_at(End::from_servo(i), angles[i], cranks[i]);
+        let legs: [LegPose; 4] = core::array::from_fn(leg_pose);
         let mut type1 = [head.type2; 4];
         for (end, pose) in [(End::Head, &head), (End::Tail, &tail)] {
             let [left, right] = end.servos();
@@ -291,7 +290,7 @@ impl Lizard {
     ///
     /// # Errors
     /// Fails as [`Lizard::solve`] does.
-    pub fn margins(&self, pose: &Pose) -> Result<Margins, Infeasible> {
+    pub fn margins(&self, pose: &Pose) -> Result<Margins, InfeasiblePose> {
         self.solve(pose).map(|solution| solution.margins)
     }
 
@@ -301,10 +300,10 @@ impl Lizard {
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] does.
-    pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], Infeasible> {
+    pub fn point_angles(&self, end: End, point: Vector) -> Result<[f64; 2], InfeasiblePose> {
         let mechanism = Mechanism::End(end);
         let solutions = self.end(end).inverse(point);
-        let [solution, ..] = solutions.map_err(|fault| Infeasible { mechanism, fault })?;
+        let [solution, ..] = solutions.map_err(|fault| InfeasiblePose { mechanism, fault })?;
         let angles = [solution.theta_left, solution.theta_right];
         let [left, right] = angles.map(|theta| end.mirror_angle(theta));
         Ok(match end {

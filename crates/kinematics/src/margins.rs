@@ -1,4 +1,4 @@
-//! The names of the conditions of a safe pose, and the margins among them.
+//! The names of a safe pose's conditions, and the margins among these conditions.
 
 use core::fmt;
 

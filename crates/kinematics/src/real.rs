@@ -1,14 +1,13 @@
-//! The numbers of the closed forms: one f64, or several at once.
+//! The number types of the closed forms: a single f64, or several in parallel.
 //!
-//! The closed forms are written once, for any [`Real`]. A single pose uses f64; a batch of
-//! five-bars or sliders uses [`Lanes`], whose operations the compiler can vectorise. Every
-//! lane has exactly the bits that the computation with a single f64 gives.
+//! The closed forms are written once, for any [`Real`]. A single pose uses f64; a batch of five-bars or sliders uses
+//! [`Lanes`], whose operations the compiler can vectorise. Each lane is bit-identical to the result with a single f64.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::angle::sin_cos_all;
 
-/// A number, or a vector of several, for which the closed forms can be computed.
+/// A number, or a vector of numbers, for which the closed forms can be computed.
 pub trait Real:
     Copy
     + Add<Output = Self>
@@ -44,7 +43,7 @@ impl Real for f64 {
     }
 }
 
-/// Several numbers, one per lane; every operation acts on each lane.
+/// A vector of numbers, one per lane; every operation acts lane by lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lanes<const N: usize>(pub [f64; N]);
 

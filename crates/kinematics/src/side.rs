@@ -1,9 +1,8 @@
 //! The two sides of the robot, each with a slider between a front and a rear arm.
 //!
-//! An arm is fixed to its crank at a right angle, away from the robot's middle line. So the
-//! arm's direction is that of the crank, turned by +90 or -90 degrees, and the right side is
-//! the mirror image of the left one. The paper prints theta16 = theta4 + 90 and
-//! theta13 = theta8 - 90, which would make the right arms point across the chassis.
+//! An arm is fixed to its crank at a right angle, away from the robot's middle line. The arm's direction is therefore
+//! the crank's, turned by +90 or -90 degrees, and the right side is the mirror image of the left one. The paper prints
+//! theta16 = theta4 + 90 and theta13 = theta8 - 90, which would make the right arms point across the chassis.
 
 use core::fmt;
 
@@ -39,8 +38,8 @@ impl Side {
         }
     }
 
-    /// The sign of the side: 1 on the left, -1 on the right. The angle from the front crank to its
-    /// arm is +90 degrees times this sign, that from the rear crank to its arm -90 degrees times it.
+    /// The sign of the side: 1 on the left, -1 on the right. The angle from a crank to its arm is
+    /// this sign times +90 degrees at the front and times -90 degrees at the rear.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Left => 1.0,
@@ -98,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn with_the_cranks_parallel_to_the_middle_line_every_arm_points_away_from_it() {
+    fn every_arm_points_outward_when_its_crank_is_parallel_to_the_middle_line() {
         let (forward_crank, backward_crank) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
         for side in Side::ALL {
             let outward_arm = Vector::new(-side.sign(), 0.0);

@@ -37,8 +37,8 @@ impl FiveBar {
     /// robot is built; at most ten.
     ///
     /// Poses with coinciding crank tips are isolated points and are not included: see
-    /// [`FiveBar::poses_with_coinciding_tips`].
-    pub fn singular_poses_with(
+    /// [`FiveBar::find_coinciding_tip_poses`].
+    pub fn find_singular_poses(
         &self,
         theta_left: f64,
     ) -> impl Iterator<Item = SingularPose> + use<> {
@@ -84,7 +84,7 @@ impl FiveBar {
 
     /// The poses in which both crank tips coincide, so that the end point is free on a circle;
     /// none if the couplers differ in length.
-    pub fn poses_with_coinciding_tips(&self) -> impl Iterator<Item = SingularPose> + use<> {
+    pub fn find_coinciding_tip_poses(&self) -> impl Iterator<Item = SingularPose> + use<> {
         let (left, right) = (self.left_shaft(), self.right_shaft());
         let has_equal_couplers = self.left_coupler_length == self.right_coupler_length;
         circle_intersections(left, self.left_crank_length, right, self.right_crank_length)
@@ -107,7 +107,7 @@ impl FiveBar {
     /// the same circles also give singular poses of the other mode. A type-2 candidate whose loop
     /// does not close counts, too: only rounding keeps it from closing.
     fn is_singular(&self, pose: &SingularPose) -> bool {
-        match self.forward_in(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
+        match self.forward_in_mode(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
             Ok(closed_pose) => pose.kind.margin(&closed_pose).abs() < 1e-6,
         }
@@ -147,7 +147,7 @@ mod tests {
     use crate::reference::PAPER_HEAD;
 
     /// The margin that vanishes at singularities of a kind, at two crank angles; `None` if the loop does not close.
-    fn margin_of(five_bar: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
+    fn margin_at(five_bar: &FiveBar, kind: Singularity, left: f64, right: f64) -> Option<f64> {
         let pose = five_bar.forward(left, right).ok()?;
         Some(kind.margin(&pose))
     }
@@ -158,13 +158,13 @@ mod tests {
         let mut sign_change_count = 0;
         for five_bar in [PAPER_HEAD, unequal_five_bar] {
             for left in (-175..180).step_by(10).map(f64::from) {
-                let singular_poses: Vec<_> = five_bar.singular_poses_with(left).collect();
+                let singular_poses: Vec<_> = five_bar.find_singular_poses(left).collect();
                 for kind in [Singularity::LeftArm, Singularity::RightArm] {
                     for step in 0..3600 {
                         let (a, b) = (f64::from(step) / 10.0 + 0.03, f64::from(step) / 10.0 + 0.13);
                         let (Some(value_a), Some(value_b)) = (
-                            margin_of(&five_bar, kind, left, a),
-                            margin_of(&five_bar, kind, left, b),
+                            margin_at(&five_bar, kind, left, a),
+                            margin_at(&five_bar, kind, left, b),
                         ) else {
                             continue;
                         };
@@ -178,12 +178,18 @@ mod tests {
                         let is_near = singular_poses.iter().any(|pose| {
                             pose.kind == kind && wrap(pose.theta_right - (a + b) / 2.0).abs() < 0.2
                         });
-                        assert!(is_near, "{kind:?} at {left} {a}: {singular_poses:?}");
+                        assert!(
+                            is_near,
+                            "{kind:?} at crank angles {left} and {a} is missing from {singular_poses:?}"
+                        );
                     }
                 }
             }
         }
-        assert!(sign_change_count > 100, "{sign_change_count}");
+        assert!(
+            sign_change_count > 100,
+            "only {sign_change_count} sign changes"
+        );
     }
 
     #[test]
@@ -192,23 +198,23 @@ mod tests {
         let mut kind_counts = [0; 3];
         for five_bar in [PAPER_HEAD, five_bar_with_short_couplers] {
             for left in -180..180 {
-                for pose in five_bar.singular_poses_with(f64::from(left)) {
+                for pose in five_bar.find_singular_poses(f64::from(left)) {
                     kind_counts[pose.kind as usize] += 1;
                     if let Some(value) =
-                        margin_of(&five_bar, pose.kind, pose.theta_left, pose.theta_right)
+                        margin_at(&five_bar, pose.kind, pose.theta_left, pose.theta_right)
                     {
-                        assert!(value.abs() < 1e-6, "{pose:?} {value}");
+                        assert!(value.abs() < 1e-6, "{pose:?} has the margin {value}");
                     }
                 }
             }
         }
         assert!(
             kind_counts.iter().all(|count| *count > 100),
-            "{kind_counts:?}"
+            "counts by kind: {kind_counts:?}"
         );
         assert!(
             (0..360).all(|left| PAPER_HEAD
-                .singular_poses_with(f64::from(left))
+                .find_singular_poses(f64::from(left))
                 .all(|pose| pose.kind != Singularity::Couplers)),
             "the paper's couplers never line up: the crank tips are at most 80 mm apart, less than 100 mm"
         );
@@ -216,7 +222,7 @@ mod tests {
 
     #[test]
     fn the_papers_crank_tips_coincide_in_two_poses() {
-        let poses: Vec<_> = PAPER_HEAD.poses_with_coinciding_tips().collect();
+        let poses: Vec<_> = PAPER_HEAD.find_coinciding_tip_poses().collect();
         assert_eq!(poses.len(), 2);
         for pose in poses {
             assert!((pose.theta_left.abs() - 70.52878).abs() < 1e-5);
@@ -252,7 +258,7 @@ mod tests {
                 let (left, right) = (i / CELLS_PER_SIDE, i % CELLS_PER_SIDE);
                 assert_eq!(
                     grid[i], grid[start],
-                    "crossed and uncrossed cranks are connected at {left} {right}"
+                    "crossed and uncrossed cranks are connected at cell {left}, {right}"
                 );
                 match grid[i] {
                     Some(true) => uncrossed_count += 1,
@@ -275,7 +281,7 @@ mod tests {
         }
         assert!(
             crossed_count > 100 && uncrossed_count > 100,
-            "{crossed_count} {uncrossed_count}"
+            "{crossed_count} crossed and {uncrossed_count} uncrossed poses"
         );
     }
 }

@@ -12,8 +12,7 @@ use crate::fault::Fault;
 use crate::real::{Lanes, Real};
 use crate::vector::Vector;
 
-/// The dimensions of a side's loop. Its origin is the rear shaft, its axes are those of the
-/// chassis frame.
+/// The dimensions of a side's loop, in a frame with its origin on the rear shaft and the axes of the chassis frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slider {
     /// x of the front shaft relative to the rear one, mm: 0 if the bases of head and tail are equally
@@ -89,8 +88,7 @@ impl Slider {
         check_direction(pose.d, pose.s)
     }
 
-    /// True for each lane whose slider has a direction; [`Slider::close`] gives the reason why a
-    /// slider has none.
+    /// True for each lane whose slider has a direction; [`Slider::close`] returns the fault of a slider without one.
     #[inline(always)]
     pub fn closes<const N: usize>(&self, pose: &SliderPose<Lanes<N>>) -> [bool; N] {
         let (Lanes(d), Lanes(s)) = (pose.d, pose.s);

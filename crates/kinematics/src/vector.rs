@@ -5,7 +5,7 @@ use core::ops::{Add, Mul, Neg, Sub};
 use crate::angle::{atan2, sin_cos};
 use crate::real::Real;
 
-/// A point or a displacement in mm, or a direction of length one.
+/// A point or a displacement in mm, or a unit vector.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Vector<T = f64> {
     /// Component along the frame's x axis, to the robot's right.
@@ -15,7 +15,7 @@ pub struct Vector<T = f64> {
 }
 
 impl<T> Vector<T> {
-    /// Makes a vector from its two components.
+    /// Creates a vector from its two components.
     #[inline(always)]
     pub const fn new(x: T, y: T) -> Self {
         Self { x, y }
@@ -23,7 +23,7 @@ impl<T> Vector<T> {
 }
 
 impl Vector {
-    /// The direction (length one) at an angle in degrees.
+    /// The unit vector at an angle in degrees.
     #[inline]
     pub fn direction(degrees: f64) -> Self {
         let (sin, cos) = sin_cos(degrees);
@@ -68,13 +68,13 @@ impl<T: Real> Vector<T> {
         self.x * other.y - self.y * other.x
     }
 
-    /// The vector turned by +90 degrees; exact.
+    /// The vector rotated by +90 degrees; exact.
     #[inline(always)]
     pub fn rotated_left(self) -> Self {
         Self::new(-self.y, self.x)
     }
 
-    /// The vector turned by -90 degrees; exact.
+    /// The vector rotated by -90 degrees; exact.
     #[inline(always)]
     pub fn rotated_right(self) -> Self {
         Self::new(self.y, -self.x)

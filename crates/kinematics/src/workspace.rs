@@ -16,7 +16,7 @@ pub struct Circle {
 }
 
 /// The theoretical workspace of a five-bar with equal arms (l1 = l4, l2 = l3). The paper's
-/// equations of its four circles have y where y^2 belongs.
+/// equations of its four circles have y instead of y^2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Workspace {
     /// Half the base, mm.
@@ -28,8 +28,8 @@ pub struct Workspace {
 }
 
 impl Workspace {
-    /// The workspace of a symmetrical five-bar; the lengths of its left arm count for both arms.
-    pub fn of(five_bar: &FiveBar) -> Self {
+    /// Creates the workspace of a symmetrical five-bar. The lengths of the left arm are used for both arms.
+    pub fn for_five_bar(five_bar: &FiveBar) -> Self {
         Self {
             half_base: five_bar.base / 2.0,
             inner_radius: (five_bar.left_crank_length - five_bar.left_coupler_length).abs(),
@@ -46,7 +46,7 @@ impl Workspace {
         })
     }
 
-    /// The area, mm^2, of the parts on both sides of the base together.
+    /// The total area on both sides of the base, mm^2.
     pub fn area(&self) -> f64 {
         let distance = 2.0 * self.half_base;
         let (inner, outer) = (self.inner_radius, self.outer_radius);
@@ -56,16 +56,15 @@ impl Workspace {
             + lens_area(inner, inner, distance)
     }
 
-    /// The largest circle within the workspace; of two mirror images, the one ahead. `None` if the
+    /// The largest circle within the workspace; of two mirror images, the circle ahead. `None` if the
     /// two rings have no area in common.
     ///
-    /// The radius of a circle within a ring is at most half the ring's width. If the centre lines
-    /// of both rings intersect (l0/2 is at most the larger of l1 and l2), a circle centred on the
-    /// intersection has that radius and touches all four circles: this is the paper's solution.
-    /// With a wider base only the outer circles limit the inscribed circle: its centre is the
-    /// middle of the base, and the paper's y is not real. If crank and coupler are equally long, a
-    /// ring has no inner circle. At the ring's centre, a shaft, the arm is then folded and
-    /// singular, so the shaft stays outside the inscribed circle, too.
+    /// The radius of a circle within a ring is at most half the ring's width. If the centre lines of both rings
+    /// intersect (l0/2 is at most the larger of l1 and l2), a circle centred on the intersection has that radius and
+    /// touches all four circles: this is the paper's solution. With a wider base only the outer circles limit the
+    /// inscribed circle: its centre is the middle of the base, and the paper's y is not real. If crank and coupler are
+    /// equally long, the inner circles shrink to the shafts. An arm whose end point is at its own shaft is folded and
+    /// singular; the inscribed circle therefore excludes the shafts, too.
     pub fn inscribed_circle(&self) -> Option<Circle> {
         let middle_radius = (self.outer_radius + self.inner_radius) / 2.0;
         let height_squared = (middle_radius - self.half_base) * (middle_radius + self.half_base);
@@ -84,7 +83,7 @@ impl Workspace {
     }
 }
 
-/// The area common to two discs of radii `a` and `b` whose centres are at this distance.
+/// The common area of two discs with radii `a` and `b` and centres at this distance.
 fn lens_area(a: f64, b: f64, distance: f64) -> f64 {
     let min_radius = a.min(b);
     if distance >= a + b {
@@ -93,13 +92,11 @@ fn lens_area(a: f64, b: f64, distance: f64) -> f64 {
     if distance <= (a - b).abs() {
         return PI * min_radius * min_radius;
     }
-    let angle_of = |r: f64, other_radius: f64| {
+    let half_angle = |r: f64, other_radius: f64| {
         let cosine =
             (distance * distance + r * r - other_radius * other_radius) / (2.0 * distance * r);
         libm::acos(cosine.clamp(-1.0, 1.0))
     };
-    let segment_area_of = |half_angle: f64, r: f64| {
-        r * r * (half_angle - libm::sin(half_angle) * libm::cos(half_angle))
-    };
-    segment_area_of(angle_of(a, b), a) + segment_area_of(angle_of(b, a), b)
+    let segment_area = |angle: f64, r: f64| r * r * (angle - libm::sin(angle) * libm::cos(angle));
+    segment_area(half_angle(a, b), a) + segment_area(half_angle(b, a), b)
 }

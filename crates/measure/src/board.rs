@@ -1,9 +1,9 @@
-//! The height of the deck's card, which lies on top of the board.
+//! The height of the board's top, on which the deck's card lies.
 
 use lizard_parts::Assembly;
 use lizard_robot::Robot;
 
-/// The height of the board's top above the floor, computed from the robot's parts, mm.
+/// Computes the height of the board's top above the floor from the robot's parts, mm.
 pub fn board_height(robot: &Robot) -> f64 {
     let assembly = Assembly::new(robot);
     let board = assembly.body("board").into_iter();

@@ -12,30 +12,29 @@ const ROBOT_FILES: [(&str, &str); 4] = [
     ("unequal", include_str!("../../../robots/unequal.toml")),
 ];
 /// The results of the last run of `make physics`.
-const FIGURES_JSON: &str = include_str!("../../../tools/physics/figures.json");
+const RESULTS_JSON: &str = include_str!("../../../tools/physics/figures.json");
 /// The key of the results without play, without lag, and with feet of equal length.
 const RIGID_CASE: &str = "rigid, level";
 
-/// The results for a gait in a case.
+/// The results for one gait in one case.
 #[derive(Deserialize)]
 struct EngineMovements {
     /// Movement per cycle: mm forward, mm to the left, deg counter-clockwise.
     mujoco: [f64; 3],
 }
 
-/// The movement per cycle of a gait at full pace: mm forward, mm to the left, deg counter-clockwise. `None` if
-/// `robot_text`, apart from comments, is not the file of one of the project's own robots, or if there is no result for
-/// the gait.
-pub fn mujoco_movement(robot_text: &str, gait: &str) -> Option<[f64; 3]> {
+/// Finds the movement per cycle of a gait at full pace: mm forward, mm to the left, deg counter-clockwise. `None` if
+/// there is no result for the gait, or if `robot_toml` differs from the project's own robots in more than comments.
+pub fn find_mujoco_movement(robot_toml: &str, gait: &str) -> Option<[f64; 3]> {
     let (robot, _) = ROBOT_FILES.into_iter().find(|(_, file_text)| {
-        lines_without_comments(file_text).eq(lines_without_comments(robot_text))
+        lines_without_comments(file_text).eq(lines_without_comments(robot_toml))
     })?;
-    let figures: BTreeMap<&str, BTreeMap<&str, BTreeMap<&str, EngineMovements>>> =
-        serde_json::from_str(FIGURES_JSON).ok()?;
-    Some(figures.get(robot)?.get(gait)?.get(RIGID_CASE)?.mujoco)
+    let results: BTreeMap<&str, BTreeMap<&str, BTreeMap<&str, EngineMovements>>> =
+        serde_json::from_str(RESULTS_JSON).ok()?;
+    Some(results.get(robot)?.get(gait)?.get(RIGID_CASE)?.mujoco)
 }
 
-/// The lines of a text that are not comments.
+/// Returns the lines of a text that are not comments.
 fn lines_without_comments(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter(|line| !line.starts_with('#'))
 }

@@ -1,18 +1,18 @@
-//! The gaits of a film's walks, named by the user or recognised from their paths.
+//! The gaits of a video's walks, named by the user or recognised from their paths.
 
 use std::cell::OnceCell;
 use std::fmt::Write as _;
 
-use lizard_film::{Gait, GaitMatch, MeasuredGait, Trouble, shortest_rest};
 use lizard_robot::{CheckedGait, Robot};
+use lizard_video::{Gait, GaitMatch, MeasuredGait, VideoError, min_rest_duration};
 
-use crate::named_film::{NamedFilm, Walk};
+use crate::named_video::{NamedVideo, Walk};
 use crate::predicted_gait::predict_gait;
 
-/// Smallest speed of the gaits that are considered if the user names none, mm/s at a pace of 1.
+/// Smallest speed of a gait that is considered if the user names none, mm/s at the nominal pace.
 const MIN_SPEED: f64 = 3.0;
 
-/// A gait and the path that it is predicted to take.
+/// A gait and its predicted path.
 #[derive(Debug)]
 pub(crate) struct Candidate<'a> {
     pub gait: &'a CheckedGait,
@@ -33,7 +33,7 @@ impl<'a> Candidate<'a> {
     }
 }
 
-/// A walk in a film, and its measured gait.
+/// A walk in a video and its measured gait.
 #[derive(Debug)]
 pub struct MeasuredWalk<'f> {
     pub(crate) walk: Walk<'f>,
@@ -42,32 +42,32 @@ pub struct MeasuredWalk<'f> {
     pub(crate) measured_gait: MeasuredGait,
 }
 
-/// The gaits that a film may show.
+/// The gaits that a video may show.
 #[derive(Debug)]
 pub struct Gaits<'a> {
     robot: &'a Robot,
-    /// Pace as a multiple of each gait's own.
+    /// Pace as a multiple of each gait's nominal pace.
     pace: f64,
-    /// The gaits that the user names, in their order.
+    /// The gaits that the user names, in the user's order.
     named_candidates: Vec<Candidate<'a>>,
-    /// All gaits that are fast enough to be considered; computed at the first use.
+    /// All gaits that are fast enough to be considered; predicted on the first use.
     all_candidates: OnceCell<Vec<Candidate<'a>>>,
 }
 
 impl<'a> Gaits<'a> {
-    /// Prepares the gaits that the user names, in their order; the list is empty if the user names none. `pace` is a
-    /// multiple of each gait's own pace.
-    pub fn new(robot: &'a Robot, named_gaits: &[&'a CheckedGait], pace: f64) -> Self {
-        let candidate_of = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
+    /// Predicts the gaits that the user names, in the user's order. `named_gaits` is empty if the user names none.
+    /// `pace` is a multiple of each gait's nominal pace.
+    pub fn predict(robot: &'a Robot, named_gaits: &[&'a CheckedGait], pace: f64) -> Self {
+        let to_candidate = |gait: &&'a CheckedGait| Candidate::new(robot, gait, pace);
         Self {
             robot,
             pace,
-            named_candidates: named_gaits.iter().map(candidate_of).collect(),
+            named_candidates: named_gaits.iter().map(to_candidate).collect(),
             all_candidates: OnceCell::new(),
         }
     }
 
-    /// The gaits that a walk can have: those that the user names, or all if the user names none.
+    /// Returns the gaits that a walk can have: the named gaits, or all gaits if the user names none.
     pub(crate) fn candidates(&self) -> &[Candidate<'a>] {
         match self.named_candidates.is_empty() {
             true => self.all_candidates(),
@@ -75,37 +75,35 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// All gaits of robot.toml that are fast enough to be considered, predicted on the first call.
+    /// Returns all gaits in robot.toml that are fast enough to be considered; predicts them on the first call.
     fn all_candidates(&self) -> &[Candidate<'a>] {
         self.all_candidates.get_or_init(|| {
             let moving_gaits = self.robot.gaits().iter().filter(|gait| gait.has_movement());
             let candidates = moving_gaits.map(|gait| Candidate::new(self.robot, gait, self.pace));
-            // A gait that hardly moves the robot would make the shortest rest between two walks too long.
+            // A gait that hardly moves the robot would make the minimum duration of a rest too long.
             let is_fast =
                 |candidate: &Candidate| candidate.predicted_gait.speed() > MIN_SPEED * self.pace;
             candidates.filter(is_fast).collect()
         })
     }
 
-    /// Finds the walks of films, and measures the gait of each walk.
+    /// Finds the walks in videos, and measures the gait of each walk.
     ///
     /// # Errors
-    /// Fails with a message for the user if several gaits are named and their number is not that of the walks, if a
-    /// walk does not clearly match a gait, or if a walk does not fit its gait.
+    /// Fails with a message for the user if the number of named gaits is larger than one and differs from the number of
+    /// walks, or if a walk does not clearly match a gait, or does not match its named gait.
     pub fn measure_walks<'f>(
         &self,
-        films: &'f [NamedFilm],
+        videos: &'f [NamedVideo],
     ) -> Result<Vec<MeasuredWalk<'f>>, String> {
-        let predicted_gaits: Vec<Gait> = self
-            .candidates()
+        let min_rest = min_rest_duration(&predicted_gaits(self.candidates()));
+        let walks: Vec<Walk> = videos
             .iter()
-            .map(|candidate| candidate.predicted_gait.clone())
+            .flat_map(|video| video.find_walks(min_rest))
             .collect();
-        let min_rest = shortest_rest(&predicted_gaits);
-        let walks: Vec<Walk> = films.iter().flat_map(|film| film.walks(min_rest)).collect();
         let name_count = self.named_candidates.len();
         if name_count > 1 && name_count != walks.len() {
-            return Err(self.count_mismatch_message(&walks, min_rest));
+            return Err(self.format_count_mismatch(&walks, min_rest));
         }
         let measured_walks = walks.into_iter().enumerate().map(|(i, walk)| {
             let candidate_index = match name_count {
@@ -115,16 +113,12 @@ impl<'a> Gaits<'a> {
             };
             let candidate = &self.candidates()[candidate_index];
             let measured_gait = walk
-                .film
+                .video
                 .analysis
                 .measure(&candidate.predicted_gait, Some(walk.interval));
-            let measured_gait = measured_gait.map_err(|trouble| {
-                format!(
-                    "{}, {}: {}",
-                    walk.label(),
-                    candidate.name(),
-                    self.mismatch_message(walk, candidate, trouble)
-                )
+            let measured_gait = measured_gait.map_err(|error| {
+                let message = self.format_mismatch(walk, candidate, error);
+                format!("{}, {}: {message}", walk.format_label(), candidate.name())
             })?;
             Ok(MeasuredWalk {
                 walk,
@@ -135,25 +129,25 @@ impl<'a> Gaits<'a> {
         measured_walks.collect()
     }
 
-    /// Measures one of the named gaits, given by its index, between two times of a film, s, or in the whole film.
+    /// Measures one of the named gaits, given by its index, between two times in a video, s, or in the whole video.
     ///
     /// # Errors
-    /// Fails with a message for the user if no gait has this index, or if the film does not show the gait in that time.
+    /// Fails with a message for the user if no gait has this index, or if the video does not show the gait.
     pub fn measure_walk<'f>(
         &self,
         candidate_index: usize,
-        film: &'f NamedFilm,
+        video: &'f NamedVideo,
         interval: Option<[f64; 2]>,
     ) -> Result<MeasuredWalk<'f>, String> {
         let candidate = self.named_candidates.get(candidate_index);
-        let candidate = candidate.ok_or_else(|| Trouble::NoGait.to_string())?;
+        let candidate = candidate.ok_or_else(|| VideoError::NoGait.to_string())?;
         let walk = Walk {
-            film,
-            interval: interval.or_else(|| film.time_range()).unwrap_or_default(),
+            video,
+            interval: interval.or_else(|| video.time_range()).unwrap_or_default(),
         };
-        let measured_gait = film.analysis.measure(&candidate.predicted_gait, interval);
+        let measured_gait = video.analysis.measure(&candidate.predicted_gait, interval);
         let measured_gait =
-            measured_gait.map_err(|trouble| self.mismatch_message(walk, candidate, trouble))?;
+            measured_gait.map_err(|error| self.format_mismatch(walk, candidate, error))?;
         Ok(MeasuredWalk {
             walk,
             candidate_index,
@@ -163,38 +157,34 @@ impl<'a> Gaits<'a> {
 
     /// Recognises the gait of a walk and returns its index; fails with a message if the walk matches no gait, or two.
     fn recognise_gait(&self, walk: Walk) -> Result<usize, String> {
-        let name_of = |index: usize| self.all_candidates()[index].name();
+        let name_at = |index: usize| self.all_candidates()[index].name();
         let (reason, needs_names) = match self.match_gait(walk) {
             GaitMatch::Unique(index) => return Ok(index),
             GaitMatch::Ambiguous { best, second_best } => (
                 format!(
-                    "the path is most like {}, and nearly as much like {}",
-                    name_of(best),
-                    name_of(second_best)
+                    "the path resembles {} and, nearly as much, {}",
+                    name_at(best),
+                    name_at(second_best)
                 ),
                 true,
             ),
-            GaitMatch::NoMatch(Trouble::GaitMismatch { .. }) => (
-                "the path is like no gait of robot.toml at this pace".to_owned(),
+            GaitMatch::NoMatch(VideoError::GaitMismatch { .. }) => (
+                "the path resembles no gait in robot.toml at this pace".to_owned(),
                 true,
             ),
-            GaitMatch::NoMatch(trouble) => (trouble.to_string(), false),
+            GaitMatch::NoMatch(error) => (error.to_string(), false),
         };
-        let hint = match needs_names {
+        let advice = match needs_names {
             true => "; name the gait of each walk",
             false => "",
         };
-        Err(format!("{}: {reason}{hint}", walk.label()))
+        Err(format!("{}: {reason}{advice}", walk.format_label()))
     }
 
-    /// Finds which gait of robot.toml a walk shows.
+    /// Finds the gait in robot.toml that a walk shows.
     fn match_gait(&self, walk: Walk) -> GaitMatch {
-        let predicted_gaits: Vec<Gait> = self
-            .all_candidates()
-            .iter()
-            .map(|candidate| candidate.predicted_gait.clone())
-            .collect();
-        walk.film
+        let predicted_gaits = predicted_gaits(self.all_candidates());
+        walk.video
             .analysis
             .match_gait(&predicted_gaits, walk.interval)
     }
@@ -207,24 +197,25 @@ impl<'a> Gaits<'a> {
         }
     }
 
-    /// The message for a walk that does not fit its gait, with the gait that it matches instead.
-    fn mismatch_message(&self, walk: Walk, candidate: &Candidate, trouble: Trouble) -> String {
-        let matching_name = match trouble {
-            Trouble::GaitMismatch { .. } | Trouble::WrongPace { .. } => {
+    /// Formats the message for a walk that does not match its gait, with the gait that it resembles instead.
+    fn format_mismatch(&self, walk: Walk, candidate: &Candidate, error: VideoError) -> String {
+        let matching_name = match error {
+            VideoError::GaitMismatch { .. } | VideoError::WrongPace { .. } => {
                 self.find_matching_gait(walk)
             }
             _ => None,
         };
         let matching_name = matching_name.filter(|name| *name != candidate.name());
-        let match_text = matching_name.map_or(String::new(), |name| format!("; it is like {name}"));
-        format!("{trouble}{match_text}")
+        let match_text =
+            matching_name.map_or(String::new(), |name| format!("; it resembles {name}"));
+        format!("{error}{match_text}")
     }
 
-    /// The message for films whose number of walks differs from the number of names.
-    fn count_mismatch_message(&self, walks: &[Walk], min_rest: f64) -> String {
+    /// Formats the message for videos whose number of walks differs from the number of named gaits.
+    fn format_count_mismatch(&self, walks: &[Walk], min_rest: f64) -> String {
         let names: Vec<&str> = self.named_candidates.iter().map(Candidate::name).collect();
         let mut text = format!(
-            "{} walks between rests of {min_rest:.1} s or more, and --gait names {}: {}",
+            "found {} walks between rests of at least {min_rest:.1} s, but --gait names {}: {}",
             walks.len(),
             names.len(),
             names.join(", ")
@@ -236,8 +227,8 @@ impl<'a> Gaits<'a> {
             let [from, to] = walk.interval;
             let _ = write!(
                 text,
-                "\n  {}, {:.1} s long: like {}",
-                walk.label(),
+                "\n  {}, {:.1} s long: resembles {}",
+                walk.format_label(),
                 to - from,
                 matching_name.unwrap_or("no gait clearly")
             );
@@ -253,8 +244,15 @@ impl<'a> Gaits<'a> {
             }
         }
         if are_all_matched && !unmatched_names.is_empty() {
-            let _ = write!(text, "\nno walk is like {}", unmatched_names.join(", "));
+            let _ = write!(text, "\nno walk resembles {}", unmatched_names.join(", "));
         }
         text
     }
+}
+
+fn predicted_gaits(candidates: &[Candidate]) -> Vec<Gait> {
+    let gaits = candidates
+        .iter()
+        .map(|candidate| candidate.predicted_gait.clone());
+    gaits.collect()
 }

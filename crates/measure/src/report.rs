@@ -1,73 +1,82 @@
-//! The measured movements of gaits beside the predicted ones, for people and for scripts.
+//! The measured movements of gaits compared with the predicted movements, as text and as JSON.
 
 use std::fmt::Write as _;
 
-use lizard_film::{CyclePoint, MeasuredGait, Setup};
 use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED_NOTE};
+use lizard_video::{CyclePoint, MeasuredGait, Setup};
 use serde::Serialize;
 
 use crate::component::{COMPONENT_NAMES, Component};
-use crate::engine::mujoco_movement;
+use crate::engine::find_mujoco_movement;
 use crate::gaits::{Candidate, Gaits, MeasuredWalk};
-use crate::named_film::NamedFilm;
+use crate::named_video::NamedVideo;
 use crate::range::PredictionRange;
 
-/// Largest difference from the prediction within a cycle, in standard errors, that counts as agreement. It is larger
-/// than for a single value, since it applies to the largest of 72 differences. If all of them are random, the largest
-/// exceeds it in one of 30 films.
-const MAX_AGREEING_ERRORS_OF_ALL: f64 = 3.5;
+/// Largest deviation of a path from its prediction that counts as agreement, standard errors. The limit is larger than
+/// for a single value, because it applies to the largest of 72 deviations. If all deviations are random, the largest
+/// one exceeds the limit in one video out of 30.
+const MAX_AGREEING_DEVIATION: f64 = 3.5;
 
-/// The result of a measurement. `lizard measure --json` prints its fields by their names.
+/// The result of a measurement. `lizard measure --json` prints its fields.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
-    films: Vec<FilmLine<'a>>,
+    videos: Vec<VideoReport<'a>>,
     /// The gaits, in the order of their first walks.
     pub gaits: Vec<GaitReport<'a>>,
 }
 
-/// A film and its camera.
+/// A video and its camera.
 #[derive(Debug, Serialize)]
-struct FilmLine<'a> {
-    film: &'a str,
-    /// Number of pictures in which the robot's place is known.
-    pictures: usize,
-    camera: CameraLine,
+struct VideoReport<'a> {
+    #[serde(rename = "video")]
+    name: &'a str,
+    /// Number of frames in which the robot's place is known.
+    #[serde(rename = "pictures")]
+    frame_count: usize,
+    camera: CameraReport,
 }
 
-/// The result of a gait.
+/// The measured result for one gait.
 #[derive(Debug, Serialize)]
 pub struct GaitReport<'a> {
     /// Name of the gait.
-    pub gait: &'a str,
-    /// Pace, percent of the gait's own.
-    speed: u8,
-    walks: Vec<WalkLine<'a>>,
+    #[serde(rename = "gait")]
+    pub name: &'a str,
+    /// Pace, percent of the gait's nominal pace.
+    #[serde(rename = "speed")]
+    pace_percent: u8,
+    walks: Vec<WalkReport<'a>>,
     /// Number of complete cycles.
-    pub cycles: usize,
+    #[serde(rename = "cycles")]
+    pub cycle_count: usize,
     /// Mean duration of a cycle, s.
     period: f64,
     /// Standard error of the mean duration, s.
     period_error: f64,
-    /// Duration of a cycle by robot.toml, s.
-    period_expected: f64,
-    /// Distance forward in a cycle, mm, in the robot's frame at the start of the cycle.
+    /// Duration of a cycle according to robot.toml, s.
+    #[serde(rename = "period_expected")]
+    expected_period: f64,
+    /// Distance forward in a cycle, mm, along the robot's heading at the start of the cycle.
     pub forward: Component,
     /// Distance to the left in a cycle, mm.
     pub left: Component,
     /// Turn in a cycle, deg, counter-clockwise positive.
     pub turn: Component,
-    /// The movement of each cycle.
-    each: Vec<CycleMovement>,
-    /// The mean path within a cycle, beside the predicted one.
-    pub within: Vec<PhasePoint>,
-    /// The largest deviation of that path from the predicted one; null if no component of the movement is predicted.
-    farthest: Option<LargestDeviation>,
+    /// The movement in each cycle.
+    #[serde(rename = "each")]
+    cycle_movements: Vec<CycleMovement>,
+    /// The mean path within a cycle, with the predicted path.
+    #[serde(rename = "within")]
+    pub mean_path: Vec<PhasePoint>,
+    /// The mean path's largest deviation from the predicted path; null if no component of the movement is predicted.
+    #[serde(rename = "farthest")]
+    largest_deviation: Option<LargestDeviation>,
     /// Movement per cycle according to MuJoCo with ideal servos: mm forward, mm to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
-    /// Range of the prediction if one assumption is wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    range: Option<PredictionRange>,
+    /// Range of the prediction while one assumption at a time is changed.
+    #[serde(rename = "range", skip_serializing_if = "Option::is_none")]
+    prediction_range: Option<PredictionRange>,
     /// The predicted path of a cycle, at equal time steps.
     #[serde(skip)]
     pub predicted_path: &'a [Place],
@@ -75,15 +84,17 @@ pub struct GaitReport<'a> {
 
 /// A walk between two rests.
 #[derive(Debug, Serialize)]
-struct WalkLine<'a> {
-    film: &'a str,
-    /// Start of the walk in the film, s; includes a part of the rest before it.
-    from: f64,
-    /// End of the walk in the film, s; includes a part of the rest after it.
-    to: f64,
-    /// The gait of robot.toml that the path clearly matches, if it is not the walk's own.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    like: Option<&'a str>,
+struct WalkReport<'a> {
+    video: &'a str,
+    /// Start in the video, s, including a part of the previous rest.
+    #[serde(rename = "from")]
+    start_s: f64,
+    /// End in the video, s, including a part of the next rest.
+    #[serde(rename = "to")]
+    end_s: f64,
+    /// Another gait in robot.toml that the path clearly matches, if any.
+    #[serde(rename = "like", skip_serializing_if = "Option::is_none")]
+    matching_gait: Option<&'a str>,
 }
 
 /// A point of the path within a cycle.
@@ -105,16 +116,18 @@ struct LargestDeviation {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
     /// The component of the movement, one of [`COMPONENT_NAMES`].
-    part: &'static str,
+    #[serde(rename = "part")]
+    component: &'static str,
     /// Measured minus predicted, mm or deg.
     difference: f64,
     /// Measured minus predicted, in standard errors.
-    differs: f64,
-    /// True if `differs` is at most [`MAX_AGREEING_ERRORS_OF_ALL`].
+    #[serde(rename = "differs")]
+    standardised_difference: f64,
+    /// True if the standardised difference is at most [`MAX_AGREEING_DEVIATION`].
     agrees: bool,
 }
 
-/// The movement in a cycle: mm, mm, deg.
+/// The movement in one cycle: mm, mm, deg.
 #[derive(Debug, Serialize)]
 struct CycleMovement {
     forward: f64,
@@ -122,90 +135,67 @@ struct CycleMovement {
     turn: f64,
 }
 
-/// The camera of a film, as the tags show it.
+/// The camera of a video, estimated from the tags.
 #[derive(Debug, Serialize)]
-struct CameraLine {
+struct CameraReport {
     /// Height above the floor, mm.
     height: f64,
     /// Tilt from straight down, deg.
     tilt: f64,
     /// Focal length, px.
-    focal: f64,
+    #[serde(rename = "focal")]
+    focal_length: f64,
     /// Root-mean-square error of a floor tag's corner, px.
-    corners: f64,
-    /// True if the camera moved during the film.
-    moved: bool,
-    /// Height of the deck's tag above the floor as given, mm.
-    deck: f64,
-    /// Height of the deck's tag above the floor according to its size in the picture, mm.
-    deck_by_size: f64,
-}
-
-impl<'a> WalkLine<'a> {
-    fn new(
-        gaits: &Gaits<'a>,
-        measured_walk: &MeasuredWalk<'a>,
-        differs_from_prediction: bool,
-    ) -> Self {
-        let [from, to] = measured_walk.walk.interval;
-        let name = gaits.candidates()[measured_walk.candidate_index].name();
-        // Another gait matters only if the walk differs from its prediction.
-        let matching_name = if differs_from_prediction {
-            gaits.find_matching_gait(measured_walk.walk)
-        } else {
-            None
-        };
-        Self {
-            film: &measured_walk.walk.film.name,
-            from,
-            to,
-            like: matching_name.filter(|matching_name| *matching_name != name),
-        }
-    }
+    #[serde(rename = "corners")]
+    corner_error: f64,
+    /// True if the camera moved during the video.
+    #[serde(rename = "moved")]
+    has_moved: bool,
+    /// Height of the deck tag above the floor as entered by the user, mm.
+    #[serde(rename = "deck")]
+    deck_tag_height: f64,
+    /// Height of the deck tag above the floor, computed from its size in the frames, mm.
+    #[serde(rename = "deck_by_size")]
+    estimated_deck_tag_height: f64,
 }
 
 impl LargestDeviation {
-    /// Finds the largest deviation, in standard errors, among the components of the movement that are predicted.
+    /// Finds the largest deviation, in standard errors, among the predicted components of the movement.
     fn find(points: &[CyclePoint], predicted: [Option<f64>; 3]) -> Option<Self> {
         let deviations = points.iter().flat_map(|point| {
-            let differs = point.standardised_differences();
-            (0..3).map(move |axis| (point, axis, differs[axis]))
+            let differences = point.standardised_differences();
+            (0..3).map(move |axis| (point, axis, differences[axis]))
         });
         let predicted_deviations = deviations.filter(|(_, axis, _)| predicted[*axis].is_some());
-        let (point, axis, differs) =
+        let (point, axis, standardised_difference) =
             predicted_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
-            part: COMPONENT_NAMES[axis],
+            component: COMPONENT_NAMES[axis],
             difference: point.measured[axis].value - point.predicted[axis],
-            differs,
-            agrees: differs.abs() <= MAX_AGREEING_ERRORS_OF_ALL,
+            standardised_difference,
+            agrees: standardised_difference.abs() <= MAX_AGREEING_DEVIATION,
         })
     }
 
-    fn line(&self, point_count: usize) -> String {
-        let Self {
-            phase,
-            part,
-            difference,
-            differs,
-            agrees,
-        } = self;
-        let verdict = if *agrees { "agrees" } else { "differs" };
-        let (name, unit) = part.split_once(", ").unwrap_or((part, ""));
+    fn format_line(&self, point_count: usize) -> String {
+        let verdict = if self.agrees { "agrees" } else { "differs" };
+        let (name, unit) = self.component.split_once(", ").unwrap_or_default();
         format!(
-            "path within a cycle {verdict}: of {point_count} phases farthest off at {phase:.2}, by {difference:+.2} {unit} {name}, \
-             {:.1} errors\n",
-            differs.abs()
+            "path within a cycle {verdict}: largest deviation in {point_count} phases {:+.2} {unit} {name} at \
+             phase {:.2}, {:.1} errors\n",
+            self.difference,
+            self.phase,
+            self.standardised_difference.abs()
         )
     }
 }
 
 impl<'a> GaitReport<'a> {
-    /// Reports the mean over all walks of a gait.
-    fn new(
+    /// Computes the mean over all walks of a gait.
+    fn compute(
         robot: &Robot,
-        speed: u8,
+        pace_percent: u8,
         gaits: &Gaits<'a>,
         candidate: &'a Candidate,
         walks: &[&MeasuredWalk<'a>],
@@ -225,7 +215,7 @@ impl<'a> GaitReport<'a> {
             forward,
             left,
             turn,
-        } = travel.map_or(prediction, |travel| prediction.known_components_of(travel));
+        } = travel.map_or(prediction, |travel| prediction.keep_decided(travel));
         let predicted_values = [forward, left, turn];
         let means = [
             measured_gait.forward,
@@ -237,76 +227,85 @@ impl<'a> GaitReport<'a> {
         let differs_from_prediction = [&forward, &left, &turn]
             .iter()
             .any(|component| component.agrees == Some(false));
-        let phase_point_of = |point: &CyclePoint| {
-            let part_of = |i: usize| {
+        let to_phase_point = |point: &CyclePoint| {
+            let [forward, left, turn] = [0, 1, 2].map(|i| {
                 let predicted_value = predicted_values[i].is_some().then_some(point.predicted[i]);
                 Component::new(point.measured[i], predicted_value)
-            };
+            });
             PhasePoint {
                 phase: point.phase,
-                forward: part_of(0),
-                left: part_of(1),
-                turn: part_of(2),
+                forward,
+                left,
+                turn,
             }
         };
-        let movement_of = |travel: &Travel| CycleMovement {
+        let to_walk_report = |measured_walk: &&MeasuredWalk<'a>| {
+            let walk = measured_walk.walk;
+            // Another gait matters only if the walk differs from its prediction.
+            let matching_gait = match differs_from_prediction {
+                true => gaits.find_matching_gait(walk),
+                false => None,
+            };
+            WalkReport {
+                video: &walk.video.name,
+                start_s: walk.interval[0],
+                end_s: walk.interval[1],
+                matching_gait: matching_gait.filter(|name| *name != candidate.name()),
+            }
+        };
+        let to_cycle_movement = |travel: &Travel| CycleMovement {
             forward: travel.forward,
             left: travel.left,
             turn: travel.turn,
         };
+        let cycle_path = &measured_gait.cycle_path;
         Self {
-            gait: candidate.name(),
-            speed,
-            walks: walks
-                .iter()
-                .map(|walk| WalkLine::new(gaits, walk, differs_from_prediction))
-                .collect(),
-            cycles: measured_gait.cycles.len(),
+            name: candidate.name(),
+            pace_percent,
+            walks: walks.iter().map(to_walk_report).collect(),
+            cycle_count: measured_gait.cycles.len(),
             period: measured_gait.period.value,
-            period_error: measured_gait.period.error,
-            period_expected: candidate.predicted_gait.period,
+            period_error: measured_gait.period.standard_error,
+            expected_period: candidate.predicted_gait.period,
             forward,
             left,
             turn,
-            each: measured_gait.cycles.iter().map(movement_of).collect(),
-            within: measured_gait
-                .cycle_path
-                .iter()
-                .map(phase_point_of)
-                .collect(),
-            farthest: LargestDeviation::find(&measured_gait.cycle_path, predicted_values),
+            cycle_movements: measured_gait.cycles.iter().map(to_cycle_movement).collect(),
+            mean_path: cycle_path.iter().map(to_phase_point).collect(),
+            largest_deviation: LargestDeviation::find(cycle_path, predicted_values),
             mujoco: None,
-            range: None,
+            prediction_range: None,
             predicted_path: &candidate.predicted_gait.path,
         }
     }
 
-    /// The components of the movement: forward, left and turn.
+    /// Returns the components of the movement: forward, left and turn.
     pub fn components(&self) -> [&Component; 3] {
         [&self.forward, &self.left, &self.turn]
     }
 
-    fn text(&self) -> String {
+    fn format_text(&self) -> String {
         let mut text = format!(
-            "\n{} at {} %: {} whole cycles of {:.3} s (by robot.toml {:.3} s)\n",
-            self.gait, self.speed, self.cycles, self.period, self.period_expected,
+            "\n{} at {} %: {} complete cycles of {:.3} s (robot.toml: {:.3} s)\n",
+            self.name, self.pace_percent, self.cycle_count, self.period, self.expected_period,
         );
-        for WalkLine {
-            film,
-            from,
-            to,
-            like,
+        for WalkReport {
+            video,
+            start_s,
+            end_s,
+            matching_gait,
         } in &self.walks
         {
-            let like_text = like.map_or(String::new(), |name| format!(", more like {name}"));
-            let _ = writeln!(text, "{film}, {from:.1} to {to:.1} s{like_text}");
+            let match_text =
+                matching_gait.map_or(String::new(), |name| format!(", resembles {name} more"));
+            let _ = writeln!(text, "{video}, {start_s:.1} to {end_s:.1} s{match_text}");
         }
-        text += "a cycle      measured      sd   error  predicted\n";
+        text += "per cycle    measured      sd   error  predicted\n";
         for (name, component) in COMPONENT_NAMES.iter().zip(self.components()) {
-            text += &component.line(name);
+            text += &component.format_line(name);
         }
-        if let Some(range) = &self.range {
-            text += &range.line();
+        if let Some(range) = &self.prediction_range {
+            text += &range.format_line();
         }
         if let Some([forward, left, turn]) = self.mujoco {
             let _ = writeln!(
@@ -314,20 +313,21 @@ impl<'a> GaitReport<'a> {
                 "MuJoCo with ideal servos: {forward:+.2} mm ahead, {left:+.2} mm left, {turn:+.2} deg"
             );
         }
-        if let Some(farthest) = &self.farthest {
-            text += &farthest.line(self.within.len());
+        if let Some(deviation) = &self.largest_deviation {
+            text += &deviation.format_line(self.mean_path.len());
         }
         text
     }
 }
 
 impl<'a> Report<'a> {
-    /// Reports walks in films; walks of the same gait count together. `speed` is the pace, percent of the gait's own.
-    pub fn new(
+    /// Reports the walks in videos, and combines walks of the same gait. `pace_percent` is relative to the nominal
+    /// pace.
+    pub fn compute(
         robot: &Robot,
-        speed: u8,
+        pace_percent: u8,
         setup: Setup,
-        films: &'a [NamedFilm],
+        videos: &'a [NamedVideo],
         gaits: &'a Gaits<'a>,
         walks: &[MeasuredWalk<'a>],
     ) -> Self {
@@ -336,42 +336,45 @@ impl<'a> Report<'a> {
             let candidate = &gaits.candidates()[walk.candidate_index];
             match walks_by_gait
                 .iter_mut()
-                .find(|(known, _)| known.name() == candidate.name())
+                .find(|(listed, _)| listed.name() == candidate.name())
             {
                 Some((_, walks)) => walks.push(walk),
                 None => walks_by_gait.push((candidate, vec![walk])),
             }
         }
-        let film_line_of = |film: &'a NamedFilm| {
-            let camera = &film.analysis.camera;
-            FilmLine {
-                film: &film.name,
-                pictures: film.analysis.path.len(),
-                camera: CameraLine {
+        let to_video_report = |video: &'a NamedVideo| {
+            let camera = &video.analysis.camera;
+            VideoReport {
+                name: &video.name,
+                frame_count: video.analysis.path.len(),
+                camera: CameraReport {
                     height: camera.height,
                     tilt: camera.tilt,
-                    focal: camera.focal_length,
-                    corners: camera.corner_error,
-                    moved: camera.has_camera_moved,
-                    deck: setup.deck_height,
-                    deck_by_size: camera.deck_height,
+                    focal_length: camera.focal_length,
+                    corner_error: camera.corner_error,
+                    has_moved: camera.has_camera_moved,
+                    deck_tag_height: setup.deck_height,
+                    estimated_deck_tag_height: camera.deck_height,
                 },
             }
         };
-        let gait_report_of = |(candidate, walks): &(&'a Candidate, Vec<&MeasuredWalk<'a>>)| {
-            GaitReport::new(robot, speed, gaits, candidate, walks)
+        let to_gait_report = |(candidate, walks): &(&'a Candidate, Vec<&MeasuredWalk<'a>>)| {
+            GaitReport::compute(robot, pace_percent, gaits, candidate, walks)
         };
         Self {
-            films: films.iter().map(film_line_of).collect(),
-            gaits: walks_by_gait.iter().map(gait_report_of).collect(),
+            videos: videos.iter().map(to_video_report).collect(),
+            gaits: walks_by_gait.iter().map(to_gait_report).collect(),
         }
     }
 
-    /// Adds the movements according to MuJoCo, which are known at full pace for the project's own robots. `text` is the
-    /// content of the robot's file.
-    pub fn with_mujoco(mut self, text: &str) -> Self {
-        for gait in self.gaits.iter_mut().filter(|gait| gait.speed == 100) {
-            gait.mujoco = mujoco_movement(text, gait.gait);
+    /// Adds the movements according to MuJoCo, which are known at full pace for the project's own robots.
+    pub fn with_mujoco(mut self, robot_toml: &str) -> Self {
+        for gait in self
+            .gaits
+            .iter_mut()
+            .filter(|gait| gait.pace_percent == 100)
+        {
+            gait.mujoco = find_mujoco_movement(robot_toml, gait.name);
         }
         self
     }
@@ -379,35 +382,35 @@ impl<'a> Report<'a> {
     /// Adds the ranges of the predictions, which takes a second for each gait.
     pub fn with_ranges(mut self, robot: &Robot) -> Self {
         for report in &mut self.gaits {
-            let gait = robot.gait(report.gait);
-            let pace = f64::from(report.speed) / 100.0;
-            report.range = gait.map(|gait| PredictionRange::compute(robot, gait, pace));
+            let gait = robot.gait(report.name);
+            let pace = f64::from(report.pace_percent) / 100.0;
+            report.prediction_range = gait.map(|gait| PredictionRange::compute(robot, gait, pace));
         }
         self
     }
 
-    /// The report as tables, for people.
-    pub fn text(&self) -> String {
+    /// Formats the report as tables.
+    pub fn format_text(&self) -> String {
         let mut text = String::new();
-        for film in &self.films {
-            let camera = &film.camera;
-            let movement_text = if camera.moved { ", moving" } else { "" };
+        for video in &self.videos {
+            let camera = &video.camera;
+            let movement_text = if camera.has_moved { ", moving" } else { "" };
             let _ = writeln!(
                 text,
-                "{}: {} pictures\n\
-                 camera {:.0} mm above the floor{movement_text}, {:.0} deg from straight down; corners to {:.2} px\n\
-                 deck's tag {:.0} mm above the floor, by its size {:.0} mm",
-                film.film,
-                film.pictures,
+                "{}: {} frames\n\
+                 camera {:.0} mm above the floor{movement_text}, {:.0} deg from straight down; corner error {:.2} px\n\
+                 deck tag {:.0} mm above the floor, {:.0} mm according to its size",
+                video.name,
+                video.frame_count,
                 camera.height,
                 camera.tilt,
-                camera.corners,
-                camera.deck,
-                camera.deck_by_size,
+                camera.corner_error,
+                camera.deck_tag_height,
+                camera.estimated_deck_tag_height,
             );
         }
         for gait in &self.gaits {
-            text += &gait.text();
+            text += &gait.format_text();
         }
         let mut components = self.gaits.iter().flat_map(GaitReport::components);
         if components.any(|component| component.predicted.is_none()) {

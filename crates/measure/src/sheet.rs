@@ -1,8 +1,8 @@
-//! The sheet of tags as a PDF page: pieces, tags, ruler and instructions.
+//! Draws the sheet of tags as a PDF page: pieces, tags, ruler and instructions.
 
-use lizard_film::sheet::{
+use lizard_video::sheet::{
     CARD_MARGIN, CARD_SIZE, DECK_TAG_EDGE, DECK_TAG_ID, FORWARD_WORD, Point, RULER_LENGTH,
-    SQUARES_PER_SIDE, STRIP_COUNT, STRIP_SIZE, TAGS_PER_STRIP, is_white, middle_on_strip, tag_edge,
+    SQUARES_PER_SIDE, STRIP_COUNT, STRIP_SIZE, TAGS_PER_STRIP, centre_on_strip, is_white, tag_edge,
 };
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
@@ -24,14 +24,14 @@ const CUT_GREY: f32 = 0.6;
 /// Instructions for printing, cutting and placing the sheet, printed beside the card.
 const INSTRUCTIONS: [&str; 9] = [
     "1. Print at 100 % (\"actual size\"). Measure the line between the tags of a strip: if it is not 100 mm",
-    "    long, tell lizard measure its length with --ruler.",
+    "    long, give its length to lizard measure with --ruler.",
     "2. Cut along the thin lines, and leave each strip in one piece: the distance between its tags matters.",
     "3. Tape the strips flat on the floor, one on either side of the robot's path, 30 to 40 cm apart and",
-    "    roughly parallel to it. Their exact places do not matter.",
-    "4. Glue the card to stiff cardboard, and this to the board, the middle of the tag above the middle",
-    "    of the robot, the arrow toward the head. Measure the height of the tag above the floor for --height.",
-    "5. Film from above with a camera that stands still and sees all five tags the whole time. Begin",
-    "    before the robot starts: five to ten cycles of one gait.",
+    "    roughly parallel to the path. Their exact positions do not matter.",
+    "4. Glue the card to stiff cardboard, and the cardboard to the board: the tag's centre above the robot's",
+    "    centre, the arrow toward the head. Measure the tag's height above the floor for --height.",
+    "5. Record from above with a camera that stands still and sees all five tags the whole time. Start before",
+    "    the robot moves, and record five to ten cycles of one gait.",
 ];
 
 /// A paper size, in landscape.
@@ -45,22 +45,22 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// Width and height, mm.
-    fn paper_size(self) -> Point {
+    /// Returns the width and the height, mm.
+    fn size(self) -> Point {
         match self {
             Self::A4 => [297.0, 210.0],
             Self::Letter => [279.4, 215.9],
         }
     }
 
-    /// The sheet of tags as the bytes of a PDF file.
-    pub fn tag_sheet_pdf(self) -> Vec<u8> {
+    /// Draws the sheet of tags; returns the bytes of a PDF file.
+    pub fn draw_tag_sheet(self) -> Vec<u8> {
         let [catalog, pages, page, font, content, info] = [1, 2, 3, 4, 5, 6].map(Ref::new);
-        let size_in_points = self.paper_size().map(to_points);
+        let size_in_points = self.size().map(to_points);
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
-        // Print dialogs may scale a page to fit the paper; this asks them not to.
+        // Asks print dialogs not to scale the page to the paper.
         root.viewer_preferences()
             .pair(Name(b"PrintScaling"), Name(b"None"));
         root.finish();
@@ -86,7 +86,7 @@ fn to_points(mm: f64) -> f32 {
 /// Draws the whole page.
 fn draw_page(paper: Paper) -> Content {
     let mut content = Content::new();
-    let [width, height] = paper.paper_size();
+    let [width, height] = paper.size();
     let left = (width - STRIP_SIZE[0]) / 2.0;
     let used_height = STRIP_COUNT as f64 * STRIP_SIZE[1] + CARD_SIZE[1];
     let mut top = f64::midpoint(height, used_height);
@@ -109,24 +109,24 @@ fn draw_page(paper: Paper) -> Content {
 /// Draws a strip with its lower left corner at a point.
 fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], STRIP_SIZE);
-    let middle = [x + STRIP_SIZE[0] / 2.0, y + STRIP_SIZE[1] / 2.0];
+    let centre = [x + STRIP_SIZE[0] / 2.0, y + STRIP_SIZE[1] / 2.0];
     for id in strip * TAGS_PER_STRIP..(strip + 1) * TAGS_PER_STRIP {
-        let [u, v] = middle_on_strip(id);
-        draw_tag(content, id, [middle[0] + u, middle[1] + v]);
+        let [u, v] = centre_on_strip(id);
+        draw_tag(content, id, [centre[0] + u, centre[1] + v]);
     }
-    let ruler_start = middle[0] - RULER_LENGTH / 2.0;
+    let ruler_start = centre[0] - RULER_LENGTH / 2.0;
     fill_rectangle(
         content,
-        [ruler_start, middle[1] - RULER_THICKNESS_MM / 2.0],
+        [ruler_start, centre[1] - RULER_THICKNESS_MM / 2.0],
         [RULER_LENGTH, RULER_THICKNESS_MM],
     );
     for i in 0..=10 {
-        // The outer edges of the first and the last mark are the ends of the ruler.
+        // The ruler ends at the outer edges of the first and the last mark.
         let mark_x = ruler_start + f64::from(i) * (RULER_LENGTH - RULER_THICKNESS_MM) / 10.0;
         let mark_length = if i % 10 == 0 { 8.0 } else { 3.0 };
         fill_rectangle(
             content,
-            [mark_x, middle[1] - mark_length / 2.0],
+            [mark_x, centre[1] - mark_length / 2.0],
             [RULER_THICKNESS_MM, mark_length],
         );
     }
@@ -134,32 +134,32 @@ fn draw_strip(content: &mut Content, strip: usize, [x, y]: Point) {
         "strip {} of {STRIP_COUNT}: flat on the floor, beside the robot's path",
         strip + 1
     );
-    write_text(content, &text, [ruler_start, middle[1] + 8.0]);
+    write_text(content, &text, [ruler_start, centre[1] + 8.0]);
     let text = "from end to end: 100 mm";
-    write_text(content, text, [ruler_start, middle[1] - 10.0]);
+    write_text(content, text, [ruler_start, centre[1] - 10.0]);
 }
 
 /// Draws the deck's card with its lower left corner at a point.
 fn draw_card(content: &mut Content, [x, y]: Point) {
     draw_cut_rectangle(content, [x, y], CARD_SIZE);
-    let middle_x = x + CARD_SIZE[0] / 2.0;
+    let centre_x = x + CARD_SIZE[0] / 2.0;
     draw_tag(
         content,
         DECK_TAG_ID,
-        [middle_x, y + CARD_MARGIN + DECK_TAG_EDGE / 2.0],
+        [centre_x, y + CARD_MARGIN + DECK_TAG_EDGE / 2.0],
     );
-    // The arrow begins beyond the white margin of the tag.
+    // The arrow starts above the tag's white margin.
     let arrow_base = y + CARD_MARGIN + DECK_TAG_EDGE + CARD_MARGIN;
     let arrow_tip = y + CARD_SIZE[1] - 1.0;
-    content.move_to(to_points(middle_x - 4.0), to_points(arrow_base + 1.0));
-    content.line_to(to_points(middle_x + 4.0), to_points(arrow_base + 1.0));
-    content.line_to(to_points(middle_x), to_points(arrow_tip));
+    content.move_to(to_points(centre_x - 4.0), to_points(arrow_base + 1.0));
+    content.line_to(to_points(centre_x + 4.0), to_points(arrow_base + 1.0));
+    content.line_to(to_points(centre_x), to_points(arrow_tip));
     content.close_path().fill_nonzero();
-    write_text(content, FORWARD_WORD, [middle_x + 6.0, arrow_base + 2.0]);
+    write_text(content, FORWARD_WORD, [centre_x + 6.0, arrow_base + 2.0]);
 }
 
-/// Draws a tag around its middle: one black square with white squares on it. If the black squares were drawn one by
-/// one, printers and viewers might leave a seam where two of them touch.
+/// Draws a tag around its centre: one black square with white squares on it. If each black square were drawn
+/// separately, printers and viewers might leave a seam between adjacent squares.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
     let square_edge = tag_edge(id) / SQUARES_PER_SIDE as f64;
     let half_edge = tag_edge(id) / 2.0;

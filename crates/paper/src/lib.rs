@@ -3,7 +3,7 @@
 //! Many of the paper's equations are wrong as printed, and its design does not have the conditioning that the paper
 //! claims. [`errata`] evaluates every printed equation and its correction at random poses, and compares them with the
 //! geometric solution. [`design`] repeats the dimensional synthesis, and searches for better proportions. [`mobility`]
-//! counts the degrees of freedom of the body and of the legs, and measures them by the rank of the constraints.
+//! counts the degrees of freedom of the body and of the legs, and measures them with the rank of the constraints.
 //!
 //! The crate reads no files, stores nothing and prints nothing. [`errata`] and [`design`] use all cores.
 //!

@@ -4,19 +4,19 @@
 //! pose does not need this assumption. Every moving link has three columns in the Jacobian: vx and vy of its point at
 //! the origin, and omega. Every joint has two rows. The degrees of freedom are the number of columns minus the rank.
 //!
-//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. So the rank
-//! is computed again with the driven cranks locked, which adds a row for each crank. A link that can still move is
+//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. Therefore the
+//! rank is computed again with the driven cranks locked, which adds a row for each crank. A link that can still move is
 //! loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
-/// Singular values below this share of the largest singular value count as zero. With this share, a singular pose is
-/// still found if its angles are typed with seven digits.
+/// Fraction of the largest singular value below which a singular value counts as zero. A singular pose is still found
+/// if its angles are typed with seven digits.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Largest speed of a link that counts as standing still, as a share of the fastest link's speed.
+/// Largest speed of a link that counts as standing still, relative to the fastest link's speed.
 const MAX_STILL_SPEED: f64 = 1e-3;
 
 /// The unit of length, mm, which makes lengths comparable with angles in radians.
@@ -30,7 +30,7 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
     driven_links: Vec<usize>,
-    /// Groups of links, each with the message if one of its links moves while the driven links are locked.
+    /// Groups of links, each with a message for the case that one of its links moves while the driven links are locked.
     parts: &'static [(&'static [usize], &'static str)],
 }
 
@@ -79,16 +79,17 @@ pub struct Mobility {
 /// Measures the degrees of freedom of the body and of each leg at a pose.
 pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
     let leg_names = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
-    let body = body_mechanism(lizard, solution);
-    let legs = (0..4).map(|i| leg_mechanism(lizard, solution, i, leg_names[i]));
+    let body = build_body(lizard, solution);
+    let legs = (0..4).map(|i| build_leg(lizard, solution, i, leg_names[i]));
     std::iter::once(body)
         .chain(legs)
         .map(|mechanism| Mobility::compute(&mechanism))
         .collect()
 }
 
-/// The body with its 13 links: chassis, four cranks (with their side arms), four couplers and four slider halves.
-fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
+/// Builds the body with its 13 links: chassis, four cranks (with their side arms), four couplers and four slider
+/// halves.
+fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
     const CRANK_LINKS: [usize; 4] = [1, 2, 3, 4];
     let tips = solution.crank_tips();
     let shafts = lizard.shafts();
@@ -135,14 +136,9 @@ fn body_mechanism(lizard: &Lizard, solution: &Solution) -> Mechanism {
     }
 }
 
-/// A leg's four-bar in the leg's frame: ground 0, crank 1, coupler 2, follower 3. The spring to the body imposes no
-/// rigid constraint, so the spring is not a link.
-fn leg_mechanism(
-    lizard: &Lizard,
-    solution: &Solution,
-    servo: usize,
-    name: &'static str,
-) -> Mechanism {
+/// Builds a leg's four-bar in the leg's frame: ground 0, crank 1, coupler 2, follower 3. The spring to the body imposes
+/// no rigid constraint, so the spring is not a link.
+fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize, name: &'static str) -> Mechanism {
     let crank = solution.legs[servo].direction * lizard.leg.crank;
     let ground_vector = Vector::new(lizard.leg.ground, 0.0);
     let points = [
@@ -167,31 +163,31 @@ fn leg_mechanism(
     }
 }
 
-/// The body's degrees of freedom at a pose, by rank.
-pub fn body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    count_freedoms(&body_mechanism(lizard, solution))
+/// Counts the body's degrees of freedom at a pose from the rank of the constraints.
+pub fn count_body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    count_freedoms(&build_body(lizard, solution))
 }
 
-/// The front left leg's degrees of freedom at a pose, by rank.
-pub fn leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
-    count_freedoms(&leg_mechanism(lizard, solution, 0, "leg"))
+/// Counts the left front leg's degrees of freedom at a pose from the rank of the constraints.
+pub fn count_leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+    count_freedoms(&build_leg(lizard, solution, 0, "leg"))
 }
 
-/// A mechanism's degrees of freedom with unlocked servos, by rank.
+/// Counts a mechanism's degrees of freedom with unlocked servos from the rank of the constraints.
 fn count_freedoms(mechanism: &Mechanism) -> usize {
-    let free_jacobian = constraint_jacobian(mechanism, &[]);
-    free_jacobian.ncols() - rank_of(&free_jacobian.singular_values())
+    let free_jacobian = build_constraint_jacobian(mechanism, &[]);
+    free_jacobian.ncols() - compute_rank(&free_jacobian.singular_values())
 }
 
 impl Mobility {
     /// Counts and measures one mechanism.
     fn compute(mechanism: &Mechanism) -> Self {
         let joints = mechanism.joints.len();
-        let free_jacobian = constraint_jacobian(mechanism, &[]);
+        let free_jacobian = build_constraint_jacobian(mechanism, &[]);
         let (constraints, velocities) = free_jacobian.shape();
-        let rank = rank_of(&free_jacobian.singular_values());
+        let rank = compute_rank(&free_jacobian.singular_values());
         let locked_svd = SVD::new(
-            constraint_jacobian(mechanism, &mechanism.driven_links),
+            build_constraint_jacobian(mechanism, &mechanism.driven_links),
             false,
             true,
         );
@@ -224,15 +220,15 @@ impl Mobility {
             velocities,
             rank,
             freedoms: velocities - rank,
-            locked_freedoms: velocities - rank_of(singular_values),
+            locked_freedoms: velocities - compute_rank(singular_values),
             loose: loose_parts,
             conditioning: singular_values.min() / singular_values.max(),
         }
     }
 }
 
-/// The number of singular values that are not zero.
-fn rank_of(singular_values: &DVector<f64>) -> usize {
+/// Counts the singular values that are not zero.
+fn compute_rank(singular_values: &DVector<f64>) -> usize {
     let zero_limit = RANK_TOLERANCE * singular_values.max();
     singular_values
         .iter()
@@ -240,9 +236,9 @@ fn rank_of(singular_values: &DVector<f64>) -> usize {
         .count()
 }
 
-/// The constraints on the velocities of the moving links: two rows for each joint, and one row for each link that is
-/// locked against turning.
-fn constraint_jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
+/// Builds the constraints on the velocities of the moving links: two rows for each joint, and one row for each link
+/// that is locked against turning.
+fn build_constraint_jacobian(mechanism: &Mechanism, locked_links: &[usize]) -> DMatrix<f64> {
     let joint_count = mechanism.joints.len();
     let velocity_count = 3 * (mechanism.link_count - 1);
     let mut rows = DMatrix::<f64>::zeros(2 * joint_count + locked_links.len(), velocity_count);

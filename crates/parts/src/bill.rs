@@ -1,4 +1,4 @@
-//! The bill of a robot: parts to print, things to buy, mass and mass centre.
+//! A robot's bill of materials: parts to print, items to buy, mass and centre of mass.
 
 mod loose;
 
@@ -12,27 +12,27 @@ use serde::Serialize;
 use crate::bodies::assembly::Assembly;
 use crate::bodies::pads::NOTCH_DEPTH;
 use crate::decimals;
-use crate::hold::SpringEffect;
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::fitting::{BATTERY_EXAMPLES, Example, Fitting};
 use crate::layers::outline::Outline;
-use crate::part::{Part, volume};
+use crate::part::{Part, compute_volume};
 use crate::price::Price;
+use crate::spring_effect::SpringEffect;
 use loose::{INPUT_ITEMS, LOOSE_ITEMS, RADIO_ITEMS, Row};
 
-/// Density of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three perimeters and a third of infill. The sum over all
-/// parts is within 10 % of PrusaSlicer's estimate.
+/// Density of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three perimeters and one third infill. The total mass is
+/// within 10 % of PrusaSlicer's estimate.
 const PRINTED_DENSITY: f64 = 1.0e-3;
-/// Density of a pad, which is nearly all wall, g/mm^3: TPU of 1.21 g/cm^3.
+/// Density of a pad, g/mm^3: TPU of 1.21 g/cm^3, since a pad is nearly all wall.
 const PAD_DENSITY: f64 = 1.15e-3;
-/// Hours of printing for each piece, whatever its mass, in layers of 0.2 mm on an Ender 3. With the hours for
-/// each gram, the sum over all parts is within 10 % of PrusaSlicer's estimate.
+/// Hours of printing for each piece of any mass, in layers of 0.2 mm on an Ender 3. Together with the hours for each
+/// gram, the total is within 10 % of PrusaSlicer's estimate.
 const HOURS_PER_PIECE: f64 = 0.02;
 /// Hours of printing for each gram of a piece.
 const HOURS_PER_GRAM: f64 = 0.095;
 /// Mass of a servo, g.
 const SERVO_GRAMS: f64 = 9.5;
-/// Mass of a servo's horn, g.
+/// Mass of a horn, g.
 const HORN_GRAMS: f64 = 0.8;
 /// Mass of an Arduino UNO, g.
 const BOARD_GRAMS: f64 = 25.0;
@@ -53,20 +53,21 @@ const HORN_SCREW_GRAMS: f64 = 0.1;
 /// Mass of a screw that holds a servo's flange, g.
 const SERVO_SCREW_GRAMS: f64 = 0.2;
 
-/// A line of the bill.
+/// A row of the bill of materials.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Item {
-    /// The number of pieces.
+    /// Number of pieces.
     pub count: usize,
-    /// The name, with the measures needed to buy it.
-    pub what: String,
+    /// Name, with the dimensions needed to buy the item.
+    #[serde(rename = "what")]
+    pub name: String,
     /// Mass of one piece, g.
     #[serde(serialize_with = "decimals::one::<10, _>")]
     pub grams: f64,
     /// Price class of the row; `None` for printed parts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<Price>,
-    /// Hours to print one piece; `None` for bought things.
+    /// Hours to print one piece; `None` for bought items.
     #[serde(
         serialize_with = "decimals::optional::<100, _>",
         skip_serializing_if = "Option::is_none"
@@ -86,7 +87,7 @@ impl Item {
             hours: Some(HOURS_PER_PIECE + HOURS_PER_GRAM * grams),
             price: None,
             count: part.count(),
-            what: part.name.clone(),
+            name: part.name.clone(),
             grams,
         }
     }
@@ -94,7 +95,7 @@ impl Item {
     fn bought(count: usize, name: String, grams: f64, price: Price) -> Self {
         Self {
             count,
-            what: name,
+            name,
             grams,
             price: Some(price),
             hours: None,
@@ -106,42 +107,44 @@ impl Item {
         self.count as f64 * self.grams
     }
 
-    /// A row for a thing that is not modelled as a body of the robot.
+    /// A row for an item that is not modelled as a body of the robot.
     fn loose((count, name, grams, price): Row) -> Self {
         Self::bought(count, name.to_owned(), grams, price)
     }
 }
 
-/// The bill of a robot.
+/// The bill of materials of a robot.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Bill {
     /// Parts to print.
     pub printed: Vec<Item>,
-    /// Parts that may be printed in place of others: the struts of the kind that the robot does not have.
-    pub instead: Vec<Item>,
-    /// Things to buy.
+    /// Parts that may replace others: the struts of the kind that the robot does not have.
+    #[serde(rename = "instead")]
+    pub alternatives: Vec<Item>,
+    /// Items to buy.
     pub bought: Vec<Item>,
-    /// Things to buy for driving without a cable.
+    /// Items to buy for driving without a cable.
     pub radio: Vec<Item>,
-    /// Things to buy for the inputs and the strips on pads that robot.toml has; optional.
+    /// Items to buy for the inputs and the pads' strips in robot.toml; optional.
     pub inputs: Vec<Item>,
-    /// Sum of the price classes of all things to buy except options: lower and upper bound, euros.
+    /// Sum of the price classes of all items to buy except options: lower and upper bound, euros.
     pub euros: [u32; 2],
-    /// The robot's mass, g.
+    /// Mass of the robot, g.
     #[serde(serialize_with = "decimals::one::<1, _>")]
     pub grams: f64,
-    /// The mass centre at the pose of the bill: ahead of, left of and above the plate's middle, mm.
-    #[serde(serialize_with = "decimals::each::<10, _>")]
-    pub centre: [f64; 3],
-    /// The effect of the springs on the legs; `None` for rigid struts.
-    pub hold: Option<SpringEffect>,
+    /// Centre of mass at the bill's pose: forward, left and up from the plate's middle, mm.
+    #[serde(rename = "centre", serialize_with = "decimals::each::<10, _>")]
+    pub centre_of_mass: [f64; 3],
+    /// Effect of the springs on the legs; `None` for rigid struts.
+    #[serde(rename = "hold")]
+    pub spring_effect: Option<SpringEffect>,
     /// Size of the space for the battery: to the right, forward, up, mm.
     #[serde(skip)]
     battery_space: [f64; 3],
 }
 
 /// Returns the text of the bill's row for a bought body, and the body's mass, g. The text is empty for a body that is
-/// printed or is sold as a part of another one.
+/// printed or sold as a part of another body.
 fn row_text_and_grams(
     body: &Body,
     assembly: &Assembly,
@@ -150,7 +153,10 @@ fn row_text_and_grams(
     let parts = assembly.robot().parts();
     let diameter = parts.screw.diameter;
     match body.kind {
-        Kind::Printed => (String::new(), PRINTED_DENSITY * volume(&body.prisms)),
+        Kind::Printed => (
+            String::new(),
+            PRINTED_DENSITY * compute_volume(&body.prisms),
+        ),
         Kind::Servo => (
             "servo SG-90 with its horn and screws".to_owned(),
             SERVO_GRAMS,
@@ -166,13 +172,13 @@ fn row_text_and_grams(
         }
         Kind::ServoScrew => (String::new(), SERVO_SCREW_GRAMS),
         Kind::HornScrew(length) => {
-            let size = format!("1.7 to 2 mm thick, {length} mm long and no longer");
+            let size = format!("1.7 to 2 mm thick, exactly {length} mm long");
             let text = format!("self-tapping screw, {size}, for the horns");
             (text, HORN_SCREW_GRAMS)
         }
         Kind::Lead => (String::new(), 0.0),
-        Kind::Fitting(fitting) => (fitting.shopping_list_row(), fitting.facts().grams),
-        Kind::Pad => (String::new(), PAD_DENSITY * volume(&body.prisms)),
+        Kind::Fitting(fitting) => (fitting.format_bill_row(), fitting.facts().grams),
+        Kind::Pad => (String::new(), PAD_DENSITY * compute_volume(&body.prisms)),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
             let text = format!("standoff M{diameter}, {length} mm, thread in both ends");
@@ -187,7 +193,10 @@ fn row_text_and_grams(
             let coil_text =
                 format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull_text = spring_effect.map_or(String::new(), |effect| {
-                format!(", {:.1} N at {:.1} mm", effect.force, effect.installed)
+                format!(
+                    ", {:.1} N at {:.1} mm",
+                    effect.preload_force, effect.installed_length
+                )
             });
             (
                 format!("tension spring, {coil_text}{pull_text}"),
@@ -203,8 +212,8 @@ fn row_text_and_grams(
     }
 }
 
-/// The price class of the row of a bought body.
-fn price_of(kind: Kind) -> Price {
+/// The price class of a bought body's row.
+fn price_class(kind: Kind) -> Price {
     match kind {
         Kind::Fitting(fitting) => fitting.price(),
         Kind::Servo | Kind::Board | Kind::Battery => Price::D,
@@ -213,7 +222,7 @@ fn price_of(kind: Kind) -> Price {
     }
 }
 
-/// Mass of the spring of a strut, g.
+/// Mass of a strut's spring, g.
 pub(crate) fn spring_grams(coil: &Coil) -> f64 {
     STEEL_DENSITY * coil_volume(coil)
 }
@@ -223,7 +232,7 @@ pub(crate) fn body_grams(body: &Body, assembly: &Assembly) -> f64 {
     row_text_and_grams(body, assembly, None).1
 }
 
-/// Volume of a spring's wire, mm^3: that of its active coils, and of three more for the hooks.
+/// Volume of a spring's wire, mm^3: the active coils, and three more for the hooks.
 fn coil_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
     (coil.active_coil_count() + 3.0)
@@ -235,9 +244,9 @@ fn coil_volume(coil: &Coil) -> f64 {
         / 4.0
 }
 
-/// The row for strips with a grain; `None` for plain pads.
+/// The row for pads' strips with a grain; `None` for plain pads.
 fn strip_item(parts: &Parts) -> Option<Item> {
-    /// Mass of a strip, g for each mm of its width: climbing skin of 1.2 kg/m^2, 30 mm long.
+    /// Mass of a 30 mm long strip per mm of width, g: climbing skin of 1.2 kg/m^2.
     const STRIP_GRAMS_PER_MM: f64 = 0.036;
     let name = format!(
         "strip with a grain, {} x 30 mm, at most {NOTCH_DEPTH} mm thick: climbing skin of a ski (Pomoca Climb, Colltex; ~1.5 mm \
@@ -247,8 +256,8 @@ fn strip_item(parts: &Parts) -> Option<Item> {
     (parts.strip > 0.0).then(|| Item::bought(4, name, STRIP_GRAMS_PER_MM * parts.strip, Price::C))
 }
 
-/// The rows for the inputs of a robot and for the strips on its pads.
-fn input_items(robot: &Robot) -> Vec<Item> {
+/// Lists the rows for a robot's inputs and for the strips on its pads.
+fn list_input_items(robot: &Robot) -> Vec<Item> {
     let has_input = |name: &str| robot.inputs().named_pins().any(|(input, _)| input == name);
     let rows = INPUT_ITEMS.into_iter().filter(|(name, _)| has_input(name));
     let rows = rows.map(|(_, row)| Item::loose(row));
@@ -256,9 +265,9 @@ fn input_items(robot: &Robot) -> Vec<Item> {
 }
 
 impl Bill {
-    /// The bill of a robot; its mass centre is that at `pose`.
-    pub fn of(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
-        let spring_effect = SpringEffect::of(assembly);
+    /// Computes the bill of materials of a robot, with its centre of mass at `pose`.
+    pub fn compute(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
+        let spring_effect = SpringEffect::compute(assembly);
         let mut bought_rows: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
@@ -266,17 +275,17 @@ impl Bill {
             if !text.is_empty() {
                 bought_rows
                     .entry(text)
-                    .or_insert((0, body_mass, price_of(body.kind)))
+                    .or_insert((0, body_mass, price_class(body.kind)))
                     .0 += 1;
             }
-            let [x, y, z] = centroid(&body.prisms);
-            let position = assembly.place(body.mount, pose).map(Vector::new(x, y));
+            let [x, y, z] = compute_centroid(&body.prisms);
+            let position = assembly.placement(body.mount, pose).map(Vector::new(x, y));
             grams += body_mass;
             for (sum, coordinate) in moment.iter_mut().zip([position.y, -position.x, z]) {
                 *sum += body_mass * coordinate;
             }
         }
-        let items_of = |is_alternative: bool| -> Vec<Item> {
+        let list_items = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
             let listed_parts = parts.filter(|part| part.instead_of.is_some() == is_alternative);
             listed_parts.map(Item::printed).collect()
@@ -288,24 +297,24 @@ impl Bill {
         grams += loose_items.iter().map(Item::total_grams).sum::<f64>();
         let bought: Vec<_> = bought.chain(loose_items).collect();
         Self {
-            printed: items_of(false),
-            instead: items_of(true),
+            printed: list_items(false),
+            alternatives: list_items(true),
             euros: Price::sum(bought.iter().filter_map(|item| item.price)),
             bought,
             radio: RADIO_ITEMS.map(Item::loose).into(),
-            inputs: input_items(assembly.robot()),
+            inputs: list_input_items(assembly.robot()),
             grams,
-            centre: moment.map(|sum| sum / grams),
-            hold: spring_effect,
+            centre_of_mass: moment.map(|sum| sum / grams),
+            spring_effect,
             battery_space: assembly.robot().parts().battery,
         }
     }
 
-    /// The text that explains the price classes and states their sum.
-    pub fn price_text(&self) -> String {
-        let [from, to] = self.euros;
-        let meaning = Price::explanation();
-        format!("{meaning} The sum of all rows, tools included, is {from} to {to} euros.")
+    /// Explains the price classes and states their sum.
+    pub fn format_prices(&self) -> String {
+        let [min, max] = self.euros;
+        let explanation = Price::explanation();
+        format!("{explanation} The sum of all rows, tools included, is {min} to {max} euros.")
     }
 
     /// Hours to print all parts.
@@ -316,19 +325,19 @@ impl Bill {
             .sum()
     }
 
-    /// The number of bought pieces whose name begins with `name_start`.
-    pub fn bought_count(&self, name_start: &str) -> usize {
+    /// Counts the bought pieces whose name begins with `prefix`.
+    pub fn count_bought(&self, prefix: &str) -> usize {
         let bought = self.bought.iter();
-        let matching_items = bought.filter(|item| item.what.starts_with(name_start));
+        let matching_items = bought.filter(|item| item.name.starts_with(prefix));
         matching_items.map(|item| item.count).sum()
     }
 }
 
-/// The centroid of a body in its own frame, mm.
-fn centroid(prisms: &[Prism]) -> [f64; 3] {
+/// Computes the centroid of a body in its own frame, mm.
+fn compute_centroid(prisms: &[Prism]) -> [f64; 3] {
     let (mut volume, mut sum) = (0.0, [0.0; 3]);
     for prism in prisms {
-        let outline = Outline::of(prism);
+        let outline = Outline::from_prism(prism);
         let height = prism.z[1] - prism.z[0];
         let (area, moment) = (outline.area(), outline.first_moment());
         volume += area * height;
@@ -344,7 +353,7 @@ impl fmt::Display for Bill {
         writeln!(f, "To print:\n")?;
         writeln!(f, "| pieces | part | g each | h each |\n|---|---|---|---|")?;
         for item in &self.printed {
-            let (count, name, grams) = (item.count, &item.what, item.grams);
+            let (count, name, grams) = (item.count, &item.name, item.grams);
             let hours = item.hours.unwrap_or_default();
             writeln!(f, "| {count} | {name} | {grams:.1} | {hours:.2} |")?;
         }
@@ -354,43 +363,48 @@ impl fmt::Display for Bill {
             self.printing_hours()
         )?;
         writeln!(f, "\n{PADS_TEXT}")?;
-        let (leg_text, kind) = match self.hold {
+        let (leg_text, kind) = match self.spring_effect {
             Some(_) => ("without springs", "rigid"),
             None => ("with springs", "strut"),
         };
-        for item in &self.instead {
-            let (count, name, grams) = (item.count, &item.what, item.grams);
+        for item in &self.alternatives {
+            let (count, name, grams) = (item.count, &item.name, item.grams);
             writeln!(
                 f,
-                "\nInstead of the struts, {count} x {name}, {grams:.1} g each, can be printed for legs {leg_text}; with \
-                 `kind = \"{kind}\"` under `[leg.drive]` in robot.toml this guide describes such legs."
+                "\nFor legs {leg_text}, print {count} x {name}, {grams:.1} g each, instead of the struts. With \
+                 `kind = \"{kind}\"` under `[leg.drive]` in robot.toml, this guide describes such legs."
             )?;
         }
-        writeln!(f, "\nTo buy:\n\n{}", buying_table(&self.bought))?;
-        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.price_text())?;
+        writeln!(f, "\nTo buy:\n\n{}", format_buying_table(&self.bought))?;
+        writeln!(f, "{}\n\n{SERVOS_TEXT}", self.format_prices())?;
         writeln!(
             f,
-            "\nOnly to drive it without a cable, by radio:\n\n{}",
-            buying_table(&self.radio)
+            "\nOptional, to drive the robot by radio:\n\n{}",
+            format_buying_table(&self.radio)
         )?;
         if !self.inputs.is_empty() {
-            let rows = buying_table(&self.inputs);
-            writeln!(f, "Only for the inputs and strips of robot.toml:\n\n{rows}")?;
+            let rows = format_buying_table(&self.inputs);
+            writeln!(
+                f,
+                "Optional, for the inputs and strips in robot.toml:\n\n{rows}"
+            )?;
         }
         writeln!(
             f,
-            "Where everything has its place, and what fits there:\n\n{}",
-            places_table(self.battery_space)
+            "Places on the robot, and products that fit there:\n\n{}",
+            format_places_table(self.battery_space)
         )?;
-        let (grams, position_text, height) = (self.grams, self.centre_in_words(), self.centre[2]);
         writeln!(
             f,
-            "\nIn all about {grams:.0} g; the mass centre is {position_text} the middle of the plate, {height:.1} mm above its top.\n"
+            "\nThe robot weighs about {:.0} g; its centre of mass is {}, {:.1} mm above the plate's top.\n",
+            self.grams,
+            self.describe_centre(),
+            self.centre_of_mass[2]
         )?;
-        let drive = match &self.hold {
+        let drive = match &self.spring_effect {
             Some(effect) => {
                 write!(f, "{effect}")?;
-                let (force, rate) = (effect.force, effect.rate);
+                let (force, rate) = (effect.preload_force, effect.spring_rate);
                 format!("kind = \"strut\"\nforce = {force:.2}\nrate = {rate:.3}")
             }
             None => {
@@ -398,7 +412,7 @@ impl fmt::Display for Bill {
                 "kind = \"rigid\"".to_owned()
             }
         };
-        let body = self.body_toml();
+        let body = self.format_body_toml();
         writeln!(
             f,
             "\nIn robot.toml:\n\n```toml\n[leg.drive]\n{drive}\n\n{body}```"
@@ -407,57 +421,55 @@ impl fmt::Display for Bill {
 }
 
 /// The guide's text about the pads.
-const PADS_TEXT: &str = "The pads are of TPU (95A), all four of one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. An edge \
-                    catches on sharp terraces: smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
+const PADS_TEXT: &str = "Print all four pads in TPU (95A) from one roll: the flat side on the bed, 100 % infill, layers of 0.1 mm. Floor \
+                    edges catch on sharp terraces, so smooth each dome with a thin film of flexible glue or silicone, and leave its hole open.";
 
 /// The guide's text about the servos.
-const SERVOS_TEXT: &str = "Take plain analog servos, all four of one make: by the model, digital ones lose 15 % of `walk`, and one with a light rotor more than half.";
+const SERVOS_TEXT: &str = "Use plain analog servos, all four of one make. According to the model, digital servos lose \
+                     15 % of `walk`'s distance, and servos with a light rotor more than half.";
 
-/// A Markdown table of things to buy.
-pub fn buying_table(items: &[Item]) -> String {
-    let mut text = "| pieces | what | price |\n|---|---|---|\n".to_owned();
+/// Formats items to buy as a Markdown table.
+pub fn format_buying_table(items: &[Item]) -> String {
+    let mut text = "| pieces | item | price |\n|---|---|---|\n".to_owned();
     for item in items {
         let price = item.price.map(|price| price.to_string());
-        let (count, name, price) = (item.count, &item.what, price.unwrap_or_default());
+        let (count, name, price) = (item.count, &item.name, price.unwrap_or_default());
         text += &format!("| {count} | {name} | {price} |\n");
     }
     text
 }
 
-/// A Markdown table of the battery and the fittings: place, space, fastening, and examples that fit.
-pub fn places_table(battery: [f64; 3]) -> String {
-    let size_text = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
-    let list_text = |examples: &mut dyn Iterator<Item = Example>| {
+/// Formats a Markdown table of the battery and the fittings: place, space, fastening, and examples that fit.
+pub fn format_places_table(battery: [f64; 3]) -> String {
+    let format_size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
+    let join_examples = |examples: &mut dyn Iterator<Item = Example>| {
         let names: Vec<_> = examples.map(|example| example.to_string()).collect();
         names.join("; ")
     };
     let mut text =
-        "| thing | place | room, mm | held by | for example, mm |\n|---|---|---|---|---|\n"
+        "| part | place | space, mm | fastening | examples, mm |\n|---|---|---|---|---|\n"
             .to_owned();
-    let is_small_enough =
-        |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
+    let fits = |example: &Example| (0..3).all(|axis| example.size[axis] <= battery[axis]);
     text += &format!(
         "| battery | on the plate, in the middle | {} | the battery strap | {} |\n",
-        size_text(battery),
-        list_text(&mut BATTERY_EXAMPLES.into_iter().filter(is_small_enough))
+        format_size(battery),
+        join_examples(&mut BATTERY_EXAMPLES.into_iter().filter(fits))
     );
     for fitting in Fitting::ALL {
         let facts = fitting.facts();
         let (name, place, fastening) = (facts.name, facts.place, facts.fastening);
-        let (room, examples) = (
-            size_text(facts.size),
-            list_text(&mut facts.examples.into_iter()),
-        );
-        text += &format!("| {name} | {place} | {room} | {fastening} | {examples} |\n");
+        let space = format_size(facts.size);
+        let examples = join_examples(&mut facts.examples.into_iter());
+        text += &format!("| {name} | {place} | {space} | {fastening} | {examples} |\n");
     }
     text + SIZES_TEXT
 }
 
-/// The text below the table of places: the sources of the sizes, and the sizes of everything else.
+/// The text below the table of places: the sources of the sizes, and the sizes of the other parts.
 const SIZES_TEXT: &str = "
-`~` marks a usual size in shops, for which no drawing was found. The other sizes are from data sheets or standards, with their tolerances.
+`~` marks a usual size in shops without a known drawing. The other sizes are from data sheets or standards, with tolerances.
 
-| everything else | size, mm, by a standard or as common products have it |
+| other parts | size, mm, according to standards or common products |
 |---|---|
 | screws | ISO 7380-1: head 5.7 x 1.65, 2 mm key; ISO 4017: head 5.5 x 2 (M3) |
 | lock nuts | DIN 985: 5.5 over flats, 4 high (M3) |
@@ -470,5 +482,5 @@ const SIZES_TEXT: &str = "
 
 /// The guide's text about rigid struts.
 const RIGID_TEXT: &str = "The struts are rigid: a foot follows its servo except for the play of pins and gears. A foot that is caught \
-                     can stall its servo, which gets hot and may burn out; a strut with a spring is no help there. Watch the robot while it \
-                     walks, and switch the servos' supply off when a foot is caught.";
+                     can stall its servo, which gets hot and may burn out; a strut with a spring does not prevent this. Watch the robot \
+                     while it walks, and switch the servos' supply off when a foot is caught.";

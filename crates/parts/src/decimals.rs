@@ -1,10 +1,10 @@
-//! Serializers that round numbers to their known decimals: `UNIT` is 10 for tenths, 1000 for thousandths.
+//! Serializers that round numbers to their significant decimals: `UNIT` is 10 for tenths, 1000 for thousandths.
 
 use serde::{Serialize, Serializer};
 
 type SerializeResult<S> = Result<<S as Serializer>::Ok, <S as Serializer>::Error>;
 
-/// Rounds a number, without a minus sign before 0.
+/// Rounds a number, and turns -0 into 0.
 fn round_to_unit<const UNIT: u32>(value: f64) -> f64 {
     let unit = f64::from(UNIT);
     (unit * value).round() / unit + 0.0
@@ -15,7 +15,7 @@ pub(crate) fn one<const UNIT: u32, S: Serializer>(value: &f64, out: S) -> Serial
     round_to_unit::<UNIT>(*value).serialize(out)
 }
 
-/// Serializes a rounded number that may be missing.
+/// Serializes an optional rounded number.
 pub(crate) fn optional<const UNIT: u32, S: Serializer>(
     value: &Option<f64>,
     out: S,

@@ -1,8 +1,8 @@
-//! The solid model of the robot: bodies built of layers, and their placement at a pose, generated from robot.toml.
+//! The solid model of the robot, generated from robot.toml: bodies built of layers, and their placements at a pose.
 //!
 //! The mechanism is planar and all its joint axes are vertical, so a part is a stack of layers, each a flat shape
-//! between two heights, and one table has the heights of all layers ([`Stack`]). A pose rotates and translates each
-//! body in the plane; nothing moves up or down.
+//! between two heights. One table has the heights of all layers ([`Stack`]). A pose rotates and translates each body in
+//! the plane; no body moves up or down.
 //!
 //! # Example
 //! ```
@@ -10,70 +10,67 @@
 //! let assembly = lizard_parts::Assembly::new(&robot);
 //! let pose = robot.lizard().solve(&robot.neutral_pose()).expect("the linkages close at neutral");
 //! for body in assembly.bodies() {
-//!     let place = assembly.place(body.mount, &pose);
+//!     let placement = assembly.placement(body.mount, &pose);
 //!     for prism in &body.prisms {
-//!         let _shapes: Vec<_> = prism.filled_shapes.iter().map(|shape| shape.placed(&place)).collect();
+//!         let _shapes: Vec<_> = prism.filled_shapes.iter().map(|shape| shape.placed(&placement)).collect();
 //!     }
 //! }
 //! # Ok::<(), lizard_robot::Error>(())
 //! ```
-//! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board,
-//!   the battery. Its layers ([`Prism`]) are given in its own frame; z is the robot's.
-//! - A [`Mount`] is the moving frame that a body is fixed to, so it decides on which servos
-//!   the body's place depends: `Link`, `Crank`, `Follower`, `Foot` and `Strut` on their servo
-//!   alone, `Coupler` on both servos of its end, `Sleeve` and `Rod` on both of their side,
-//!   `Chassis` on none. Links, cranks and followers turn about a fixed point by the servo's
-//!   angle; feet and struts do not turn. [`Assembly::place`] computes this.
-//! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the
-//!   union of its shapes minus its holes, so its shapes without the holes enclose it,
-//!   which suits a collision proof: a body that is clear of the shapes is clear of the part.
+//! - A [`Body`] is rigid: a printed part, a servo, a screw, a nut, a spring, the board, the battery. Its layers
+//!   ([`Prism`]) are in the frame of its mount, with z in the chassis frame.
+//! - A [`Mount`] is a body's moving frame. The placements of `Link`, `Crank`, `Follower`, `Foot` and `Strut` depend
+//!   on one servo, `Coupler` on both servos of its end, `Sleeve` and `Rod` on both servos of their side, `Chassis` on
+//!   none. Links, cranks and followers turn about a fixed point by the servo's angle; feet and struts do not turn.
+//!   [`Assembly::placement`] computes the placements.
+//! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the union of its shapes minus its
+//!   holes, so the shapes enclose the layer: a body that is clear of the shapes is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::may_touch`] is true for pairs that touch by design: bodies that move together,
-//!   and bodies of which one names the other in [`Body::allowed_contacts`], as a screw names the parts that it
-//!   passes through, the rod its sleeve, and the strut the leg's crank that its spring pulls.
-//! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard
-//!   accepts; [`Assembly::close_pairs`] only checks some poses.
-//! - [`Assembly::alternatives`] are bodies that may replace others: struts of the kind that
-//!   robot.toml does not choose.
-//! - [`Layout`] is the plan of pivots and anchors from above. The pivots and anchors of the legs
-//!   are in [`lizard_robot::LegPlan`], which the drawings use as well.
+//! - [`Assembly::may_touch`] is true for bodies that move together, and for bodies that touch by design and name each
+//!   other in [`Body::allowed_contacts`]: a screw and the parts that it passes through, a rod and its sleeve, a strut
+//!   and the crank that its spring pulls.
+//! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard accepts;
+//!   [`Assembly::find_close_pairs`] checks only some poses.
+//! - [`Assembly::alternatives`] are bodies that may replace others: the struts of the kind that robot.toml does not
+//!   select.
+//! - [`Layout`] is the plan of pivots and anchors from above; [`lizard_robot::LegPlan`] has those of the legs.
 
 mod bill;
 mod bodies;
-mod build_problem;
+mod build_error;
 mod decimals;
 mod files;
 mod guide;
-mod hold;
 mod layers;
 mod model;
 mod order;
 mod part;
 mod price;
 mod proof;
+mod spring_effect;
 mod weight;
 
-pub use bill::{Bill, Item, buying_table, places_table};
+pub use bill::{Bill, Item, format_buying_table, format_places_table};
 pub use bodies::assembly::Assembly;
 pub use bodies::layout::Layout;
-pub use build_problem::{BuildProblem, CollidingPair};
-pub use files::coupon::coupon;
+pub use build_error::{BuildError, CollidingPair};
+pub use files::coupon::build_coupon;
 pub use files::mesh::Mesh;
-pub use files::sheet::{Layer, Sheet, sheets};
+pub use files::sheet::{Layer, Sheet, draw_sheets};
 pub use files::solid::{Edge, Face, Solid, Surface};
-pub use files::{File, part_files};
-pub use guide::documents::documents;
-pub use hold::SpringEffect;
+pub use files::{File, make_part_files};
+pub use guide::documents::make_documents;
 pub use layers::body::{Body, Kind, Mount, Prism};
 pub use layers::fitting::{BATTERY_EXAMPLES, Example, Fitting, FittingFacts};
 pub use layers::outline::{Loop, Outline, Segment};
 pub use layers::placement::Placement;
 pub use layers::shape::Shape;
 pub use layers::stack::{Span, Stack};
-pub use model::{Block, Course, Floor, Pads, Pieces, Scene, StrutSpring, mjcf};
+pub use model::{Block, Course, Floor, Pads, Pieces, Scene, StrutSpring, format_mjcf};
 pub use order::reach::{AccessPose, BlockedScrew, ScrewOperation};
-pub use order::steps::{ExtraView, Stage, Step, TurningPlace, steps};
+pub use order::steps::{ExtraView, Stage, Step, TurningPlace, build_steps};
 pub use part::{Part, PrintToBody};
 pub use price::Price;
 pub use proof::clearance::Clearance;
-pub use proof::{Answer, Clash, FAR_MM, MIN_GAP_MM, NearestPair, Proof, Questions};
+pub use proof::{Clash, FAR_MM, MIN_GAP_MM, NearestPair, Proof, ProofTasks, TaskResult};
+pub use spring_effect::SpringEffect;

@@ -13,31 +13,30 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// The noun in the names of spacer rings, whose parts are named by length, not by position.
+/// The noun in the names of spacer rings; length instead of position names their parts.
 const SPACER: &str = "spacer";
 
 /// A printed part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
-    /// The name. A part named `link A1 A3` is needed twice, for A1 and for A3.
+    /// Name. A part named `link A1 A3` is needed twice, for A1 and for A3.
     pub name: String,
-    /// Names of the bodies for which the part is printed.
+    /// Names of the bodies that are printed as this part.
     pub body_names: Vec<String>,
-    /// The layers as printed: from z = 0 up, the larger face below.
+    /// Layers as printed: from z = 0 up, with the larger face below.
     pub prisms: Vec<Prism>,
     /// True if the part is turned over for printing.
     pub is_turned_over: bool,
-    /// True if the part is printed in a flexible filament, TPU.
+    /// True if the part is printed in a flexible filament (TPU).
     pub is_flexible: bool,
-    /// The part that it may replace; `None` for a standard part of the robot.
+    /// Name of the part that this part may replace; `None` for a part of the standard robot.
     pub instead_of: Option<String>,
-    /// The digits engraved in the part: the numbers of its servos, such as `13` for A1 and A3. Empty if only one part
-    /// has its noun.
+    /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty if its noun is unique.
     pub mark: String,
 }
 
 impl Part {
-    /// A part needed once, printed in the orientation of its layers, without a mark.
+    /// Creates a part that is needed once and printed in the orientation of its layers, without a mark.
     pub(crate) fn single(name: &str, prisms: Vec<Prism>) -> Self {
         Self {
             name: name.to_owned(),
@@ -50,29 +49,29 @@ impl Part {
         }
     }
 
-    /// The number of pieces needed.
+    /// Number of pieces needed.
     pub fn count(&self) -> usize {
         self.body_names.len()
     }
 
-    /// The name of the part's files, without extension.
+    /// Name of the part's files, without extension.
     pub fn file_stem(&self) -> String {
         self.name.replace(' ', "-")
     }
 
-    /// The layers as printed, with the mark, and with each hole closed that would begin in mid-air; and the number of
-    /// closed holes.
-    pub fn printed_layers(&self) -> (Vec<Prism>, usize) {
-        let marked = mark::engrave_mark(&self.prisms, &self.mark);
-        roof::close_unsupported_holes(&marked.unwrap_or_else(|| self.prisms.clone()))
+    /// Builds the layers as printed, with the mark and with closed holes where a hole would begin in mid-air. Also
+    /// returns the number of closed holes.
+    pub fn build_printed_layers(&self) -> (Vec<Prism>, usize) {
+        let marked_prisms = mark::engrave_mark(&self.prisms, &self.mark);
+        roof::close_unsupported_holes(&marked_prisms.unwrap_or_else(|| self.prisms.clone()))
     }
 
-    /// Centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
-    pub fn closed_hole_centres(&self) -> Vec<Vector> {
-        roof::unsupported_hole_centres(&self.prisms)
+    /// Finds the centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
+    pub fn find_closed_holes(&self) -> Vec<Vector> {
+        roof::find_unsupported_holes(&self.prisms)
     }
 
-    /// The motion that takes the printed part to the position of a body, in that body's frame.
+    /// Returns the motion from the printed part to the position of a body, in the body's frame.
     pub fn print_to_body(&self, body: &Body) -> PrintToBody {
         let [low, high] = body.z();
         PrintToBody {
@@ -82,47 +81,46 @@ impl Part {
         }
     }
 
-    /// The part's volume, mm^3.
+    /// Computes the part's volume, mm^3.
     pub fn volume(&self) -> f64 {
-        volume(&self.prisms)
+        compute_volume(&self.prisms)
     }
 }
 
-/// The motion from the frame of a printed part to the frame of its body: flip, lift, then turn and shift in the
-/// plane.
+/// The motion from a printed part's frame to its body's frame: flip, lift, then rotation and translation in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrintToBody {
-    /// True if the part is first turned over: x, y, z become x, -y, -z.
+    /// True if the part is first turned over: (x, y, z) becomes (x, -y, -z).
     pub is_flipped: bool,
-    /// The lift after the flip, mm.
+    /// Lift after the flip, mm.
     pub lift: f64,
-    /// The placement of the printed part's frame in the body's frame.
+    /// Placement of the printed part's frame in the body's frame.
     pub frame: Placement,
 }
 
-/// The volume of layers, mm^3.
-pub(crate) fn volume(prisms: &[Prism]) -> f64 {
-    prisms.iter().map(outline::volume).sum()
+/// Computes the volume of layers, mm^3.
+pub(crate) fn compute_volume(prisms: &[Prism]) -> f64 {
+    prisms.iter().map(outline::compute_volume).sum()
 }
 
 impl Assembly {
-    /// Every printed part, each kind once. Alternative parts come last.
-    pub fn parts(&self) -> Vec<Part> {
-        let mut parts = distinct_parts(self.bodies());
+    /// Collects the printed parts, each kind once, with the alternative parts at the end.
+    pub fn collect_parts(&self) -> Vec<Part> {
+        let mut parts = find_distinct_parts(self.bodies());
         let is_strut = |part: &&Part| {
             let first_body = self.body(&part.body_names[0]);
             first_body.is_some_and(|body| matches!(body.mount, Mount::Strut(_)))
         };
         let strut_name = parts.iter().find(is_strut).map(|part| part.name.clone());
-        for mut part in distinct_parts(self.alternatives()) {
+        for mut part in find_distinct_parts(self.alternatives()) {
             part.instead_of.clone_from(&strut_name);
             parts.push(part);
         }
-        let noun_of = |part: &Part| noun_and_owner(&part.body_names[0]).0.to_owned();
-        let nouns: Vec<_> = parts.iter().map(noun_of).collect();
+        let part_noun = |part: &Part| split_name(&part.body_names[0]).0.to_owned();
+        let nouns: Vec<_> = parts.iter().map(part_noun).collect();
         for (part, noun) in parts.iter_mut().zip(&nouns) {
             if nouns.iter().filter(|listed| *listed == noun).count() > 1 {
-                part.mark = servo_digits(&part.body_names);
+                part.mark = format_servo_digits(&part.body_names);
             }
         }
         parts
@@ -130,15 +128,15 @@ impl Assembly {
 }
 
 /// Splits a body's name into noun and owner, such as `link` and `A1`. A name of one word has no owner.
-fn noun_and_owner(name: &str) -> (&str, &str) {
+fn split_name(name: &str) -> (&str, &str) {
     name.rsplit_once(' ').unwrap_or((name, ""))
 }
 
-/// The numbers of the servos that own these bodies, in order, as one string.
-fn servo_digits(names: &[String]) -> String {
+/// Formats the numbers of the servos that own these bodies, in ascending order, without separators.
+fn format_servo_digits(names: &[String]) -> String {
     let mut numbers: Vec<usize> = Vec::new();
     for name in names {
-        let (_, owner) = noun_and_owner(name);
+        let (_, owner) = split_name(name);
         let index_in = |list: [&str; 4]| list.iter().position(|name| *name == owner);
         let side = Side::ALL.into_iter().find(|side| side.name() == owner);
         numbers.extend(index_in(SERVO_NAMES).or(index_in(LEG_NAMES)));
@@ -149,14 +147,14 @@ fn servo_digits(names: &[String]) -> String {
     digits.collect()
 }
 
-/// The printed parts of these bodies; equal bodies share a part.
-fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
+/// Finds the printed parts of these bodies; equal bodies have a common part.
+fn find_distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
-        let (prisms, is_turned_over) = layers_in_print_frame(body);
+        let (prisms, is_turned_over) = to_print_layers(body);
         match parts
             .iter_mut()
-            .find(|part| are_equal(&part.prisms, &prisms))
+            .find(|part| are_equal_layers(&part.prisms, &prisms))
         {
             Some(part) => part.body_names.push(body.name.clone()),
             None => parts.push(Part {
@@ -173,17 +171,18 @@ fn distinct_parts(bodies: &[Body]) -> Vec<Part> {
             .filter(|_| part.body_names[0].contains(SPACER));
         part.name = match top_layer {
             Some(top) => format!("{SPACER} {:.1}", top.z[1]),
-            None => shared_name(&part.body_names),
+            None => join_names(&part.body_names),
         };
     }
     parts
 }
 
-/// A body's layers as printed, and true if the body is turned over for printing. The first shape is at the origin
-/// and the first bar along x, so equal parts have equal layers wherever they are used.
-fn layers_in_print_frame(body: &Body) -> (Vec<Prism>, bool) {
-    let area_of = |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::of(prism).area());
-    let is_turned_over = area_of(body.prisms.first()) < 0.7 * area_of(body.prisms.last());
+/// Converts a body's layers to the frame in which they are printed. The second value is true if the body is turned over
+/// for printing. The first shape is at the origin and the first bar along x, so equal parts have equal layers.
+fn to_print_layers(body: &Body) -> (Vec<Prism>, bool) {
+    let layer_area =
+        |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::from_prism(prism).area());
+    let is_turned_over = layer_area(body.prisms.first()) < 0.7 * layer_area(body.prisms.last());
     let [low, high] = body.z();
     let frame = print_frame(body);
     let to_print_frame = |shape: &Shape| {
@@ -198,24 +197,24 @@ fn layers_in_print_frame(body: &Body) -> (Vec<Prism>, bool) {
             shape
         }
     };
-    let to_printed_prism = |prism: &Prism| Prism {
+    let to_print_prism = |prism: &Prism| Prism {
         filled_shapes: prism.filled_shapes.iter().map(to_print_frame).collect(),
         cut_shapes: prism.cut_shapes.iter().map(to_print_frame).collect(),
         z: match is_turned_over {
             true => [high - prism.z[1], high - prism.z[0]],
             false => prism.z.map(|z| z - low),
         },
-        inset: match is_turned_over {
-            true => [prism.inset[1], prism.inset[0]],
-            false => prism.inset,
+        insets: match is_turned_over {
+            true => [prism.insets[1], prism.insets[0]],
+            false => prism.insets,
         },
     };
-    let mut prisms: Vec<Prism> = body.prisms.iter().map(to_printed_prism).collect();
+    let mut prisms: Vec<Prism> = body.prisms.iter().map(to_print_prism).collect();
     prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
     (prisms, is_turned_over)
 }
 
-/// The frame in which a body's part is printed.
+/// Returns the frame in which a body is printed.
 fn print_frame(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
@@ -223,7 +222,7 @@ fn print_frame(body: &Body) -> Placement {
     let shapes = || body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
     let first_shape = shapes().next();
     let origin = first_shape.map_or(Vector::default(), |shape| shape.points[0]);
-    // A pad has no bar; only its notch gives it a direction.
+    // A pad has no bar, so its notch gives the direction.
     let cuts = body.prisms.iter().flat_map(|prism| &prism.cut_shapes);
     let bar_vector = shapes()
         .chain(cuts)
@@ -239,8 +238,8 @@ fn print_frame(body: &Body) -> Placement {
     }
 }
 
-/// True if two parts are equal except for rounding.
-fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
+/// True if two parts' layers are equal except for rounding.
+fn are_equal_layers(a: &[Prism], b: &[Prism]) -> bool {
     let are_near = |a: f64, b: f64| (a - b).abs() < 1e-9;
     let have_equal_points = |a: &Shape, b: &Shape| {
         a.points.len() == b.points.len()
@@ -254,7 +253,7 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
         && zip(a, b).all(|(a, b)| {
             let have_equal_heights = are_near(a.z[0], b.z[0]) && are_near(a.z[1], b.z[1]);
             let have_equal_insets =
-                are_near(a.inset[0], b.inset[0]) && are_near(a.inset[1], b.inset[1]);
+                are_near(a.insets[0], b.insets[0]) && are_near(a.insets[1], b.insets[1]);
             have_equal_heights
                 && have_equal_insets
                 && are_equal_shapes(&a.filled_shapes, &b.filled_shapes)
@@ -262,9 +261,9 @@ fn are_equal(a: &[Prism], b: &[Prism]) -> bool {
         })
 }
 
-/// One name for several bodies: their common noun, then their owners.
-fn shared_name(names: &[String]) -> String {
-    let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| noun_and_owner(name)).unzip();
+/// Joins the names of several bodies: their common noun, then their owners.
+fn join_names(names: &[String]) -> String {
+    let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| split_name(name)).unzip();
     match names.len() {
         2.. if nouns.iter().any(|noun| *noun != nouns[0]) => names[0].clone(),
         4 => nouns[0].to_owned(),

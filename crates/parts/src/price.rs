@@ -1,5 +1,5 @@
-//! Price classes of the things to buy. Shops differ by a factor of three for the same item, so a single figure
-//! would suggest too much precision.
+//! Price classes of the items to buy. Shops differ by a factor of three for the same item, so a single value would
+//! suggest too much precision.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use serde::{Serialize, Serializer};
 /// The month in which the classes were estimated.
 pub const ESTIMATE_MONTH: &str = "November 2026";
 
-/// The price class of a row of the bill: of all its pieces, or of the smallest pack sold.
+/// The price class of a row of the bill of materials: of all its pieces, or of the smallest pack sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Price {
     /// Up to 1 euro.
@@ -27,8 +27,8 @@ impl Price {
     /// All classes, the cheapest first.
     pub const ALL: [Self; 5] = [Self::A, Self::B, Self::C, Self::D, Self::E];
 
-    /// The least and the greatest price, euros.
-    pub fn euros(self) -> [u32; 2] {
+    /// Least and greatest price, euros.
+    pub fn euro_range(self) -> [u32; 2] {
         match self {
             Self::A => [0, 1],
             Self::B => [1, 3],
@@ -38,13 +38,13 @@ impl Price {
         }
     }
 
-    /// The text that explains the classes.
+    /// Explains the classes.
     pub fn explanation() -> String {
         let class_texts = Self::ALL.map(|class| {
-            let [from, to] = class.euros();
-            match from {
-                0 => format!("{class} up to {to}"),
-                _ => format!("{class} {from} to {to}"),
+            let [min, max] = class.euro_range();
+            match min {
+                0 => format!("{class} up to {max}"),
+                _ => format!("{class} {min} to {max}"),
             }
         });
         format!(
@@ -54,11 +54,11 @@ impl Price {
         )
     }
 
-    /// The sum of some classes, euros: the least and the greatest total.
+    /// Adds up classes to the least and the greatest total, euros.
     pub fn sum(classes: impl Iterator<Item = Self>) -> [u32; 2] {
         classes.fold([0, 0], |sum, class| {
-            let [from, to] = class.euros();
-            [sum[0] + from, sum[1] + to]
+            let [min, max] = class.euro_range();
+            [sum[0] + min, sum[1] + max]
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The comparison of the guard with floating point at all pairs of positions of an end's two servos.
+//! The comparison of the guard with floating point at all pairs of positions that an end's two servos can take.
 
 use lizard_core::guard::five_bar::EndMargins;
 use lizard_core::numbers::cells::Cells;
@@ -8,7 +8,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
 use crate::rows::{
-    PairSample, columns, for_each_group, gather_lanes, q15_to_sine, splat, tally_rows,
+    PairSample, for_each_group, gather_lanes, q15_to_sine, select_columns, splat, tally_rows,
 };
 use crate::tally::{LENGTH_BAND_STEPS, Tally, margin_band};
 
@@ -33,7 +33,7 @@ pub struct EndComparison<'a> {
 impl<'a> EndComparison<'a> {
     pub fn new(robot: &Robot, guard: &'a CoreRobot, maps: &'a CellMaps, end: End) -> Self {
         let limits = guard.limits();
-        let [margin_band, crossing_band_mm] = bands(robot, end);
+        let [margin_band, crossing_band_mm] = compute_bands(robot, end);
         let map = match end {
             End::Head => &maps.head,
             End::Tail => &maps.tail,
@@ -57,53 +57,56 @@ impl<'a> EndComparison<'a> {
         [left, right]: [&Positions; 2],
         sample: PairSample,
         piece_index: usize,
-        progress: &(dyn Fn(u64) + Sync),
+        report_progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        tally_rows(left, piece_index, progress, |row| {
+        tally_rows(left, piece_index, report_progress, |row| {
             let mut tally = Tally::default();
             let crank_left = splat(left.exact[row]);
-            for_each_group(columns(sample, row, right.fixed.len()), |group, count| {
-                let crank_right = gather_lanes(&right.exact, group);
-                let pose = self
-                    .exact
-                    .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
-                let are_closed = self.exact.closes(&pose);
-                let Lanes(type2) = pose.type2;
-                let Lanes(type1_left) = pose.type1_left();
-                let Lanes(type1_right) = pose.type1_right();
-                let Lanes(gap_across_mm) = pose.gap.x;
-                for lane in 0..count {
-                    let column = group[lane];
-                    let truth = EndTruth {
-                        is_closed: are_closed[lane],
-                        type2: type2[lane],
-                        type1: [type1_left[lane], type1_right[lane]],
-                        crank_tip_distance_mm: gap_across_mm[lane],
-                    };
-                    let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
-                    let describe_place = || {
-                        format!(
-                            "{} at {:.4} and {:.4} deg",
-                            self.end.name(),
-                            left.degrees[row],
-                            right.degrees[column]
-                        )
-                    };
-                    self.compare_pair(&mut tally, margins, &truth, describe_place);
-                    let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
-                    // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
-                    let is_in_cell = match self.end {
-                        End::Head => self.cells.contains(left_sweep, right_sweep),
-                        End::Tail => self.cells.contains(right_sweep, left_sweep),
-                    };
-                    if is_in_cell {
-                        let legs = [left.fixed[row], right.fixed[column]];
-                        let is_accepted = self.accepts(margins)
-                            && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
-                        tally.count_certified(is_accepted, describe_place);
+            for_each_group(
+                select_columns(sample, row, right.fixed.len()),
+                |group, count| {
+                    let crank_right = gather_lanes(&right.exact, group);
+                    let pose =
+                        self.exact
+                            .pose_unchecked(AssemblyMode::Ahead, crank_left, crank_right);
+                    let are_closed = self.exact.closes(&pose);
+                    let Lanes(type2) = pose.type2;
+                    let Lanes(type1_left) = pose.type1_left();
+                    let Lanes(type1_right) = pose.type1_right();
+                    let Lanes(gap_across_mm) = pose.gap.x;
+                    for lane in 0..count {
+                        let column = group[lane];
+                        let truth = EndTruth {
+                            is_closed: are_closed[lane],
+                            type2: type2[lane],
+                            type1: [type1_left[lane], type1_right[lane]],
+                            crank_tip_distance_mm: gap_across_mm[lane],
+                        };
+                        let margins = self.fixed.margins(&left.fixed[row], &right.fixed[column]);
+                        let describe_pair = || {
+                            format!(
+                                "{} at {:.4} and {:.4} deg",
+                                self.end.name(),
+                                left.degrees[row],
+                                right.degrees[column]
+                            )
+                        };
+                        self.compare_pair(&mut tally, margins, &truth, describe_pair);
+                        let [left_sweep, right_sweep] = [left.sweep(row), right.sweep(column)];
+                        // The maps' rows are the sweeps of A1 and A3, their columns the sweeps of A2 and A4.
+                        let is_in_cell = match self.end {
+                            End::Head => self.cells.contains(left_sweep, right_sweep),
+                            End::Tail => self.cells.contains(right_sweep, left_sweep),
+                        };
+                        if is_in_cell {
+                            let legs = [left.fixed[row], right.fixed[column]];
+                            let is_accepted = self.accepts(margins)
+                                && legs.iter().all(|leg| leg.sin >= self.fixed_leg_limit);
+                            tally.count_certified(is_accepted, describe_pair);
+                        }
                     }
-                }
-            });
+                },
+            );
             tally
         })
     }
@@ -122,7 +125,7 @@ impl<'a> EndComparison<'a> {
         tally: &mut Tally,
         margins: EndMargins,
         truth: &EndTruth,
-        describe_place: impl Fn() -> String,
+        describe_pair: impl Fn() -> String,
     ) {
         tally.pair_count += 1;
         let is_fixed_safe = self.accepts(margins);
@@ -131,7 +134,7 @@ impl<'a> EndComparison<'a> {
             type1_left,
             type1_right,
         } = margins;
-        // A pose whose couplers nearly fold is refused, whatever its other margins are.
+        // A pose whose couplers nearly fold is rejected, regardless of its other margins.
         if truth.is_closed && truth.type2 > self.limits[0] - self.margin_band {
             Tally::raise(
                 &mut tally.max_type2_error,
@@ -147,18 +150,18 @@ impl<'a> EndComparison<'a> {
         let (margin_distance, crossing_distance_mm) = truth.distances_from_limits(self.limits);
         let is_exact_safe = margin_distance >= 0.0 && crossing_distance_mm > 0.0;
         if is_fixed_safe != is_exact_safe {
-            // The limit that is nearer, relative to its band, is the cause of the difference.
-            let is_by_crossing =
+            // The difference is attributed to the limit that is nearer relative to its band.
+            let is_from_crossing =
                 crossing_distance_mm / self.crossing_band_mm < margin_distance / self.margin_band;
-            let (distance, band) = if is_by_crossing {
+            let (distance, band) = if is_from_crossing {
                 (crossing_distance_mm.abs(), self.crossing_band_mm)
             } else {
                 (margin_distance.abs(), self.margin_band)
             };
-            tally.record_difference(is_by_crossing, distance, band, || {
+            tally.record_difference(is_from_crossing, distance, band, || {
                 format!(
-                    "{}: the guard says {}, floating point {}: margins {:.5} {:.5} {:.5}, for {:.5} {:.5} {:.5}, crank tips {:+.4} mm apart across",
-                    describe_place(),
+                    "{}: {} according to the guard, {} in floating point: margins {:.5} {:.5} {:.5}, exactly {:.5} {:.5} {:.5}, distance across from tip to tip {:+.4} mm",
+                    describe_pair(),
                     if is_fixed_safe { "safe" } else { "unsafe" },
                     if is_exact_safe { "safe" } else { "unsafe" },
                     q15_to_sine(type2.0),
@@ -187,8 +190,8 @@ struct EndTruth {
 }
 
 impl EndTruth {
-    /// The distance of the smallest margin from its limit, a sine, and that of the crank tips from crossing, mm.
-    /// Both are negative beyond the limit.
+    /// The distance of the smallest margin from its limit, a sine, and the distance of the crank tips from crossing,
+    /// mm. Both are negative beyond the limit.
     #[inline(always)]
     fn distances_from_limits(&self, [min_type2, min_type1]: [f64; 2]) -> (f64, f64) {
         if !self.is_closed {
@@ -202,9 +205,9 @@ impl EndTruth {
     }
 }
 
-/// The bands of an end in which decisions may differ: the distance from a margin's limit, a sine, and the distance
+/// Computes an end's bands in which decisions may differ: the distance from a margin's limit, a sine, and the distance
 /// from the crossing of the crank tips, mm.
-pub fn bands(robot: &Robot, end: End) -> [f64; 2] {
+pub fn compute_bands(robot: &Robot, end: End) -> [f64; 2] {
     let step_mm = f64::from(1u32 << robot.content().ends[end as usize].scale.bits).recip();
     let band = margin_band(&robot.lizard().end(end), robot.limits().type2, step_mm);
     [band, LENGTH_BAND_STEPS * step_mm]

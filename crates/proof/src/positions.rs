@@ -22,7 +22,7 @@ impl Positions {
     pub fn compute(guard: &CoreRobot, servo: usize) -> Self {
         let neutral = guard.neutral_angles()[servo];
         let calibration = guard.calibration()[servo];
-        let end = End::of_servo(servo);
+        let end = End::from_servo(servo);
         let mut positions = Self {
             first_sweep: calibration.travel_min.0,
             degrees: Vec::new(),
@@ -30,9 +30,9 @@ impl Positions {
             exact: Vec::new(),
         };
         for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
-            let angle = neutral.swept(Sweep(sweep));
+            let angle = neutral.offset_by(Sweep(sweep));
             let degrees = f64::from(angle.0) * 360.0 / 65536.0;
-            let fixed = Direction::of(angle);
+            let fixed = Direction::from_angle(angle);
             positions.degrees.push(degrees);
             positions.fixed.push(match end {
                 End::Head => fixed,

@@ -19,24 +19,24 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Compares a share of the pairs of a robot with a guard, normally the robot's own. `progress` is called with the
-    /// number of rows completed since its last call; [`Proof::row_count`] is their total.
+    /// Compares a sample of a robot's pairs with a guard, normally the robot's own. Calls `report_progress` with the
+    /// number of rows completed since the last call; [`Proof::row_count`] is the total.
     pub fn compute(
         robot: &Robot,
         guard: &CoreRobot,
         sample: PairSample,
-        progress: &(dyn Fn(u64) + Sync),
+        report_progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
         let comparison = walk::GuardComparison::new(robot, guard, sample);
-        let tally_of = |index| comparison.compare_piece(index, progress);
-        let tallies = (0..walk::PIECE_COUNT).map(tally_of).collect();
+        let compare_piece = |index| comparison.compare_piece(index, report_progress);
+        let tallies = (0..walk::PIECE_COUNT).map(compare_piece).collect();
         Self::from_tallies(robot, guard, tallies)
     }
 
     /// Assembles the proof from the tallies of all pieces, in the order of the pieces.
     pub fn from_tallies(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Self {
         Self {
-            findings: walk::findings(robot, guard, tallies),
+            findings: walk::compute_findings(robot, guard, tallies),
             hash: guard.hash(),
             margin_band: walk::widest_margin_band(robot),
         }
@@ -47,7 +47,7 @@ impl Proof {
         walk::row_count(guard)
     }
 
-    /// The number of pairs in cells of the robot's maps, whose poses the firmware does not measure.
+    /// The number of pairs in cells of the robot's maps; the firmware accepts their poses without computing them.
     pub fn certified_count(&self) -> u64 {
         self.findings
             .iter()
@@ -55,8 +55,8 @@ impl Proof {
             .sum()
     }
 
-    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard refuses.
-    /// If it is 0, guard and cells are proved correct.
+    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard rejects. 0
+    /// proves that guard and cells are correct.
     pub fn wrong_count(&self) -> u64 {
         self.findings
             .iter()

@@ -1,5 +1,5 @@
-//! The rows and columns of pairs of positions: rows are distributed over all cores, and the columns of a row are
-//! computed eight at a time.
+//! The rows and columns of pairs of positions. Rows are distributed over all cores, and a row's columns are computed
+//! eight at a time.
 
 use lizard_core::numbers::units::ONE_Q15;
 use lizard_kinematics::{Lanes, Vector};
@@ -32,8 +32,12 @@ impl PairSample {
     };
 }
 
-/// The columns of a row that belong to a sample.
-pub fn columns(sample: PairSample, row: usize, column_count: usize) -> impl Iterator<Item = usize> {
+/// Returns the columns of a row that belong to a sample.
+pub fn select_columns(
+    sample: PairSample,
+    row: usize,
+    column_count: usize,
+) -> impl Iterator<Item = usize> {
     let first = (row + sample.offset as usize) % sample.one_in as usize;
     (first..column_count).step_by(sample.one_in as usize)
 }
@@ -42,7 +46,7 @@ pub fn columns(sample: PairSample, row: usize, column_count: usize) -> impl Iter
 pub fn tally_rows(
     row_positions: &Positions,
     piece_index: usize,
-    progress: &(dyn Fn(u64) + Sync),
+    report_progress: &(dyn Fn(u64) + Sync),
     tally_row: impl Fn(usize) -> Tally + Sync,
 ) -> Tally {
     let row_count = row_positions.fixed.len();
@@ -50,10 +54,10 @@ pub fn tally_rows(
         .into_par_iter()
         .map(|row| {
             let tally = tally_row(row);
-            progress(1);
+            report_progress(1);
             tally
         })
-        .reduce(Tally::default, Tally::merged)
+        .reduce(Tally::default, Tally::merge)
 }
 
 /// Calls `visit` with the columns of a row, [`LANES`] at a time, and with the number of valid columns; the last column

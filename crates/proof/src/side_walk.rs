@@ -1,5 +1,5 @@
-//! The comparison of the guard with floating point at all pairs of positions of a side's two servos, and at all
-//! positions of a leg.
+//! The comparison of the guard with floating point at all pairs of positions that a side's two servos can take, and at
+//! all positions of a leg.
 
 use lizard_core::guard::trig::Direction;
 use lizard_core::numbers::cells::Cells;
@@ -9,7 +9,7 @@ use lizard_robot::{CellMaps, CoreRobot, Robot};
 
 use crate::positions::Positions;
 use crate::rows::{
-    PairSample, columns, for_each_group, gather_lanes, q15_to_sine, splat, tally_rows,
+    PairSample, for_each_group, gather_lanes, q15_to_sine, select_columns, splat, tally_rows,
 };
 use crate::tally::{LENGTH_BAND_STEPS, MARGIN_BAND, Tally};
 
@@ -46,53 +46,56 @@ impl<'a> SideComparison<'a> {
         [front, rear]: [&Positions; 2],
         sample: PairSample,
         piece_index: usize,
-        progress: &(dyn Fn(u64) + Sync),
+        report_progress: &(dyn Fn(u64) + Sync),
     ) -> Tally {
-        let in_side_frame = |direction: Direction| match self.side {
+        let to_side_frame = |direction: Direction| match self.side {
             Side::Left => direction,
             Side::Right => direction.mirrored(),
         };
         let band_mm = LENGTH_BAND_STEPS / self.steps_per_mm;
-        tally_rows(front, piece_index, progress, |row| {
+        tally_rows(front, piece_index, report_progress, |row| {
             let mut tally = Tally::default();
-            let crank = in_side_frame(front.fixed[row]);
+            let crank = to_side_frame(front.fixed[row]);
             let front_arm = splat(self.side.front_arm(front.exact[row]));
-            for_each_group(columns(sample, row, rear.fixed.len()), |group, count| {
-                // Positions are in the frame of their end, arms in the frame of the chassis.
-                let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, group));
-                let pose = self
-                    .exact
-                    .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
-                let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
-                for lane in 0..count {
-                    let column = group[lane];
-                    tally.pair_count += 1;
-                    let length_sq = self
-                        .fixed
-                        .length_sq(&crank, &in_side_frame(rear.fixed[column]));
-                    let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
-                    Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
-                    let is_allowed = self.fixed.allows(length_sq);
-                    if self.cells.contains(front.sweep(row), rear.sweep(column)) {
-                        tally.count_certified(is_allowed, || {
+            for_each_group(
+                select_columns(sample, row, rear.fixed.len()),
+                |group, count| {
+                    // Positions are in the frame of their end, arms in the frame of the chassis.
+                    let crank_rear = End::Tail.mirror(gather_lanes(&rear.exact, group));
+                    let pose = self
+                        .exact
+                        .pose_unchecked(self.side.rear_arm(crank_rear), front_arm);
+                    let (Lanes(d), Lanes(s)) = (pose.d, pose.s);
+                    for lane in 0..count {
+                        let column = group[lane];
+                        tally.pair_count += 1;
+                        let length_sq = self
+                            .fixed
+                            .length_sq(&crank, &to_side_frame(rear.fixed[column]));
+                        let length_mm = f64::from(length_sq).sqrt() / self.steps_per_mm;
+                        Tally::raise(&mut tally.max_slider_error, (length_mm - d[lane]).abs());
+                        let is_allowed = self.fixed.allows(length_sq);
+                        if self.cells.contains(front.sweep(row), rear.sweep(column)) {
+                            tally.count_certified(is_allowed, || {
+                                format!(
+                                    "{} side at {:.4} and {:.4} deg",
+                                    self.side, front.degrees[row], rear.degrees[column]
+                                )
+                            });
+                        }
+                        let [min, max] = self.stroke_limits;
+                        let limit_distance = (s[lane] - min).min(max - s[lane]);
+                        if is_allowed != (limit_distance >= 0.0) {
+                            tally.record_difference(true, limit_distance.abs(), band_mm, || {
                             format!(
-                                "{} side at {:.4} and {:.4} deg",
-                                self.side, front.degrees[row], rear.degrees[column]
-                            )
-                        });
-                    }
-                    let [min, max] = self.stroke_limits;
-                    let limit_distance = (s[lane] - min).min(max - s[lane]);
-                    if is_allowed != (limit_distance >= 0.0) {
-                        tally.record_difference(true, limit_distance.abs(), band_mm, || {
-                            format!(
-                                "at {:.4} and {:.4} deg the slider is {length_mm:.5} mm long by the guard, {:.5} by floating point",
+                                "at {:.4} and {:.4} deg the slider's length is {length_mm:.5} mm according to the guard, {:.5} mm in floating point",
                                 front.degrees[row], rear.degrees[column], d[lane]
                             )
                         });
+                        }
                     }
-                }
-            });
+                },
+            );
             tally
         })
     }

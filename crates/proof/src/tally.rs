@@ -12,9 +12,9 @@ pub const MARGIN_BAND: f64 = 0.002;
 pub const LENGTH_BAND_STEPS: f64 = 4.0;
 
 /// Distance from the limit of a type-2 or type-1 margin within which decisions about an end may differ. It is
-/// [`MARGIN_BAND`] or, if that is larger, the angle by which an error of [`LENGTH_BAND_STEPS`] steps of `step_mm` turns
-/// the couplers. That angle is large if the couplers are nearly in line: it is proportional to the reciprocal of the
-/// sine of the angle between them, which is at least `min_type2`.
+/// [`MARGIN_BAND`] or, if larger, the angle by which an error of [`LENGTH_BAND_STEPS`] steps of `step_mm` turns the
+/// couplers. The angle is large if the couplers nearly line up: it is inversely proportional to the sine of the angle
+/// between the couplers, which is at least `min_type2`.
 pub fn margin_band(five_bar: &FiveBar, min_type2: f64, step_mm: f64) -> f64 {
     let (left, right) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
     let max_tip_distance = (left + right)
@@ -44,7 +44,7 @@ pub struct Tally {
     /// decisions differ, mm.
     pub max_length_difference: Option<f64>,
     /// The number of pairs outside the bands that the guard decides wrongly, plus the number of pairs in a cell that
-    /// the guard refuses.
+    /// the guard rejects.
     pub wrong_count: u64,
     /// A description of the first wrong pair.
     pub example: Option<String>,
@@ -60,7 +60,7 @@ impl Tally {
     }
 
     /// Combines two tallies: adds the counts, and keeps the larger errors and the first example.
-    pub fn merged(mut self, other: Self) -> Self {
+    pub fn merge(mut self, other: Self) -> Self {
         self.pair_count += other.pair_count;
         self.certified_count += other.certified_count;
         for (largest, value) in [
@@ -80,14 +80,14 @@ impl Tally {
         self
     }
 
-    /// Counts a pair in a cell. The pair is wrong if the guard refuses it.
+    /// Counts a pair in a cell. The pair is wrong if the guard rejects it.
     #[inline(always)]
-    pub fn count_certified(&mut self, is_accepted: bool, describe_place: impl FnOnce() -> String) {
+    pub fn count_certified(&mut self, is_accepted: bool, describe_pair: impl FnOnce() -> String) {
         self.certified_count += 1;
         if !is_accepted {
             self.wrong_count += 1;
             self.example.get_or_insert_with(|| {
-                format!("{}: in a cell, but the guard refuses it", describe_place())
+                format!("{}: in a cell, but the guard rejects it", describe_pair())
             });
         }
     }
@@ -97,12 +97,12 @@ impl Tally {
     #[cold]
     pub fn record_difference(
         &mut self,
-        is_length: bool,
+        is_length_difference: bool,
         difference: f64,
         band: f64,
         describe_pair: impl FnOnce() -> String,
     ) {
-        let max_difference = if is_length {
+        let max_difference = if is_length_difference {
             &mut self.max_length_difference
         } else {
             &mut self.max_margin_difference

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use lizard_kinematics::{End, Side};
 use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
 
-use crate::end_walk::{EndComparison, bands};
+use crate::end_walk::{EndComparison, compute_bands};
 use crate::positions::Positions;
 use crate::rows::{PIECES_PER_PART, PairSample};
 use crate::side_walk::{SideComparison, compare_leg};
@@ -44,30 +44,30 @@ impl<'a> GuardComparison<'a> {
     }
 
     /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
-    pub fn compare_piece(&self, index: usize, progress: &(dyn Fn(u64) + Sync)) -> Tally {
+    pub fn compare_piece(&self, index: usize, report_progress: &(dyn Fn(u64) + Sync)) -> Tally {
         let (part_index, piece_index) = (index / PIECES_PER_PART, index % PIECES_PER_PART);
-        let positions_of = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
+        let servo_positions = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
         if let Some(end) = End::ALL.get(part_index) {
             let comparison = EndComparison::new(self.robot, self.guard, &self.maps, *end);
-            let positions = positions_of(end.servos());
-            comparison.compare_piece(positions, self.sample, piece_index, progress)
+            let positions = servo_positions(end.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
         } else {
             let side = Side::ALL[part_index - End::ALL.len()];
             let comparison = SideComparison::new(self.robot, self.guard, &self.maps, side);
-            let positions = positions_of(side.servos());
-            comparison.compare_piece(positions, self.sample, piece_index, progress)
+            let positions = servo_positions(side.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
         }
     }
 }
 
 /// Computes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
-pub fn findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
+pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
     let mut tallies = tallies.into_iter();
     let mut next_part_tally = || {
         tallies
             .by_ref()
             .take(PIECES_PER_PART)
-            .fold(Tally::default(), Tally::merged)
+            .fold(Tally::default(), Tally::merge)
     };
     let mut findings = Vec::new();
     for end in End::ALL {
@@ -94,11 +94,11 @@ pub fn findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Fi
     findings
 }
 
-/// The distance from a margin's limit, a sine, within which the guard may decide differently from floating point: the
-/// larger value of the two ends, and at least [`MARGIN_BAND`].
+/// The larger margin band of the two ends, and at least [`MARGIN_BAND`]: the distance from a margin's limit, a sine,
+/// within which the guard may decide differently from floating point.
 pub fn widest_margin_band(robot: &Robot) -> f64 {
     End::ALL
-        .map(|end| bands(robot, end)[0])
+        .map(|end| compute_bands(robot, end)[0])
         .into_iter()
         .fold(MARGIN_BAND, f64::max)
 }

@@ -1,19 +1,19 @@
-//! Eight servos sweep, each at its own speed, while the LED blinks and every byte of the serial line, 115 200 baud,
-//! is echoed. This is a complete program for an Arduino UNO.
+//! Eight servos sweep, each at its own speed, while the LED blinks and every byte received at 115 200 baud is echoed.
+//! This is a complete program for an Arduino UNO.
 //!
-//! `make sweep` builds it; the tests run it in the simulated UNO, which measures every pulse.
+//! `make sweep` builds the program; the tests run it on the simulated UNO, which measures every pulse.
 
 #![no_std]
 #![no_main]
 #![feature(abi_avr_interrupt)]
-#![allow(unsafe_code)] // Registers, and enabling interrupts.
+#![allow(unsafe_code)] // Writing registers and enabling interrupts need it.
 
 use avr_device::atmega328p::{Peripherals, USART0};
 use panic_halt as _;
 use servo_pulses::cells::Byte;
 use servo_pulses::{CYCLES_PER_US, Pin};
 
-/// Eight servos on three ports. The LED is D13, the serial line D0 and D1.
+/// The pins of eight servos on three ports. The LED is on D13, the serial port on D0 and D1.
 const PINS: [Pin; 8] = [
     pin(2),
     pin(3),
@@ -33,18 +33,18 @@ const fn pin(number: u8) -> Pin {
 }
 
 mod servos {
-    // Pins that are connected at run time. `engine!(super::PINS)` would set them at compile time.
+    // The pins are connected at run time. `engine!(super::PINS)` would set them at compile time.
     servo_pulses::engine!(later: 8);
 }
 
 /// The ring buffer of received bytes.
 static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
-/// The number of bytes received, modulo 256. The handler increments it; `main` echoes bytes until it has echoed
-/// as many.
+/// The number of received bytes, modulo 256, which the handler increments; `main` echoes bytes until it has echoed as
+/// many.
 static RECEIVED_COUNT: Byte = Byte::new(0);
 
-/// The width of a servo's pulse in a frame, in cycles: a triangle wave from 1000 to 2000 us. The width of each servo
-/// changes by a different number of cycles per frame.
+/// Computes the width of a servo's pulse in a frame, cycles: a triangle wave from 1000 to 2000 us. The width of each
+/// servo changes by another number of cycles per frame.
 fn width_cycles(servo: u8, frame: u16) -> u16 {
     let cycles_per_frame = 16 * u16::from(servo) + 5;
     let ramp = frame.wrapping_mul(cycles_per_frame) % 32_000;
@@ -54,9 +54,9 @@ fn width_cycles(servo: u8, frame: u16) -> u16 {
 
 #[avr_device::entry]
 fn main() -> ! {
-    // SAFETY: nothing has run before this but the boot loader.
+    // SAFETY: only the boot loader has run before this call.
     let chip = unsafe { Peripherals::steal() };
-    // 16 MHz / 8 / (16 + 1) = 117 647 baud, the same as the boot loader's; 8N1.
+    // 16 MHz / 8 / (16 + 1) = 117 647 baud, as in the boot loader; 8N1.
     chip.USART0.ucsr0a.write(|w| w.u2x0().set_bit());
     chip.USART0.ubrr0.write(|w| w.bits(16));
     chip.USART0

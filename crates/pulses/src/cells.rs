@@ -1,22 +1,22 @@
 //! Bytes that main and the interrupt handlers share.
 //!
-//! The processor loads or stores a byte in one instruction, which no interrupt can split, so a byte with one writer
-//! needs no lock. (The compiler's atomics would do the same, but on this target they disable interrupts around each
-//! access.) Accesses are volatile, so each one is made, in the order written. On one core without a cache nothing
-//! else can reorder them.
+//! The processor loads or stores a byte with one instruction, which no interrupt can split, so a byte with a single
+//! writer requires no lock. (The compiler's atomics would be equivalent, but on this target they disable interrupts
+//! around each access.) Accesses are volatile, so the compiler neither omits nor reorders them; a single core without a
+//! cache does not reorder them, either.
 
 use core::cell::UnsafeCell;
 
 use crate::pin::Pin;
 
-/// A byte that may be read and written from main and from interrupt handlers.
+/// A byte that main and interrupt handlers may read and write.
 ///
 /// Single accesses are atomic; a read followed by a write is not. A value that depends on the old one must have a
 /// single writer.
 pub struct Byte(UnsafeCell<u8>);
 
-// SAFETY: there is one core, and every access is a single load or store of one byte. No
-// reference to the value itself is ever given out.
+// SAFETY: there is one core, and every access is a single load or store of one byte. No function returns a reference to
+// the value.
 unsafe impl Sync for Byte {}
 
 impl Byte {
@@ -29,7 +29,7 @@ impl Byte {
     /// Reads the value.
     #[inline(always)]
     pub fn get(&self) -> u8 {
-        // SAFETY: the pointer is the cell's own; for other accesses see `Sync`.
+        // SAFETY: the pointer is that of the cell; for concurrent accesses see `Sync`.
         unsafe { self.0.get().read_volatile() }
     }
 
@@ -41,8 +41,8 @@ impl Byte {
     }
 }
 
-/// A word of two bytes. An interrupt may occur between the accesses to them, so reader and writer must agree on who
-/// may access the word at which time.
+/// A word of two bytes. An interrupt may occur between the accesses to the two bytes, so the program must ensure that
+/// reader and writer do not access the word at the same time.
 pub struct Word {
     low: Byte,
     high: Byte,
@@ -80,7 +80,7 @@ impl Word {
     }
 }
 
-/// A counter of faults in interrupt handlers, which main reads. It saturates at 65535.
+/// A counter of faults that interrupt handlers increment and main reads. It saturates at 65535.
 pub struct Counter(Word);
 
 impl Default for Counter {
@@ -96,10 +96,10 @@ impl Counter {
         Self(Word::new(0))
     }
 
-    /// Counts one fault. Call it only in interrupt handlers, which cannot interrupt each other.
+    /// Counts a fault. Call this function only in interrupt handlers, which cannot interrupt each other.
     #[inline(always)]
     pub fn count(&self) {
-        // Handled byte by byte, because the common path then takes only four instructions.
+        // Incremented byte by byte, because the usual path then takes only four instructions.
         match self.0.low.get() {
             u8::MAX => match self.0.high.get() {
                 u8::MAX => {}
@@ -116,7 +116,7 @@ impl Counter {
     #[cfg(any(doc, target_arch = "avr"))]
     pub fn read(&self) -> u16 {
         let sreg: u8;
-        // SAFETY: reads and then clears the interrupt flag.
+        // SAFETY: reads SREG, then clears the interrupt flag.
         unsafe { core::arch::asm!("in {}, 0x3f", "cli", out(reg) sreg, options(nostack)) };
         let count = self.0.get();
         // SAFETY: restores the interrupt flag.

@@ -5,8 +5,8 @@ use crate::cells::{Byte, Counter, Word};
 use crate::timing::MIN_WIDTH_CYCLES;
 use crate::timing::{LEAD_CYCLES, max_width_cycles};
 
-/// The pulse generator for `SERVOS` servos. It refers to the variables that [`engine!`](crate::engine) defines.
-/// `SIZE`, the length of its tables, is `SERVOS` rounded up to a power of two.
+/// The pulse generator for `SERVOS` servos, with references to the variables that [`engine!`](crate::engine) defines.
+/// `SIZE`, the length of the tables, is `SERVOS` rounded up to a power of two.
 #[derive(Clone, Copy)]
 pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     #[doc(hidden)]
@@ -16,16 +16,16 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// Two frames of pulse widths in cycles: one is played while main fills the other.
     pub frames: &'a [[Word; SIZE]; 2],
     #[doc(hidden)]
-    /// The index of the frame that is played. Only the handler changes it, and only while `has_new_frame` is set.
+    /// The index of the frame that is played. Only the handler changes the index, and only while `has_new_frame` is 1.
     pub played_frame: &'a Byte,
     #[doc(hidden)]
-    /// 1 while the other frame is complete and waits to be taken over. Main sets it. The handler clears it when it
-    /// takes the frame over, and main clears it to withdraw the frame.
+    /// 1 while the other frame is complete and waits to be taken over. Main sets this byte; the handler clears it when
+    /// taking the frame over, and main clears it to withdraw the frame.
     pub has_new_frame: &'a Byte,
     #[doc(hidden)]
-    /// The plan: the number of the current slot or, between slots, of the next one. It starts with the tick's slot,
-    /// so that main can begin at once. TIMER1_COMPB writes the plan; TIMER1_COMPA removes a pulse whose rising edge
-    /// is late.
+    /// The plan: the number of the current slot or, between slots, of the next slot. The first slot is the tick's slot,
+    /// so that main can begin at once. TIMER1_COMPB writes the plan; TIMER1_COMPA removes a pulse whose rising edge is
+    /// late.
     pub slot: &'a Byte,
     #[doc(hidden)]
     /// The plan: the address of the pin's PORT register.
@@ -40,7 +40,7 @@ pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
     /// The bits of a port that may go high: all, or none after [`Engine::suppress_pulses`].
     pub allowed_pins: &'a Byte,
     #[doc(hidden)]
-    /// The ticks so far, modulo 256; written only by TIMER1_COMPA.
+    /// The number of ticks so far, modulo 256; written only by TIMER1_COMPA.
     pub ticks: &'a Byte,
     #[doc(hidden)]
     /// The number of late edges, counted in both handlers.
@@ -51,24 +51,24 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// The number of the slot without a pin.
     #[cfg(any(test, target_arch = "avr"))]
     const TICK_SLOT: u8 = SERVOS as u8;
-    /// The timer count at which a slot without a pulse closes. It is as late as possible, so that main has the
-    /// longest time in the tick's slot.
+    /// The timer count at which a slot without a pulse closes, which is as late as possible, so that the tick's slot
+    /// gives main the longest time.
     const CLOSE_COUNT: u16 = max_width_cycles(SERVOS);
     /// The value of `fall_count` in a slot without a pulse.
     #[doc(hidden)]
     pub const NO_PULSE: u16 = Self::CLOSE_COUNT + LEAD_CYCLES as u16;
 
-    /// Submits the widths of the next frame, in CPU cycles of 62.5 ns, in the order of the pins; as `u16` or as a
-    /// type that converts into it.
+    /// Submits the widths of the next frame, in CPU cycles of 62.5 ns and in the order of the pins, as `u16` or as a
+    /// type that converts to it.
     ///
-    /// The engine takes over all widths at once, before the first slot opens. If a second frame is submitted before
-    /// that, the first one is never played: see [`Engine::is_taken`]. Without a new frame, the last widths repeat. A
-    /// width of 0, or one that does not fit into a slot, gives no pulse: see
+    /// The engine takes over all widths together, before the first slot opens. If a second frame is submitted before,
+    /// the first frame is never played, see [`Engine::is_taken`]. Without a new frame, the last widths repeat. A width
+    /// of 0, or a width that does not fit into a slot, results in no pulse, see
     /// [`MIN_WIDTH_CYCLES`](crate::MIN_WIDTH_CYCLES) and [`max_width_cycles`](crate::max_width_cycles).
     #[inline(always)]
     pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
         // Withdraws a frame that has not been played. Until the end of this function the handler does not change
-        // `played_frame`, so the frame that is being filled cannot start to play.
+        // `played_frame`, so the frame being filled cannot be played.
         self.has_new_frame.set(0);
         let frame = &self.frames[usize::from(self.played_frame.get() & 1 ^ 1)];
         for (slot, width) in frame.iter().zip(widths) {
@@ -79,37 +79,39 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
 
     /// True if the last submitted frame, if any, has been taken over.
     ///
-    /// Call this at every tick. False means that main submitted the frame so late that it waits for the end of this
-    /// tick's slot: a frame submitted now would replace it, and a servo would jump. While the result is true at one of
-    /// any two consecutive ticks, both handlers run, since one counts the ticks and the other takes the frames over.
+    /// Call this function at every tick. False means that main submitted the frame late, so the frame waits for the end
+    /// of this tick's slot: a frame submitted now would replace the waiting frame, and a servo would jump. If the
+    /// result is true at one of any two consecutive ticks, both handlers are running, because one counts the ticks and
+    /// the other takes the frames over.
     #[inline(always)]
     pub fn is_taken(&self) -> bool {
         self.has_new_frame.get() == 0
     }
 
-    /// Prevents all further pulses; one in progress ends as planned, within its slot. Call this before you reset the
-    /// board, which would cut the pulse short and so drive the servo to its end stop. The ticks continue. The call is
-    /// a single store, so it is allowed anywhere, even in an interrupt handler; only a reset undoes it.
+    /// Prevents all further pulses; a pulse in progress ends as planned, within its slot. Call this function before a
+    /// reset of the board, which would shorten the pulse and so drive the servo to its end stop. The ticks continue.
+    /// The function makes a single store, so it may be called anywhere, even in an interrupt handler; only a reset
+    /// undoes it.
     #[inline(always)]
     pub fn suppress_pulses(&self) {
         self.allowed_pins.set(0);
     }
 
-    /// The number of frames since the start, modulo 256. It is incremented once per frame, one slot before the next
-    /// frame's first pulse.
+    /// The number of frames since the start, modulo 256, incremented once per frame, one slot before the next frame's
+    /// first pulse.
     #[inline(always)]
     pub fn ticks(&self) -> u8 {
         self.ticks.get()
     }
 
-    /// The servo and the pulse width of a slot; `None` if the slot has no pulse: the tick's slot, or a width out of
-    /// range.
+    /// Returns the servo and the pulse width of a slot; `None` if the slot has no pulse: the tick's slot, or a width
+    /// out of range.
     #[cfg(any(test, target_arch = "avr"))]
     #[inline(always)]
     fn planned_pulse(&self, slot: u8) -> Option<(usize, u16)> {
         let servo = usize::from(slot) & (SIZE - 1);
         let width = self.frames[usize::from(self.played_frame.get() & 1)][servo].get();
-        // Checked here, immediately before the width is used.
+        // The width is checked immediately before its use.
         let is_in_range = MIN_WIDTH_CYCLES <= width && width <= Self::CLOSE_COUNT;
         (slot != Self::TICK_SLOT && is_in_range).then_some((servo, width))
     }
@@ -164,7 +166,7 @@ mod tests {
     impl<const SIZE: usize> Variables<SIZE> {
         fn for_servos<const SERVOS: usize>() -> Self {
             let bytes = [const { Byte::new(0) }; 7];
-            bytes[0].set(SERVOS as u8); // the slot of the tick
+            bytes[0].set(SERVOS as u8); // the tick's slot
             let mut pins = [const { [const { Byte::new(0) }; 2] }; SIZE];
             for (servo, pin) in pins.iter_mut().enumerate().take(SERVOS) {
                 *pin = [Byte::new(0x25), Byte::new(servo as u8 + 1)];
@@ -204,7 +206,7 @@ mod tests {
         }
     }
 
-    /// Plans each slot of a frame, and returns the plans: slot, mask and count of the falling edge.
+    /// Plans each slot of a frame. Returns the plans: slot, mask, and count of the falling edge.
     fn plan_frame<const SERVOS: usize, const SIZE: usize>(
         engine: &Engine<'_, SERVOS, SIZE>,
     ) -> [(u8, u8, u16); 9] {
@@ -227,7 +229,10 @@ mod tests {
         for (servo, width) in widths.iter_mut().enumerate() {
             *width = 24_000 + servo as u16;
         }
-        assert!(engine.is_taken(), "no frame waits before the first one");
+        assert!(
+            engine.is_taken(),
+            "no frame waits before the first submission"
+        );
         engine.submit(widths);
         assert!(!engine.is_taken(), "the first frame waits");
         for frame in 0..3 {
@@ -248,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn in_a_frame_of_one_to_eight_servos_each_has_its_slot_before_the_ticks_slot() {
+    fn each_of_one_to_eight_servos_has_its_slot_before_the_ticks_slot() {
         assert_each_servo_has_its_slot::<1, 1>();
         assert_each_servo_has_its_slot::<2, 2>();
         assert_each_servo_has_its_slot::<3, 4>();
@@ -260,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_width_too_short_or_too_long_for_a_slot_makes_no_pulse() {
+    fn a_width_too_short_or_too_long_for_a_slot_results_in_no_pulse() {
         let variables = Variables::<8>::for_servos::<6>();
         let engine = variables.engine::<6>();
         let max_cycles = max_width_cycles(6);
@@ -270,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_submitted_frame_is_played_only_from_its_first_slot_on() {
+    fn a_submitted_frame_is_played_from_its_first_slot_on() {
         let variables = Variables::<4>::for_servos::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);
@@ -278,7 +283,11 @@ mod tests {
         engine.plan_next_slot();
         engine.submit([30_000u16; 4]);
         engine.plan_next_slot();
-        assert_eq!(engine.fall_count.get(), 20_220, "the played frame stays");
+        assert_eq!(
+            engine.fall_count.get(),
+            20_220,
+            "the played frame does not change"
+        );
         engine.plan_next_slot();
         engine.plan_next_slot();
         assert_eq!(engine.mask.get(), 0, "the tick's slot");

@@ -1,11 +1,11 @@
-//! Servo pulses that are exact to the CPU cycle, and a steady clock, for any program on an
-//! ATmega328P (Arduino UNO, Nano, Pro Mini).
+//! Servo pulses that are exact to the CPU cycle, and a steady clock, for any program on an ATmega328P (Arduino UNO,
+//! Nano, Pro Mini).
 //!
-//! A servo turns the width of a pulse into an angle, so every cycle of jitter makes the horn tremble. Interrupt
-//! latency varies with the current instruction and with other interrupts that run. The remedy is to be early and
-//! then wait. Timer1 counts the CPU cycles of each slot. Each compare interrupt reads how late it already is, waits
-//! for the rest of [`LEAD_CYCLES`], and only then stores to the port. Both edges wait in the same code, so every
-//! constant delay cancels and the width is exact.
+//! A servo converts the width of a pulse to an angle, so every cycle of jitter makes the horn tremble. Interrupt
+//! latency varies with the current instruction and with other interrupts. Therefore each interrupt occurs early, and
+//! its handler waits. Timer1 counts the CPU cycles of each slot. The handler of each compare interrupt reads its own
+//! latency from the timer, waits for the rest of [`LEAD_CYCLES`], and only then stores to the port. Both edges wait in
+//! the same code, so every constant delay cancels and the width is exact.
 //!
 //! ```text
 //! slot    0         1         2         3         4         0
@@ -17,12 +17,12 @@
 //!                                                 ^ tick   ^ next frame
 //! ```
 //!
-//! One pin is high at a time. The last slot has no pin: it opens with the tick, and just before it closes, the
-//! engine takes over the frame that main has submitted. The length of a slot follows from the number of servos,
-//! [`slot_cycles`]: with four servos a slot is 4 ms, and a frame is exactly 20 ms.
+//! At most one pin is high at a time. The last slot has no pin: it opens with the tick, and when it closes, the engine
+//! takes over the frame that main has submitted. The length of a slot, [`slot_cycles`], depends on the number of
+//! servos: with four servos a slot is 4 ms, and a frame is exactly 20 ms.
 //!
-//! Each slot is planned at the end of the previous one, so that the opening interrupt has almost nothing to do
-//! before its edge.
+//! Each slot is planned at the end of the previous slot, so that the opening interrupt has little to do before its
+//! edge.
 //!
 //! # Use
 //!
@@ -40,41 +40,40 @@
 //! servos::submit([1500 * CYCLES_PER_US; 4]);
 //! ```
 //!
-//! The program needs `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a complete program.
+//! The program requires `#![feature(abi_avr_interrupt)]`. `examples/sweep.rs` is a complete program.
 //!
 //! # When not to use it
 //!
-//! The engine occupies Timer1, and its interrupt handlers spend a few per cent of the processor's time waiting. Two
-//! servos on pins 9 and 10 do not need it: the timer's own compare outputs are exact without any code. The engine
-//! does not run on other chips, or at other clock rates.
+//! The engine occupies Timer1, and its interrupt handlers spend about one per cent of the processor's time waiting. Two
+//! servos on pins 9 and 10 do not require the engine, because the timer's own compare outputs are exact without any
+//! code. The engine does not run on other chips or at other clock rates.
 //!
-//! # An edge that cannot be on time
+//! # Late edges
 //!
-//! A late edge must not become a wrong angle:
+//! A late edge must not cause a wrong angle:
 //!
-//! - A rising edge that is late is not made. The servo misses one of its 50 pulses per second, and holds its
-//!   position.
-//! - A falling edge cannot be dropped, and nothing can shorten a pulse that is already too long. It is made at
-//!   once, so the pulse is longer by as much as the edge is late: 10 us, or 160 cycles, turn an SG-90 by one degree
-//!   for 20 ms. If interrupts stay off until the end of the slot, the start of the next slot ends the pulse.
+//! - A late rising edge is not made. The servo misses one of its 50 pulses per second, and holds its position.
+//! - A late falling edge is made at once, because it cannot be omitted. The pulse is longer by the delay of the edge:
+//!   10 us, or 160 cycles, turn an SG-90 by one degree for 20 ms. If interrupts stay off until the end of the slot, the
+//!   start of the next slot ends the pulse.
 //! - The function `late_edges` returns the number of late edges of both kinds.
 //!
 //! # Rules
 //!
-//! - The longest of the program's other handlers and the longest time with interrupts off together take less than
-//!   [`LEAD_CYCLES`] minus 60 cycles; the engine's own handler needs these 60 before it reads the timer. If they
+//! - The program's longest other handler and its longest time with interrupts off together take less than
+//!   [`LEAD_CYCLES`] minus 60 cycles; the engine's own handler takes these 60 cycles before it reads the timer. If they
 //!   take longer, the edge is late.
-//! - Handlers do not enable other interrupts. Timer1's compare interrupts are served before Timer0's, the USART's
-//!   and all later ones. INT0, INT1, PCINT, the watchdog and Timer2 are served before Timer1: in a program that
-//!   uses several of them, the times of their handlers add up.
-//! - Interrupts must never be off for 62 us, 1000 cycles. If the end of a slot is missed for this reason, the slot
-//!   is repeated without a pulse, and everything is one slot later from then on.
+//! - Handlers do not enable other interrupts. Timer1's compare interrupts have priority over Timer0, the USART and all
+//!   later vectors. INT0, INT1, PCINT, the watchdog and Timer2 have priority over Timer1: in a program that uses
+//!   several of these interrupts, the times of their handlers add up.
+//! - Interrupts must never be off for 62 us (1000 cycles). If the end of a slot is missed for this reason, the slot
+//!   repeats without a pulse, and all later slots are delayed by one slot.
 //! - Only the two handlers access Timer1, because all its 16-bit registers share one TEMP byte.
-//! - All other code changes pins of the servos' ports only by single `sbi` and `cbi` instructions, which no
-//!   interrupt can split.
+//! - All other code changes pins of the servos' ports only with single `sbi` and `cbi` instructions, which no interrupt
+//!   can split.
 
 #![cfg_attr(not(test), no_std)]
-#![allow(unsafe_code)] // The crate writes to ports and to the timer; each block states why this is safe.
+#![allow(unsafe_code)] // Writing to ports and to the timer needs it.
 #![cfg_attr(target_arch = "avr", feature(asm_experimental_arch))]
 
 pub mod cells;
@@ -90,14 +89,14 @@ pub use timing::{
     CYCLES_PER_US, LEAD_CYCLES, MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles, slot_cycles,
 };
 
-/// Makes the enclosing module the owner of Timer1 and of the pins of one to eight servos. The module then has the
+/// Makes the enclosing module the owner of Timer1 and of the pins of one to eight servos. Defines in this module the
 /// functions `start`, `submit`, `is_taken`, `suppress_pulses`, `ticks` and `late_edges` of [`Engine`], and the handlers
 /// of both compare interrupts.
 ///
 /// - `engine!(PINS)` with a constant `PINS: [Pin; N]`, for pins that are known at compile time.
-/// - `engine!(later: N)` for pins that are known at run time; adds the function `connect`.
+/// - `engine!(later: N)` for pins that are known only at run time; also defines the function `connect`.
 ///
-/// Use it once in a program: a second use defines the same handlers again, and the linker refuses them.
+/// Use this macro once in a program: a second use would define the handlers twice, which is a linker error.
 #[macro_export]
 macro_rules! engine {
     (later: $servos:expr) => {
@@ -112,20 +111,20 @@ macro_rules! engine {
         /// See `servo_pulses::Engine::start`.
         ///
         /// # Safety
-        /// Interrupts are off, and nothing else uses Timer1 from now on.
+        /// Interrupts must be off, and no other code may use Timer1 from now on.
         #[inline(always)]
         pub unsafe fn start() {
-            // SAFETY: the caller fulfils the same condition.
+            // SAFETY: the caller guarantees the same condition.
             unsafe { ENGINE.start() }
         }
     };
     (@ $servos:expr, $pins:expr) => {
         const SERVOS: usize = $servos;
-        /// Length of the tables: a power of two, so that a mask keeps an index in range.
+        /// The length of the tables, a power of two, so that a mask keeps an index in range.
         const SIZE: usize = SERVOS.next_power_of_two();
 
-        // Each is a separate variable, so that its address is part of the instruction. All are zero until `start`
-        // (only pins given as a constant are not), so that they need no initial values in flash.
+        // These are separate variables, so that their addresses are part of the instructions. All but constant pins are
+        // zero until `start`, so that they require no initial values in flash.
         static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
         static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
             [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
@@ -189,14 +188,14 @@ macro_rules! engine {
         /// The handler TIMER1_COMPA of an ATmega328P: opens a slot.
         #[unsafe(export_name = "__vector_11")]
         extern "avr-interrupt" fn handle_slot_start() {
-            // SAFETY: this is the handler of the compare match A.
+            // SAFETY: this is the handler of compare match A.
             unsafe { ENGINE.open_slot() }
         }
 
         /// The handler TIMER1_COMPB of an ATmega328P: closes a slot.
         #[unsafe(export_name = "__vector_12")]
         extern "avr-interrupt" fn handle_slot_end() {
-            // SAFETY: this is the handler of the compare match B.
+            // SAFETY: this is the handler of compare match B.
             unsafe { ENGINE.close_slot() }
         }
     };
@@ -206,10 +205,10 @@ macro_rules! engine {
         /// See `servo_pulses::Engine::start`.
         ///
         /// # Safety
-        /// Interrupts are off, and nothing else uses Timer1 from now on.
+        /// Interrupts must be off, and no other code may use Timer1 from now on.
         #[inline(always)]
         pub unsafe fn start() {
-            // SAFETY: the caller fulfils the same condition.
+            // SAFETY: the caller guarantees the same condition.
             unsafe { ENGINE.start_with_fixed_pins() }
         }
     };

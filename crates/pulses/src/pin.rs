@@ -1,19 +1,19 @@
 //! Arduino pins as port registers and bits.
 //!
-//! The numbers printed on the board are not the chip's pin numbers, and the chip's pins are spread over three ports.
+//! The numbers printed on the board differ from the chip's pin numbers, and the pins belong to three ports.
 
 /// A pin of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
-    /// The data address of the pin's PORT register; DDR is one below (data sheet, 14.4).
+    /// The data address of the pin's PORT register; the address of DDR is less by one (data sheet, 14.4).
     pub(crate) port: u8,
     /// The pin's bit in its PORT register.
     pub(crate) mask: u8,
 }
 
 impl Pin {
-    /// The pin with this number on the board: D0 to D13, or 14 to 19 for A0 to A5; `None` for any other number. D0
-    /// and D1 are the serial line, D13 has the LED.
+    /// Creates the pin with this number on the board: 0 to 13 for D0 to D13, 14 to 19 for A0 to A5. Returns `None` for
+    /// any other number. D0 and D1 belong to the serial port, D13 to the LED.
     #[must_use]
     pub const fn arduino(number: u8) -> Option<Self> {
         let (port, bit) = match number {
@@ -45,8 +45,8 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// Number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports are
-    /// named as in the data sheet.
+    /// The number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports
+    /// are named as in the data sheet.
     const SOCKETS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),

@@ -1,56 +1,55 @@
-//! A store to a port at a chosen cycle.
+//! A cycle-exact store to a port register.
 
 use core::arch::asm;
 
-/// Stores `low | change` in `port` a fixed number of cycles after Timer1 reaches `count` (low
-/// byte first), and returns 0xff. If that count has passed, stores `low` at once and returns 0.
+/// Stores `base | set_mask` in `port` a fixed number of cycles after Timer1 reaches `count` (low byte first), and
+/// returns 0xff. If this count has passed, stores `base` at once and returns 0.
 ///
-/// A falling edge calls it with a `change` of 0: the instructions are the same as for a rising edge, so the time they
-/// take cancels out of the width.
+/// For a falling edge the caller passes a `set_mask` of 0. The instructions are the same as for a rising edge, so their
+/// time cancels out of the width.
 ///
 /// # Safety
-/// `port` is the PORT register of a servo pin. `low` has the right levels for its other pins until
-/// the store, so interrupts are off. `count` is at most 255 cycles ahead.
+/// `port` must be the PORT register of a servo pin. Interrupts must be off, so that `base` stays valid for the other
+/// pins until the store. `count` must be at most 255 cycles ahead.
 #[inline(always)]
-pub unsafe fn store_at(count: [u8; 2], port: *mut u8, low: u8, change: u8) -> u8 {
-    let [left, high] = count;
-    let on_time: u8;
-    // SAFETY: reads TCNT1 (low byte first, which latches the high one), and
-    // writes `port`, for which the caller is responsible.
+pub unsafe fn store_at(count: [u8; 2], port: *mut u8, base: u8, set_mask: u8) -> u8 {
+    let [remaining, high] = count;
+    let on_time_mask: u8;
+    // SAFETY: reads TCNT1 (the low byte first, which latches the high byte), and writes to `port`, which by the
+    // contract is a PORT register.
     unsafe {
         asm!(
-            // left = count - now
+            // remaining = count - now
             "lds {now}, {tcnt1l}",
-            "sub {left}, {now}",
+            "sub {remaining}, {now}",
             "lds {now}, {tcnt1h}",
-            "sbc {on_time}, {now}",
-            // A borrow means that the edge is late: then on_time, left and change become 0.
-            // Otherwise on_time is 0xff.
-            "sbc {on_time}, {on_time}",
-            "com {on_time}",
-            "and {left}, {on_time}",
-            "and {change}, {on_time}",
-            "or {value}, {change}",
-            // Each turn of the loop takes three cycles; it ends with left = 253, 254 or
-            // 255. The other 0 to 2 cycles come from branches to the next instruction:
-            // two cycles if taken, one if not.
-            "2: subi {left}, 3",
+            "sbc {on_time_mask}, {now}",
+            // A borrow means that the edge is late: then on_time_mask, remaining and set_mask become 0. Otherwise
+            // on_time_mask is 0xff.
+            "sbc {on_time_mask}, {on_time_mask}",
+            "com {on_time_mask}",
+            "and {remaining}, {on_time_mask}",
+            "and {set_mask}, {on_time_mask}",
+            "or {value}, {set_mask}",
+            // Each iteration takes three cycles; the loop ends with remaining = 253, 254 or 255. The remaining 0 to 2
+            // cycles come from branches to the next instruction: two cycles if taken, one cycle if not.
+            "2: subi {remaining}, 3",
             "brcc 2b",
-            "cpi {left}, 254",
+            "cpi {remaining}, 254",
             "brcc 3f",
-            "3: cpi {left}, 255",
+            "3: cpi {remaining}, 255",
             "breq 4f",
             "4: st {port}, {value}",
             tcnt1l = const 0x84,
             tcnt1h = const 0x85,
             now = out(reg) _,
-            left = inout(reg_upper) left => _,
-            on_time = inout(reg) high => on_time,
+            remaining = inout(reg_upper) remaining => _,
+            on_time_mask = inout(reg) high => on_time_mask,
             port = in(reg_ptr) port,
-            value = inout(reg) low => _,
-            change = inout(reg) change => _,
+            value = inout(reg) base => _,
+            set_mask = inout(reg) set_mask => _,
             options(nostack),
         );
     }
-    on_time
+    on_time_mask
 }

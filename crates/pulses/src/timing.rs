@@ -1,31 +1,31 @@
 //! The lengths of slots, frames and pulses.
 
-/// Cycles from the compare match until the handler stops waiting; the edge follows a fixed time later. At most 255,
+/// Cycles from the compare match until the handler stops waiting; the edge follows after a fixed time. At most 255,
 /// because the handler counts the wait in one byte.
 pub const LEAD_CYCLES: u8 = 220;
 
-/// CPU cycles in a microsecond: the CPU runs at 16 MHz, and Timer1 counts each cycle.
+/// CPU cycles in a microsecond at 16 MHz; Timer1 counts each cycle.
 pub const CYCLES_PER_US: u16 = 16;
 
-/// The shortest possible pulse, in cycles. It equals the margin at either end of a slot.
+/// The shortest possible pulse, in cycles, which equals the margin at either end of a slot.
 pub const MIN_WIDTH_CYCLES: u16 = MARGIN_CYCLES;
 
-/// Cycles (62.5 us) after the start and before the end of a slot that are reserved for the engine's two handlers and
-/// for interrupts that delay them.
+/// Cycles after the start and before the end of a slot (62.5 us each) that are reserved for the engine's two handlers
+/// and for interrupts that delay them.
 const MARGIN_CYCLES: u16 = 1_000;
 
-/// The period of 20 ms that a servo expects between pulses, in cycles.
+/// The period of a servo's pulses, 20 ms, in cycles.
 const FRAME_CYCLES: u32 = 320_000;
 
-/// The shortest slot, 2.5 ms: its longest pulse, 2.4375 ms, is beyond any servo's travel.
+/// The shortest slot, 2.5 ms, in cycles. Its longest pulse, 2.4375 ms, is beyond any servo's travel.
 const MIN_SLOT_CYCLES: u32 = 40_000;
 
-/// The longest slot, 4 ms, as with four servos.
+/// The longest slot, 4 ms as with four servos, in cycles.
 const MAX_SLOT_CYCLES: u32 = 64_000;
 
-/// The length of a slot in cycles, with this many servos. The servos' slots and one slot without a pin, which opens
-/// with the tick, share 20 ms. A slot takes at least 2.5 ms, so a frame with eight servos takes 22.5 ms; it takes at
-/// most 4 ms, so a frame with three servos takes 16 ms.
+/// Returns the length of a slot in cycles for a number of servos. A frame of 20 ms consists of the servos' slots and
+/// one slot without a pin, which opens with the tick. But a slot takes at least 2.5 ms, so a frame with eight servos
+/// takes 22.5 ms; and a slot takes at most 4 ms, so a frame with three servos takes 16 ms.
 ///
 /// # Panics
 /// Panics, at compile time, if there are no servos or more than eight.
@@ -35,18 +35,18 @@ pub const fn slot_cycles(servos: usize) -> u16 {
         1 <= servos && servos <= 8,
         "an engine has one to eight servos"
     );
-    let even_share = FRAME_CYCLES / (servos as u32 + 1);
-    // With fewer than four servos, an even share of the frame does not fit into 16 bits.
-    if even_share > MAX_SLOT_CYCLES {
+    let equal_slot_cycles = FRAME_CYCLES / (servos as u32 + 1);
+    // With fewer than four servos, an equal part of the frame does not fit into 16 bits.
+    if equal_slot_cycles > MAX_SLOT_CYCLES {
         return MAX_SLOT_CYCLES as u16;
     }
-    if even_share < MIN_SLOT_CYCLES {
+    if equal_slot_cycles < MIN_SLOT_CYCLES {
         return MIN_SLOT_CYCLES as u16;
     }
-    even_share as u16
+    equal_slot_cycles as u16
 }
 
-/// Cycles from one pulse of a servo to its next.
+/// Returns the number of cycles from a servo's pulse to its next pulse.
 ///
 /// # Panics
 /// Panics as [`slot_cycles`] does.
@@ -55,7 +55,7 @@ pub const fn frame_cycles(servos: usize) -> u32 {
     (servos as u32 + 1) * slot_cycles(servos) as u32
 }
 
-/// The longest possible pulse, in cycles.
+/// Returns the longest possible pulse, in cycles.
 ///
 /// # Panics
 /// Panics as [`slot_cycles`] does.
@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn with_four_to_seven_servos_a_frame_takes_20_ms_within_half_a_microsecond() {
+    fn a_frame_of_four_to_seven_servos_takes_20_ms_within_half_a_microsecond() {
         assert_eq!(frame_cycles(4), 320_000);
         for servos in 4..=7 {
             assert!(
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn any_number_of_servos_gets_pulses_of_up_to_2_4_ms_every_8_to_22_5_ms() {
+    fn for_any_number_of_servos_pulses_may_take_2_4_ms_and_repeat_after_8_to_22_5_ms() {
         for servos in 1..=8 {
             assert!(
                 max_width_cycles(servos) >= 2_400 * CYCLES_PER_US,

@@ -1,8 +1,8 @@
-"""A robotic lizard with four servos: its mathematics, and a board to drive.
+"""A robotic lizard with four servos: kinematics, gaits, and a board to drive.
 
-`Model` is a robot.toml, `Robot` a board. Angles are degrees in the chassis frame: x to the robot's right, y
-forward, counter-clockwise from +x, seen from above. Lengths are mm. Servos are in the order A1 front left, A2 front
-right, A3 back right, A4 back left.
+`Model` represents a robot.toml, and `Robot` a board. Angles are in degrees in the chassis frame: x to the robot's
+right, y forward, counter-clockwise from +x, seen from above. Lengths are in mm. The servo order is A1 front left, A2
+front right, A3 hind right, A4 hind left.
 """
 
 from lizard._lizard import VERSION as __version__

@@ -1,4 +1,4 @@
-"""Serial ports: one of this machine, and that of a simulated board in real time."""
+"""Serial ports: a port of this machine, and the port of a board simulated in real time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ FRAME = 0.02
 
 
 class Port(Protocol):
-    """A serial port. `read` waits for a frame at most, and returns b"" if nothing has arrived."""
+    """A serial port. `read` waits for at most one frame, and returns b"" if no byte has arrived."""
 
     def read(self) -> bytes: ...
     def write(self, data: bytes) -> None: ...
@@ -23,7 +23,7 @@ class Port(Protocol):
 
 
 class SerialPort:
-    """A port of this machine; raises OSError once the port has disappeared."""
+    """A port of this machine; raises OSError if the port has disappeared."""
 
     def __init__(self, name: str, baud: int) -> None:
         self._serial = serial.Serial(name, baud, timeout=FRAME, exclusive=True)
@@ -39,7 +39,7 @@ class SerialPort:
 
 
 class SimulatedPort:
-    """The firmware's core without a chip, which runs a frame for each 20 ms of this machine's time."""
+    """The firmware's core without a chip, which runs one frame every 20 ms."""
 
     def __init__(self, robot: _lizard.Robot) -> None:
         self.board = _lizard.Board(robot)
@@ -53,7 +53,7 @@ class SimulatedPort:
         with self._lock:
             data = bytes(self._unread)
             self._unread.clear()
-        return self.board.frame(data).encode()
+        return self.board.run_frame(data).encode()
 
     def write(self, data: bytes) -> None:
         with self._lock:

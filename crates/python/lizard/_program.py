@@ -1,4 +1,4 @@
-"""The program `lizard` of this package, as a command."""
+"""The command `lizard` of this package."""
 
 import signal
 import sys
@@ -7,6 +7,6 @@ from lizard import _lizard
 
 
 def main() -> int:
-    # Python's own handler would wait until the program has ended.
+    # Python's own signal handler would run only after the program has ended.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return _lizard.program(["lizard", *sys.argv[1:]])
+    return _lizard.run_program(["lizard", *sys.argv[1:]])

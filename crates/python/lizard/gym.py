@@ -17,27 +17,28 @@ from lizard._ports import FRAME
 from lizard.model import Array, Model
 
 MAX_SWEEP = 30.0
-"""Sweep of a servo from neutral for the actions -1 and 1, deg."""
+"""Sweep from neutral that corresponds to the action 1, deg."""
 TIMESTEP = 0.001
-"""Time step of the engine, s: the largest with which a cycle moves the robot as far as with 0.2 ms, within 2 %."""
+"""Engine time step, s: the largest for which the movement in a cycle differs by at most 2 % from that at 0.2 ms."""
 SETTLING_TIME = 0.5
-"""Time for the robot to settle on the floor before the first frame, s."""
+"""Time before the first frame in which the robot settles on the floor, s."""
 
 
 class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """The robot on a level floor; each call of `step` advances one frame of 20 ms.
+    """The robot on a level floor; each call of `step` simulates one frame of 20 ms.
 
     Action, (4,), -1 to 1: the targets of A1 to A4 as sweeps from neutral, counter-clockwise positive, in units of
-    30 deg. As on the board, a target is approached at most as fast as `[limits] gait_slew`, and a pose that violates
-    a limit is refused: the last safe pose is held.
+    30 deg. As on the board, `[limits] gait_slew` limits the speed, and a pose that violates a limit is refused: the
+    last safe pose is held.
 
     Observation, (15,): the servos' sweeps (rad) and rates (rad/s), the body's velocity forward and to the left (m/s)
-    and its turn (rad/s), and the targets (rad).
+    and turn rate (rad/s), and the targets (rad).
 
-    Reward: the distance moved in this frame along the axis that points forward at the start, mm. `info` has the
-    displacement from the start, `forward` and `left` (mm) and `turn` (deg), and `held`, true if the action was refused.
+    Reward: the distance moved in this frame along the initial forward axis, mm. `info` has the displacement from the
+    start, `forward` and `left` (mm) and `turn` (deg), and `held`, true if the action was refused.
 
-    A seed determines the friction of the floor, which differs from robot.toml's by up to `friction_spread`.
+    A seed determines the floor's friction, which differs from the value in robot.toml by a fraction of at most
+    `friction_spread`.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012
@@ -52,7 +53,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self.engine = mujoco.MjModel.from_xml_string(self.robot.mjcf(shapes=False))
         if self.engine.numeric("back over forward").data[0] != 1:
             raise ValueError(
-                "[ground] ratio is not 1: MuJoCo cannot simulate pads with a grain (directional friction)"
+                "[ground] friction_back_over_forward must be 1: MuJoCo cannot simulate pads with a grain"
             )
         _set_timestep(self.engine, timestep)
         self.data = mujoco.MjData(self.engine)
@@ -107,7 +108,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         return self._observation(), reward, has_diverged, False, self._info(is_held)
 
     def _chassis_pose(self) -> tuple[float, float, float]:
-        """Position of the chassis, to the right and forward (mm), and its heading (rad)."""
+        """Returns the position of the chassis, to the right and forward (mm), and the heading (rad)."""
         x, y, _, w, qx, qy, qz = self.data.qpos[:7]
         heading = math.atan2(2 * (w * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
         return 1000 * x, 1000 * y, heading
@@ -141,7 +142,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
 
 def _set_timestep(engine: mujoco.MjModel, timestep: float) -> None:
-    """Sets the engine's time step, softens the constraints to suit it, and selects faster settings of the solver."""
+    """Sets the engine's time step, softens the constraints accordingly, and selects faster solver settings."""
     engine.opt.timestep = timestep
     engine.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
     engine.opt.tolerance, engine.opt.noslip_iterations = 1e-6, 0

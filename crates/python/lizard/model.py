@@ -1,4 +1,4 @@
-"""The model of a robot.toml: kinematics of its linkage, and its gaits."""
+"""The model of a robot.toml: the linkage's kinematics, and the gaits."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from lizard import _lizard
 Array = NDArray[np.float64]
 
 MARGINS: tuple[str, ...] = tuple(_lizard.MARGINS)
-"""Names of the ten margins of a pose, in the order of `Solution.margins`."""
+"""Names of a pose's ten margins, in the order of `Solution.margins`."""
 
 
 class Travel(NamedTuple):
-    """Movement of the body; a component is NaN if it is undecided because two feet pull against the other two."""
+    """Movement of the body; a component is NaN if two feet pull against the other two, so that it is undecided."""
 
     forward: float
     """mm"""
@@ -30,62 +30,62 @@ class Travel(NamedTuple):
 
 @dataclass(frozen=True)
 class Solution:
-    """Joints of the linkage at poses of the shape (..., 4); NaN where a loop does not close."""
+    """Joints of the linkage at poses of shape (..., 4); NaN where a loop does not close."""
 
     head: Array
-    """End point of the head, mm, (..., 2)."""
+    """Head point, mm, (..., 2)."""
     tail: Array
-    """End point of the tail, mm, (..., 2)."""
+    """Tail point, mm, (..., 2)."""
     couplers: Array
     """Coupler angles theta2, theta3 (head), theta6, theta7 (tail), deg, (..., 4)."""
     directions: Array
     """Directions of the left and the right slider, rear to front, deg, (..., 2)."""
     strokes: Array
-    """Travels of the left and the right slider from nominal, mm, (..., 2)."""
+    """Strokes of the left and the right slider from nominal, mm, (..., 2)."""
     margins: Array
-    """Sines named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly mode."""
+    """Sines, named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly mode."""
     safe: NDArray[np.bool_]
-    """True where limits and servos allow the pose, (...)."""
+    """True where the pose is within the limits and the servos' travel, (...)."""
 
 
 @dataclass(frozen=True)
 class Mobility:
-    """Degrees of freedom of the body at poses of the shape (..., 4), by the rank of its constraints."""
+    """The body's degrees of freedom at poses of shape (..., 4), from the rank of the constraints."""
 
     freedoms: NDArray[np.int_]
     """Degrees of freedom while the servos turn, (...): 4 away from singularities."""
     loose: NDArray[np.int_]
-    """Degrees of freedom while the servos hold, (...): more than 0 at a type-2 singularity."""
+    """Degrees of freedom while the servos are locked, (...): more than 0 at a type-2 singularity."""
 
 
 @dataclass(frozen=True)
 class Gait:
-    """A gait that has passed every check, as the firmware sends it: a frame every 20 ms."""
+    """A checked gait, as the firmware sends it: a frame every 20 ms."""
 
     name: str
     period: float
-    """Time of a cycle, s."""
+    """Cycle time, s."""
     times: Array
-    """Time of each frame of a cycle, s, (n,)."""
+    """Times of a cycle's frames, s, (n,)."""
     angles: Array
     """Servo angles in each frame, deg, (n, 4)."""
     pulses: Array
     """Pulse widths in each frame, us, (n, 4)."""
     peak_speed: float
-    """Largest speed of a servo over a frame, deg/s."""
+    """Largest servo speed over a frame, deg/s."""
     least_margin: tuple[str, float]
     """Name and value of the smallest margin in a cycle."""
     _robot: _lizard.Robot
 
     def predict(self, *, with_servos: bool = False) -> Travel:
-        """Predicts the movement per cycle by the contact model: with ideal servos, or with those of robot.toml."""
+        """Predicts the movement per cycle in the contact model, with ideal servos or with those in robot.toml."""
         return Travel(*self._robot.predict(self.name, with_servos))
 
 
 class Model:
-    """A robot whose every value and gait has been checked.
+    """A robot whose values and gaits have been checked.
 
-    Arrays of poses have any shape that ends with 4, in servo order; arrays of points have any shape that ends with 2.
+    Arrays of poses have any shape that ends with 4 (servo order); arrays of points have any shape that ends with 2.
     """
 
     def __init__(self, robot: _lizard.Robot) -> None:
@@ -93,9 +93,9 @@ class Model:
 
     @staticmethod
     def from_toml(source: str | os.PathLike[str]) -> Model:
-        """Reads a robot.toml file, or its text: a str with a line break is text.
+        """Reads a robot.toml file or its text; a str with a line break is text.
 
-        Raises RobotFileError with the message of `lizard gaits`, and with `file`, `line` and `key` of the mistake.
+        Raises RobotFileError with the message of `lizard gaits`, and with the `file`, `line` and `key` of the error.
         """
         if isinstance(source, str) and "\n" in source:
             return Model(_lizard.Robot(source))
@@ -103,11 +103,11 @@ class Model:
 
     @staticmethod
     def default() -> Model:
-        """The robot of the project's robot.toml, which is that of the paper."""
+        """Creates the model of the project's robot.toml, the paper's robot."""
         return Model(_lizard.Robot(default_toml()))
 
     def with_gait(self, table: str) -> Model:
-        """The same robot with `stand` and one other gait, given as its table `[gait.name]` of robot.toml.
+        """Creates the same robot with only two gaits: `stand` and the gait with the robot.toml table `[gait.name]`.
 
         Raises RobotFileError, as `from_toml` does.
         """
@@ -115,12 +115,12 @@ class Model:
 
     @property
     def name(self) -> str:
-        """Name of the robot, which the firmware prints."""
+        """The robot's name, which the firmware prints."""
         return self._robot.name()
 
     @property
     def neutral(self) -> Array:
-        """Servo angles at which the horns are fitted, deg, (4,)."""
+        """Neutral servo angles, at which the horns are fitted, deg, (4,)."""
         return np.array(self._robot.neutral())
 
     @property
@@ -130,7 +130,7 @@ class Model:
 
     @property
     def gait_slew(self) -> float:
-        """Largest servo speed that a gait may use, deg/s."""
+        """Largest allowed servo speed of a gait, deg/s."""
         return self._robot.gait_slew()
 
     @property
@@ -139,7 +139,7 @@ class Model:
         return self._robot.gaits()
 
     def gait(self, name: str) -> Gait:
-        """Finds a gait by its name; raises KeyError with all names."""
+        """Returns a gait by its name; raises KeyError, which lists all names."""
         period, peak_speed, least_margin, times, angles = self._robot.gait(name)
         pulses = self._robot.pulses(angles)
         name = name.replace(" ", "-")
@@ -155,8 +155,8 @@ class Model:
         )
 
     def solve(self, angles: ArrayLike) -> Solution:
-        """Forward kinematics: every joint and margin for servo angles (..., 4), deg."""
-        poses, shape = _rows(angles, 4)
+        """Forward kinematics: computes all joints and margins for servo angles (..., 4), deg."""
+        poses, shape = _to_rows(angles, 4)
         columns = self._robot.solve(poses).reshape(*shape, 23)
         head, tail, couplers, directions, strokes, margins, safe = np.split(
             columns, [2, 4, 8, 10, 12, 22], axis=-1
@@ -167,10 +167,10 @@ class Model:
     def inverse(
         self, head: ArrayLike | None = None, tail: ArrayLike | None = None
     ) -> Array:
-        """Inverse kinematics: servo angles (..., 4), deg, that put head and tail at points (..., 2), mm.
+        """Inverse kinematics: computes servo angles (..., 4), deg, for head and tail points (..., 2), mm.
 
-        The elbows are outward, as the robot is built. An end that is not given has its servos at neutral; an end whose
-        point is out of reach has NaN for both servos.
+        The elbows are outward, as on the built robot. The servos of an omitted end are at neutral; the servos of an end
+        whose point is out of reach are NaN.
         """
         end_angles = [
             (servos, self.working_modes(name, points)[..., 0, :])
@@ -184,45 +184,45 @@ class Model:
         return angles
 
     def working_modes(self, end: str, points: ArrayLike) -> Array:
-        """Servo angles (..., 4, 2), deg, that put an end, "head" or "tail", at points (..., 2), mm, by working mode.
+        """Computes servo angles (..., 4, 2), deg, for points (..., 2), mm, of an end, "head" or "tail".
 
-        The four modes are outward-outward, outward-inward, inward-outward, inward-inward, the left elbow first;
-        the two angles are those of the left and the right servo: A1, A2, or A4, A3. NaN where out of reach.
+        The four working modes are outward-outward, outward-inward, inward-outward and inward-inward, the left elbow
+        first; the two angles are those of the left and the right servo: A1, A2, or A4, A3. NaN where out of reach.
         """
         if end not in ("head", "tail"):
-            raise ValueError(f'the ends are "head" and "tail", not {end!r}')
-        rows, shape = _rows(points, 2)
+            raise ValueError(f'the end must be "head" or "tail", got {end!r}')
+        rows, shape = _to_rows(points, 2)
         return self._robot.inverse(end == "head", rows).reshape(*shape, 4, 2)
 
     def reasons(self, angles: ArrayLike) -> list[str]:
-        """The reasons why a pose (4,), deg, is not safe, as sentences; none if it is safe."""
-        poses, shape = _rows(angles, 4)
+        """Returns messages with the reasons why a pose (4,), deg, is not safe; an empty list if it is safe."""
+        poses, shape = _to_rows(angles, 4)
         if shape != ():
-            raise ValueError(f"one pose has four angles; these are {shape} poses")
+            raise ValueError(f"expected one pose of shape (4,), got {(*shape, 4)}")
         return self._robot.reasons(poses[0].tolist())
 
     def pulses(self, angles: ArrayLike) -> Array:
-        """Pulse widths (..., 4), us, for servo angles (..., 4), deg, without trims."""
-        poses, shape = _rows(angles, 4)
+        """Computes pulse widths (..., 4), us, for servo angles (..., 4), deg, without trims."""
+        poses, shape = _to_rows(angles, 4)
         return self._robot.pulses(poses).reshape(*shape, 4)
 
     def jacobians(self, angles: ArrayLike) -> tuple[Array, Array]:
-        """Derivatives K and K* of the eight loop equations, mm per radian, for servo angles (..., 4), deg.
+        """Computes the derivatives K and K* of the eight loop equations, mm per radian, for servo angles (..., 4), deg.
 
-        The columns of K (..., 8, 4) belong to theta1, theta4, theta8, theta5; those of K* (..., 8, 8) to theta2,
-        theta3, theta6, theta7, and to direction and travel (mm per mm) of the left and of the right slider.
-        K da + K* dp = 0.
+        The columns of K (..., 8, 4) belong to theta1, theta4, theta8 and theta5; the columns of K* (..., 8, 8) belong
+        to theta2, theta3, theta6 and theta7, and to the directions and strokes (mm per mm) of the left and the right
+        slider. K da + K* dp = 0.
         """
-        poses, shape = _rows(angles, 4)
+        poses, shape = _to_rows(angles, 4)
         rows = self._robot.matrices(poses)
         active, passive = rows[:, :32], rows[:, 32:]
         return active.reshape(*shape, 8, 4), passive.reshape(*shape, 8, 8)
 
     def mobility(self, angles: ArrayLike) -> Mobility:
-        """Degrees of freedom of the body for servo angles (..., 4), deg; -1 where a loop does not close."""
+        """Computes the body's degrees of freedom for servo angles (..., 4), deg; -1 where a loop does not close."""
         active, passive = self.jacobians(angles)
         closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
-        # Scaled to be comparable with a sine, so that a singular pose that is typed with seven digits is singular.
+        # Scaled to the size of sines, so that a singular pose with seven digits counts as singular.
         scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
         passive = np.where(closes[..., None, None], passive, 0) / scale
         active = np.where(closes[..., None, None], active, 0) / 50
@@ -234,26 +234,26 @@ class Model:
         return Mobility(np.where(closes, freedoms, -1), np.where(closes, loose, -1))
 
     def section(self) -> bytes:
-        """The robot's section of flash, with the maps of certified cells."""
+        """Builds the robot's flash section, with the maps of certified cells."""
         return self._robot.section()
 
     def image(self, *, only_robot: bool = False) -> str:
-        """The image for a board as Intel HEX: the firmware with this robot, or the robot alone."""
+        """Builds the image for a board as Intel HEX: the firmware with this robot, or the robot alone."""
         return self._robot.image(only_robot)
 
     def mjcf(self, *, shapes: bool = True) -> str:
-        """The model for MuJoCo, as `lizard model` writes it to an .xml file. Without shapes, it is much shorter."""
+        """Builds the MuJoCo model that `lizard model` writes to an .xml file; without shapes, it is much shorter."""
         return self._robot.mjcf(shapes)
 
 
 def default_toml() -> str:
-    """Text of the project's robot.toml, as a start for one's own."""
+    """Returns the text of the project's robot.toml, as a start for a robot file."""
     return _lizard.DEFAULT
 
 
-def _rows(values: ArrayLike, width: int) -> tuple[Array, tuple[int, ...]]:
-    """Flattens an array (..., width) to rows (n, width); returns the rows, and the shape without the last axis."""
+def _to_rows(values: ArrayLike, width: int) -> tuple[Array, tuple[int, ...]]:
+    """Reshapes an array (..., width) to rows (n, width); returns the rows, and the shape without the last axis."""
     array = np.asarray(values, np.float64)
     if array.ndim == 0 or array.shape[-1] != width:
-        raise ValueError(f"the last axis must have {width} numbers, not {array.shape}")
+        raise ValueError(f"the last axis must have {width} numbers, got {array.shape}")
     return np.ascontiguousarray(array.reshape(-1, width)), array.shape[:-1]

@@ -1,4 +1,4 @@
-"""A board to drive, over a serial port or simulated, by the commands of docs/console.md."""
+"""Drives a real or simulated board with the commands in docs/console.md."""
 
 from __future__ import annotations
 
@@ -11,27 +11,26 @@ from typing import Self
 
 from lizard._ports import FRAME, Port, SerialPort, SimulatedPort
 from lizard.model import Model
-from lizard.status import Frame, RobotError, Status
-from lizard.status import angles as read_angles
+from lizard.status import Frame, RobotError, Status, parse_angles
 
 BAUD = 115_200
 BANNER = "# lizard "
 BANNER_TIMEOUT = 3.0
-"""Time for the banner after the port is opened, s; a UNO's boot loader takes more than 1 s of it."""
+"""Time limit for the banner after the port is opened, s; it includes more than 1 s for a UNO's boot loader."""
 STATUS_TRIES = 8
-"""Number of `status` lines to a board without a banner: it finds the baud rate by five, and a radio may lose some."""
+"""Number of `status` lines to a board without a banner, which finds its baud rate by five; a radio may lose some."""
 ANSWER_TIMEOUT = 2.0
-"""Time for an answer, s; `save` takes a third of a second."""
+"""Time limit for an answer, s; `save` takes a third of a second."""
 RETRY_TIME = 5.0
-"""Time for which a line that may be sent twice is repeated to a robot that does not answer, s."""
+"""Time for which an unanswered line that may be sent twice is repeated, s."""
 NO_PULSES_CODES = (7, 10)
-"""Codes with which `stop` is refused: the servos rest, or the flash has no robot."""
+"""Codes of the refusals of `stop` if the servos rest or the flash has no robot."""
 STALL_TIME = 1.0
-"""Time after which a robot that does not move counts as stopped before its pose, s."""
+"""Time without movement after which a robot counts as stopped, s."""
 POSE_TOLERANCE = 0.02
-"""Largest difference between a commanded angle and that of `status`, which the core rounds, deg."""
+"""Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 DRIVING_DEADMAN = 901
-"""`deadman` while a program drives, ms. Nobody sets this number by hand: if it is found, a program left it behind."""
+"""`deadman` while a program drives the robot, ms. A robot with this unusual value has kept it from such a program."""
 
 
 class NoAnswer(RobotError):
@@ -39,7 +38,7 @@ class NoAnswer(RobotError):
 
 
 class Robot:
-    """A robot at a serial port, which is that of a board or of a radio module.
+    """A robot on a serial port, which belongs to a board or to a radio module.
 
     Opening the port of a UNO resets the board. A `with` block stops the robot at its end. While a gait runs,
     `deadman` is set, and a thread keeps the robot moving: if this program ends or the link breaks, the robot stops by
@@ -47,7 +46,7 @@ class Robot:
     """
 
     def __init__(self, port: str, *, baud: int = BAUD) -> None:
-        """Opens the port, and waits for the robot's banner or its status.
+        """Opens the port, and waits for the robot's banner or status.
 
         Raises OSError if the port cannot be opened, RobotError if no lizard answers.
         """
@@ -55,14 +54,14 @@ class Robot:
 
     @classmethod
     def simulated(cls, model: Model | None = None) -> Robot:
-        """Creates a robot on a simulated board in real time: the firmware's own code, without a chip and its pulses."""
+        """Creates a robot on a board simulated in real time: the firmware's code without a chip and its pulses."""
         robot = cls.__new__(cls)
         robot._start(SimulatedPort((model or Model.default())._robot))
         return robot
 
     def _start(self, port: Port) -> None:
         self._port = port
-        # Held from a line to its answer.
+        # Held while a line waits for its answer.
         self._exchange = threading.RLock()
         # Guards the fields that the listener changes.
         self._condition = threading.Condition()
@@ -97,7 +96,7 @@ class Robot:
             except RobotError:
                 continue
         raise RobotError(
-            "nothing answers: no banner and no answer to `status`; is it the right port, and has the board "
+            "no banner and no answer to `status`; is it the right port, and has the board "
             "been flashed (lizard flash)?"
         )
 
@@ -108,12 +107,12 @@ class Robot:
         self.close()
 
     def close(self) -> None:
-        """Stops the robot, restores its own `deadman`, and closes the port."""
+        """Stops the robot, restores its `deadman`, and closes the port."""
         try:
             if not self._closing.is_set() and self._port_error is None:
                 self.stop()
         except (RobotError, OSError):
-            pass  # The robot rests, or is out of range and stops by itself.
+            pass  # The robot rests, or it is out of range and stops by itself.
         finally:
             self._shut_down()
 
@@ -125,7 +124,7 @@ class Robot:
         self._port.close()
 
     def go(self, name: str, cycles: int | None = None) -> None:
-        """Starts a gait or a routine by its name; with a number of cycles, waits until they are completed."""
+        """Starts a gait or a routine by its name; with a number of cycles, waits for their end."""
         line = name.replace("-", " ")
         if cycles is not None:
             line += f" {cycles}"
@@ -145,7 +144,7 @@ class Robot:
             self.wait()
 
     def walk(self, cycles: int | None = None) -> None:
-        """Starts to walk; with a number of cycles, waits until they are completed."""
+        """Starts walking; with a number of cycles, waits for their end."""
         self.go("walk", cycles)
 
     def wait(self, timeout: float | None = None) -> None:
@@ -154,7 +153,7 @@ class Robot:
         Raises TimeoutError after `timeout` seconds, RobotError if the robot stops for another reason.
         """
         if not self._wait(lambda: self._end_reason is not None, timeout):
-            raise TimeoutError(f"the robot still goes after {timeout} s")
+            raise TimeoutError(f"the robot still moves after {timeout} s")
         self._restore_deadman()
         if self._end_reason:
             raise RobotError(self._end_reason)
@@ -165,9 +164,9 @@ class Robot:
         return self._end_reason is None
 
     def stop(self) -> None:
-        """Freezes the robot in the next frame. The line is repeated until the robot answers, for five seconds.
+        """Stops the robot in the next frame. Repeats the line until the robot answers, for at most five seconds.
 
-        A robot without pulses ignores it.
+        A robot without pulses ignores the line.
         """
         if not self._exchange.acquire(blocking=False):
             self._write("stop")  # overtakes the line that waits for its answer
@@ -181,7 +180,7 @@ class Robot:
             self._exchange.release()
 
     def rest(self) -> None:
-        """Ends the pulses: the servos go limp. `stand` wakes them."""
+        """Stops the pulses: the servos go limp. `stand` wakes them."""
         self._end_gait("rest")
 
     def stand(self) -> None:
@@ -193,7 +192,7 @@ class Robot:
         self.ask(f"speed {percent}")
 
     def pose(self, *angles: float) -> tuple[float, ...]:
-        """Returns the servo angles, deg; with four angles, moves to them first and waits until they are reached.
+        """Returns the servo angles, deg; with four angles, first moves to them and waits until they are reached.
 
         Raises RobotError if the pose is refused, or if the robot stops on the way.
         """
@@ -218,7 +217,7 @@ class Robot:
                 pose, last_movement_time = status.pose, now
             elif status.gait != "pose" or now - last_movement_time > STALL_TIME:
                 reason = f"guard {status.guard}, fault {status.fault}"
-                raise RobotError(f"the robot has stopped before the pose: {reason}")
+                raise RobotError(f"the robot stopped before the pose: {reason}")
             time.sleep(FRAME)
 
     def status(self) -> Status:
@@ -226,9 +225,9 @@ class Robot:
         return Status.parse(self._ask_until_answered("status")[-1])
 
     def watch(self, every: int = 1) -> Iterator[Frame]:
-        """Yields the pose of every n-th frame of 20 ms (n is `every`), until the loop over the poses ends."""
+        """Yields the pose in every n-th frame of 20 ms (n is `every`), until the iteration ends."""
         if every < 1:
-            raise ValueError(f"every so many frames: at least 1, not {every}")
+            raise ValueError(f"every must be at least 1, got {every}")
         frames: SimpleQueue[Frame] = SimpleQueue()
         self._watchers.append(frames)
         try:
@@ -246,9 +245,9 @@ class Robot:
                 self._ask_until_answered("watch 0")
 
     def ask(self, line: str) -> list[str]:
-        """Sends a line of the console; returns the `#` lines before its answer, and the answer.
+        """Sends a console line; returns the `#` lines before its answer, and the answer.
 
-        Raises RobotError if the robot refuses the line. `deadman` stays as it is.
+        Raises RobotError if the robot refuses the line. Does not change `deadman`.
         """
         return self._ask(line, ANSWER_TIMEOUT)
 
@@ -259,7 +258,7 @@ class Robot:
             self._restore_deadman()
 
     def _ask_until_answered(self, line: str) -> list[str]:
-        """Repeats a line until it is answered, because a radio may lose it."""
+        """Repeats a line until it is answered, since a radio may lose it."""
         deadline = time.monotonic() + RETRY_TIME
         while True:
             try:
@@ -271,7 +270,7 @@ class Robot:
     def _ask(self, line: str, timeout: float) -> list[str]:
         line = line.strip().lower()
         if not (line.isascii() and line.isprintable() and line):
-            raise ValueError(f"a line of the console is ASCII, not {line!r}")
+            raise ValueError(f"a console line must be printable ASCII, got {line!r}")
         word = line.split(" ")[0]
         expected = "ok gait=" if word == "status" else f"ok {word}"
         with self._exchange:
@@ -344,7 +343,7 @@ class Robot:
                 self._driving_deadman = None
 
     def _send_keep_alives(self) -> None:
-        """Sends a line at least every third of `deadman`, as long as this program drives."""
+        """Sends a line at least three times per `deadman` time while this program drives the robot."""
         line_count = 0
         while not self._closing.wait(
             min(0.2, (self._driving_deadman or DRIVING_DEADMAN) / 4000)
@@ -359,7 +358,7 @@ class Robot:
                             f"deadman {self._driving_deadman}", ANSWER_TIMEOUT / 4
                         )
                         continue
-                    # A radio may have lost the line that reports the end.
+                    # A radio may have lost the line that reports the gait's end.
                     status = Status.parse(self._ask("status", ANSWER_TIMEOUT / 4)[-1])
                 except RobotError:
                     continue
@@ -379,17 +378,17 @@ class Robot:
             self._condition.notify_all()
 
     def _listen(self) -> None:
-        unfinished = b""
+        partial_line = b""
         while not self._closing.is_set():
             try:
-                unfinished += self._port.read()
+                partial_line += self._port.read()
             except OSError as error:
                 with self._condition:
                     self._port_error = error
                     self._condition.notify_all()
                 return
-            *lines, unfinished = unfinished.split(b"\n")
-            unfinished = unfinished[-512:]  # noise may have no line ending
+            *lines, partial_line = partial_line.split(b"\n")
+            partial_line = partial_line[-512:]  # noise may have no line ending
             for line in lines:
                 self._handle_line(line.decode("ascii", "replace").strip())
 
@@ -398,12 +397,12 @@ class Robot:
         with self._condition:
             if line.startswith("# t="):
                 fields = dict(word.split("=", 1) for word in line[2:].split())
-                frame = Frame(int(fields["t"]) * FRAME, read_angles(fields["pose"]))
+                frame = Frame(int(fields["t"]) * FRAME, parse_angles(fields["pose"]))
                 for watcher in self._watchers:
                     watcher.put(frame)
             elif line.startswith(BANNER):
                 if self._has_banner:
-                    # The robot has its saved settings again.
+                    # After a reset, the robot has its saved settings.
                     self._driving_deadman = None
                     self._mark_ended("the robot was reset")
                 self._has_banner = True

@@ -1,4 +1,4 @@
-"""A robot for ROS: the joints of its URDF, and gaits for a commanded velocity. Nothing here needs ROS itself."""
+"""Support for ROS: the joints of the robot's URDF, and gaits for a commanded velocity. The module does not need ROS."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ JOINTS = (
 )
 """The joints of `lizard model robot.urdf` that do not mimic another joint, in the order of `joint_values`."""
 TIMEOUT = 0.5
-"""Seconds without a velocity after which the robot stops."""
+"""Time without a velocity after which the robot stops, s."""
 TURN_LEVER_ARM = 0.1
-"""Distance, m, that a turn of 1 rad counts as: that from the body's centre to a foot."""
+"""Distance that weighs as much as a turn of 1 rad, m: about the distance from the body's centre to a foot."""
 MIN_PACE = 0.1
-"""Smallest pace of a gait, as a share of its full pace."""
+"""Smallest pace of a gait, as a fraction of its nominal rate."""
 
 
 def joint_values(model: Model, poses: ArrayLike) -> Array:
-    """Values of `JOINTS`, rad and m, at poses (..., 4), deg: (..., 12). All are 0 at neutral."""
+    """Computes the values of `JOINTS` (..., 12), rad and m, at poses (..., 4), deg; all are 0 at neutral."""
 
-    def angles(poses: ArrayLike) -> Array:
+    def joint_angles(poses: ArrayLike) -> Array:
         servos, solved = np.asarray(poses, np.float64), model.solve(poses)
-        # theta2, theta3 on A1, A2 and theta7, theta6 on A3, A4; the left sleeve on A4, the right one on A3.
+        # theta2 and theta3 belong to A1 and A2, theta7 and theta6 to A3 and A4; the left sleeve to A4, the right to A3.
         couplers = solved.couplers[..., [0, 1, 3, 2]] - servos
         sleeves = solved.directions - servos[..., [3, 2]]
         return np.concatenate([servos, couplers, sleeves], axis=-1)
 
-    turns = np.radians(angles(poses) - angles(model.neutral))
+    turns = np.radians(joint_angles(poses) - joint_angles(model.neutral))
     turns = np.remainder(turns + np.pi, 2 * np.pi) - np.pi
     rods = model.solve(poses).strokes - model.solve(model.neutral).strokes
     return np.concatenate([turns, rods / 1000], axis=-1)
@@ -43,7 +43,7 @@ def joint_values(model: Model, poses: ArrayLike) -> Array:
 
 @dataclass(frozen=True)
 class Speed:
-    """The velocity of a gait at its full pace, as the contact model predicts it."""
+    """A gait's velocity at its nominal rate, predicted by the contact model."""
 
     gait: str
     forward: float
@@ -53,10 +53,10 @@ class Speed:
 
 
 class Driver:
-    """Drives a robot by velocities, such as those of `cmd_vel`, with the gait and the pace that come nearest."""
+    """Drives a robot from velocities, such as those of `cmd_vel`, with the gait and the pace nearest to them."""
 
     def __init__(self, robot: Robot, model: Model) -> None:
-        """Prepares the gaits of the model for a connected robot with the same robot.toml."""
+        """Prepares the model's gaits for a connected robot with the same robot.toml."""
         self._robot = robot
         self._last_velocity_time = 0.0
         self._current: tuple[str, int] | None = None  # gait and pace, percent
@@ -73,7 +73,7 @@ class Driver:
         ]
 
     def choose(self, forward: float, turn: float) -> tuple[str, int] | None:
-        """Finds the gait and its pace, percent, for a velocity in m/s and rad/s; None if standing still is nearer."""
+        """Finds the gait and the pace, percent, nearest to a velocity in m/s and rad/s; None if standing is nearer."""
         target = np.array([forward, TURN_LEVER_ARM * turn])
         nearest, min_square = None, float(target @ target)
         for speed in self.speeds:
@@ -88,9 +88,9 @@ class Driver:
         return nearest
 
     def drive(self, forward: float, turn: float) -> None:
-        """Drives at a velocity in m/s and rad/s; call `stop_if_silent` several times a second from then on.
+        """Drives at a velocity in m/s and rad/s; afterwards, call `stop_if_silent` several times per second.
 
-        Raises RobotError if the robot refuses, or has stopped by itself; the next velocity starts it again.
+        Raises RobotError if the robot refuses or has stopped by itself; the next velocity starts it again.
         """
         self._last_velocity_time = time.monotonic()
         if self._current and not self._robot.is_going:
@@ -115,7 +115,7 @@ class Driver:
             self.stop()
 
     def stop(self) -> None:
-        """Stops the robot, and restores the full pace of its gaits for whoever drives it next."""
+        """Stops the robot, and restores the nominal rate of its gaits."""
         self._current = None
         self._robot.stop()
         self._robot.speed(100)

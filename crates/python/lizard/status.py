@@ -1,4 +1,4 @@
-"""The answers of a robot: its state, its pose in a frame, and the reasons for its refusals."""
+"""A robot's answers: its state, its pose in a frame, and its refusals."""
 
 from __future__ import annotations
 
@@ -7,57 +7,57 @@ from typing import NamedTuple
 
 
 class RobotError(RuntimeError):
-    """The robot refuses a line, stops by itself, was reset, or does not answer."""
+    """The robot refused a line, stopped by itself, was reset, or did not answer."""
 
     code: int | None = None
-    """Code of a refusal, from the list in docs/console.md."""
+    """Code of a refusal, as in the list in docs/console.md."""
 
 
 class Frame(NamedTuple):
-    """The pose that the servos are sent in a frame, and the time of the frame."""
+    """A frame's time, and the pose that it sends to the servos."""
 
     time: float
-    """Seconds since the robot's start."""
+    """Seconds since the robot's reset."""
     pose: tuple[float, ...]
     """Servo angles, deg."""
 
 
 @dataclass(frozen=True)
 class Status:
-    """The robot's answer to `status`; a field that it does not send is NaN, 0 or empty."""
+    """The robot's answer to `status`; a missing field is NaN, 0 or empty."""
 
     gait: str
-    """A routine or gait, with hyphens in its name; otherwise `pose`, `stop` or `rest`."""
+    """The routine or gait, with hyphens in its name; otherwise `pose`, `stop` or `rest`."""
     fault: str
-    """`none`, or the reason why the robot has stopped by itself."""
+    """`none`, or the fault that stopped the robot."""
     guard: str
-    """`clear`, or `held` if the guard has stopped a move."""
+    """`clear`, or `held` if the guard has stopped a movement."""
     reset: str
     """Cause of the last reset."""
     pose: tuple[float, ...]
     """Servo angles, deg."""
     margin: float
-    """Smallest margin of the pose, a sine."""
+    """The pose's smallest margin, a sine."""
     phase: float
-    """Phase of the gait, 0 to 1."""
+    """The gait's phase, 0 to 1."""
     vcc: float
-    """Supply voltage of the board, V."""
+    """The board's supply voltage, V."""
     rail: float
-    """Supply voltage of the servos, V."""
+    """The servos' supply voltage, V."""
     speed: int
     """Pace of gaits, percent."""
     frames: int
-    """Number of frames of 20 ms since the robot's start."""
+    """Number of frames of 20 ms since the robot's reset."""
     late: int
-    """Number of pulse edges that were late."""
+    """Number of late pulse edges."""
     rx_lost: int
-    """Number of received bytes that were lost."""
+    """Number of lost received bytes."""
     resets: int
     """Number of resets since power-on."""
 
     @staticmethod
     def parse(answer: str) -> Status:
-        """Parses `ok gait=...`; fields that this version does not know are skipped."""
+        """Parses `ok gait=...`; ignores unknown fields."""
         fields = dict(word.split("=", 1) for word in answer.split() if "=" in word)
 
         def number(name: str) -> float:
@@ -71,7 +71,7 @@ class Status:
             fault=fields.get("fault", ""),
             guard=fields.get("guard", ""),
             reset=fields.get("reset", ""),
-            pose=angles(fields.get("pose", "")),
+            pose=parse_angles(fields.get("pose", "")),
             margin=number("margin"),
             phase=number("phase"),
             vcc=number("vcc"),
@@ -84,6 +84,6 @@ class Status:
         )
 
 
-def angles(text: str) -> tuple[float, ...]:
-    """Parses the angles of `pose=`, deg."""
+def parse_angles(text: str) -> tuple[float, ...]:
+    """Parses the angles in `pose=`, deg."""
     return tuple(float(angle) for angle in text.split(",") if angle)

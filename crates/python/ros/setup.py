@@ -1,4 +1,4 @@
-"""The ROS package `lizard_ros`, for colcon."""
+"""Builds the ROS package `lizard_ros` with colcon."""
 
 from setuptools import setup
 

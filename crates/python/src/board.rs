@@ -8,20 +8,20 @@ use pyo3::prelude::*;
 
 use crate::robot::Robot;
 
-/// The firmware's core with a robot, which runs in frames of 20 ms.
+/// The firmware's core with a robot, which runs frames of 20 ms.
 #[pyclass(frozen)]
 pub struct Board(Mutex<RunningRobot>);
 
 #[pymethods]
 impl Board {
-    /// Creates a board with this robot, just after power-on.
+    /// Creates a board with a robot, just after power-on.
     #[new]
     fn new(robot: &Robot) -> Self {
         Self(Mutex::new(RunningRobot::power_on(*robot.0.firmware())))
     }
 
-    /// Sends these bytes to the robot, runs one frame, and returns the text that the robot sent.
-    fn frame(&self, bytes: &[u8]) -> String {
+    /// Sends bytes to the robot, runs one frame, and returns the text from the robot.
+    fn run_frame(&self, bytes: &[u8]) -> String {
         // The firmware receives the bytes one by one, as from a serial line.
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for byte in bytes {
@@ -32,7 +32,7 @@ impl Board {
         core::mem::take(&mut running.board.transmitter.text)
     }
 
-    /// Resets the board, as its button does.
+    /// Resets the board like its reset button.
     fn reset(&self) {
         let mut running = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         running.reset(Cause::External);

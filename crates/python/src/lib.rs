@@ -1,7 +1,7 @@
-//! The Rust part of the Python package `lizard`, which passes numpy arrays to the Rust crates.
+//! The Rust part of the Python package `lizard`: passes numpy arrays to the Rust crates.
 //!
-//! The classes for users are in `lizard/*.py`, where the shapes and units of the arrays are documented. Here, each row
-//! of a two-dimensional array is a pose.
+//! The public classes are in `lizard/*.py`, which document the shapes and units of the arrays. Here, each row of a
+//! two-dimensional array is a pose.
 //!
 //! # When not to use it
 //! From Rust, use `lizard-kinematics` and `lizard-robot` directly.
@@ -19,9 +19,9 @@ mod _lizard {
     #[pymodule_export]
     use super::board::Board;
     #[pymodule_export]
-    use super::program;
-    #[pymodule_export]
     use super::robot::{Robot, RobotFileError};
+    #[pymodule_export]
+    use super::run_program;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
@@ -34,9 +34,9 @@ mod _lizard {
     }
 }
 
-/// Runs the program `lizard` with these arguments, and returns its exit code.
+/// Runs the program `lizard`, and returns its exit code.
 #[pyfunction]
-fn program(py: Python<'_>, arguments: Vec<String>) -> u8 {
+fn run_program(py: Python<'_>, arguments: Vec<String>) -> u8 {
     let arguments = arguments.into_iter().map(Into::into).collect();
     py.detach(|| lizard_host::commands::run_and_report(arguments))
 }

@@ -2,7 +2,7 @@
 
 use lizard_host::flash::file;
 use lizard_kinematics::{Check, End, Solution, Vector};
-use lizard_parts::{Assembly, Scene, mjcf};
+use lizard_parts::{Assembly, Scene, format_mjcf};
 use lizard_robot::{CheckedGait, Error, Prediction, verdict};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
@@ -13,14 +13,14 @@ pyo3::create_exception!(
     _lizard,
     RobotFileError,
     PyValueError,
-    "A mistake in a robot.toml, with its `file`, `line` (None if it belongs to none) and `key`."
+    "An error in a robot.toml, with its `file`, `line` (None if it has no line) and `key`."
 );
 
 /// Number of columns in the result of [`Robot::solve`]: head point, tail point, coupler angles, slider directions,
-/// slider travels, margins, and 1 if the pose is safe.
+/// slider strokes, margins, and 1 if the pose is safe.
 const COLUMN_COUNT: usize = 2 + 2 + 4 + 2 + 2 + 10 + 1;
 
-/// A robot whose every value and gait has been checked.
+/// A robot whose values and gaits have been checked.
 #[pyclass(frozen)]
 pub struct Robot(pub lizard_robot::Robot);
 
@@ -41,7 +41,7 @@ impl Robot {
         wrap_robot(py, py.detach(|| lizard_robot::Robot::load(path)))
     }
 
-    /// The same robot with `stand` and the gait of this table as its only gaits.
+    /// Creates the same robot with only two gaits: `stand` and the gait in `table`.
     fn with_gait(&self, py: Python<'_>, table: &str) -> PyResult<Self> {
         wrap_robot(py, py.detach(|| self.0.with_gait(table)))
     }
@@ -56,24 +56,24 @@ impl Robot {
         self.0.neutral_pose().into()
     }
 
-    /// The limits of each servo's travel from neutral, deg.
+    /// The limits of each servo's sweep from neutral, deg.
     fn travel(&self) -> [(f64, f64); 4] {
         self.0.servos().map(|servo| servo.travel())
     }
 
-    /// The largest servo speed that a gait may use, deg/s.
+    /// The largest allowed servo speed of a gait, deg/s.
     fn gait_slew(&self) -> f64 {
         self.0.speed_limits().gait_slew
     }
 
-    /// All joints and margins of poses: a row of [`COLUMN_COUNT`] numbers for each row of four angles. If a pose has
-    /// no solution, its row is NaN, except for 0 in the last column.
+    /// Computes the joints and margins of poses: a row of [`COLUMN_COUNT`] numbers for each row of four angles. The row
+    /// of a pose without a solution is NaN, except for 0 in the last column.
     fn solve<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
-        compute_rows(py, &poses, |angles| self.solution_row(angles))
+        compute_rows(py, &poses, |angles| self.compute_row(angles))
     }
 
-    /// The matrices K (8 x 4) and K* (8 x 8) of poses: a row has the elements of K, row by row, and then those of K*; NaN
-    /// if there is no solution.
+    /// Computes the matrices K (8 x 4) and K* (8 x 8) of poses: each row has the elements of K, row by row, and then
+    /// the elements of K*; NaN if there is no solution.
     fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         compute_rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
@@ -86,8 +86,8 @@ impl Robot {
         })
     }
 
-    /// The left and right servo angles of an end in all four working modes, for given positions of its point (mm,
-    /// chassis frame); NaN where a point is out of reach.
+    /// Computes the left and right servo angles of an end in all four working modes from the end's points (mm, chassis
+    /// frame); NaN where a point is out of reach.
     fn inverse<'py>(
         &self,
         py: Python<'py>,
@@ -113,15 +113,15 @@ impl Robot {
         })
     }
 
-    /// The reasons why a pose is not safe, as messages; empty if it is safe.
+    /// Returns messages with the reasons why a pose is not safe; an empty list if it is safe.
     fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
-            Ok(solution) => verdict::refusal_reasons(&self.0, &solution),
+            Ok(solution) => verdict::find_pose_violations(&self.0, &solution),
             Err(infeasible) => vec![infeasible.to_string()],
         }
     }
 
-    /// Pulse widths of servo angles, us.
+    /// Computes the pulse widths of servo angles, us.
     fn pulses<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         compute_rows(py, &poses, |angles: [f64; 4]| -> [f64; 4] {
             core::array::from_fn(|i| self.0.servos()[i].pulse(angles[i]))
@@ -133,8 +133,8 @@ impl Robot {
         self.0.gaits().iter().map(CheckedGait::name).collect()
     }
 
-    /// A gait's period (s), its peak servo speed (deg/s), the name and value of its smallest margin, and
-    /// the times (s) and servo angles (deg) of the frames of a cycle.
+    /// Returns a gait's period (s), its peak servo speed (deg/s), the name and value of its smallest margin, and the
+    /// times (s) and servo angles (deg) of a cycle's frames.
     #[expect(
         clippy::type_complexity,
         reason = "a tuple that Python unpacks at once"
@@ -156,30 +156,20 @@ impl Robot {
             .map(|(seconds, phase)| (seconds, gait.table_angles(phase).to_vec()))
             .unzip();
         let audit = gait.audit();
-        let margins = [audit.type2, audit.type1, audit.leg];
-        let min_margin = margins
-            .into_iter()
-            .reduce(|smallest, next| {
-                if next.value < smallest.value {
-                    next
-                } else {
-                    smallest
-                }
-            })
-            .map_or(("", f64::NAN), |margin| {
-                (Check::name(margin.check), margin.value)
-            });
+        let margins = [audit.type2, audit.type1, audit.leg].into_iter();
+        let min_margin = margins.min_by(|a, b| a.value.total_cmp(&b.value));
+        let min_margin = min_margin.unwrap_or(audit.leg);
         Ok((
             gait.period(),
             audit.peak_speed.speed,
-            min_margin,
+            (Check::name(min_margin.check), min_margin.value),
             PyArray1::from_vec(py, times),
             PyArray2::from_vec2(py, &angles)?,
         ))
     }
 
-    /// The predicted movement of one cycle: mm forward, mm to the left, deg counter-clockwise; NaN for the components
-    /// that are undecided because two feet pull against the other two.
+    /// Predicts the movement of one cycle: forward (mm), left (mm) and turn (deg, counter-clockwise). A component is
+    /// NaN if two feet pull against the other two, so that it is undecided.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find_gait(name)?;
         let Prediction {
@@ -189,7 +179,7 @@ impl Robot {
         } = py.detach(|| {
             let prediction = self.0.predict(gait);
             match with_servos {
-                true => prediction.known_components_of(gait.simulate_driven_cycle(
+                true => prediction.keep_decided(gait.simulate_driven_cycle(
                     self.0.ground(),
                     &self.0.motors(),
                     1.0,
@@ -200,21 +190,21 @@ impl Robot {
         Ok([forward, left, turn].map(|component| component.unwrap_or(f64::NAN)))
     }
 
-    /// The bytes of the robot's section of flash.
+    /// Builds the robot's flash section.
     fn section<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         PyBytes::new(py, &py.detach(|| self.0.section()))
     }
 
-    /// The image for a board as Intel HEX: the firmware with this robot, or the robot alone.
+    /// Builds the image for a board as Intel HEX: the firmware with this robot, or the robot alone.
     fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
         let image = py.detach(|| match only_robot {
-            true => file::robot_only_image(&self.0),
-            false => file::image(&self.0),
+            true => file::build_robot_image(&self.0),
+            false => file::build_image(&self.0),
         });
         image.map(|image| image.to_hex()).map_err(to_value_error)
     }
 
-    /// The model for MuJoCo as MJCF. Without the parts' shapes, it is a fiftieth as long.
+    /// Builds the MuJoCo model as MJCF. Without the parts' shapes, it is a fiftieth as long.
     fn mjcf(&self, py: Python<'_>, shapes: bool) -> PyResult<String> {
         py.detach(|| {
             let assembly = Assembly::new(&self.0);
@@ -226,9 +216,9 @@ impl Robot {
                 .map_err(to_value_error)?;
             let scene = Scene {
                 has_shapes: shapes,
-                ..Scene::of(&assembly)
+                ..Scene::for_assembly(&assembly)
             };
-            mjcf(&assembly, &neutral, &scene).map_err(to_value_error)
+            format_mjcf(&assembly, &neutral, &scene).map_err(to_value_error)
         })
     }
 }
@@ -243,8 +233,8 @@ impl Robot {
         self.0.gait(name).ok_or_else(gait_error)
     }
 
-    /// The row of [`Robot::solve`] for one pose.
-    fn solution_row(&self, angles: [f64; 4]) -> [f64; COLUMN_COUNT] {
+    /// Computes the row of [`Robot::solve`] for one pose.
+    fn compute_row(&self, angles: [f64; 4]) -> [f64; COLUMN_COUNT] {
         let mut row = [f64::NAN; COLUMN_COUNT];
         row[COLUMN_COUNT - 1] = 0.0;
         if let Ok(solution) = self.0.lizard().solve(&angles.into()) {
@@ -256,7 +246,7 @@ impl Robot {
     }
 }
 
-/// Writes a solution into its row, in the order of the columns, except for the last column.
+/// Writes a solution into its row, except for the last column.
 fn fill_row(row: &mut [f64; COLUMN_COUNT], solution: &Solution) {
     let (head, tail, passive) = (
         solution.head_point(),

@@ -1,4 +1,4 @@
-"""Fixtures of all tests: the default robot, and the wheel's program `lizard`."""
+"""Fixtures of all tests: the default robot, and the program `lizard` in the wheel."""
 
 import subprocess
 import sys
@@ -9,7 +9,7 @@ import pytest
 
 import lizard
 
-Program = Callable[..., subprocess.CompletedProcess[str]]
+RunLizard = Callable[..., subprocess.CompletedProcess[str]]
 
 
 @pytest.fixture(scope="session")
@@ -18,8 +18,8 @@ def model() -> lizard.Model:
 
 
 @pytest.fixture(scope="session")
-def program() -> Program:
-    """Returns a function that runs `lizard` with arguments and a text as standard input."""
+def run_lizard() -> RunLizard:
+    """Returns a function that runs `lizard` with arguments and with a text as standard input."""
     path = Path(sys.executable).parent / "lizard"
 
     def run(*arguments: object, text: str = "") -> subprocess.CompletedProcess[str]:

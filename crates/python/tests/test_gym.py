@@ -1,4 +1,4 @@
-"""Tests of the environment: Gymnasium's own check, and distances as with the engine's smallest time step."""
+"""Tests of the environment: Gymnasium's check, and movements as with the engine's smallest time step."""
 
 import importlib.util
 import warnings
@@ -18,8 +18,8 @@ assert SPEC is not None and SPEC.loader is not None
 learn_gait = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(learn_gait)
 
-# Movement per cycle with a time step of 0.2 ms, that of the file of `lizard model`: forward, mm, and turn, deg.
-MOVEMENTS = {"walk": (34.1, 0.0), "trot": (26.4, 0.0), "left": (0.0, 14.9)}
+# Movements per cycle with the time step of `lizard model`, 0.2 ms: forward (mm) and turn (deg).
+EXPECTED_MOVEMENTS = {"walk": (34.1, 0.0), "trot": (26.4, 0.0), "left": (0.0, 14.9)}
 
 
 def test_gymnasium_finds_and_accepts_the_environment():
@@ -40,11 +40,10 @@ def test_the_seed_determines_the_rewards():
         actions = random.uniform(-1, 1, (30, 4)).astype(np.float32)
         return [float(env.step(action)[1]) for action in actions]
 
-    first, second = drive(1), drive(2)
-    assert first == drive(1) != second
+    assert drive(1) == drive(1) != drive(2)
 
 
-@pytest.mark.parametrize("name", MOVEMENTS)
+@pytest.mark.parametrize("name", EXPECTED_MOVEMENTS)
 def test_gaits_move_the_robot_as_far_as_with_the_smallest_time_step(model, name):
     env = LizardEnv(friction_spread=0)
     gait = model.gait(name)
@@ -54,13 +53,13 @@ def test_gaits_move_the_robot_as_far_as_with_the_smallest_time_step(model, name)
     infos = [env.step(actions[0])[4] for _ in range(20)]
     infos += [env.step(action)[4] for _ in range(2) for action in actions]
     before, after = infos[-1 - len(actions)], infos[-1]
-    forward, turn = MOVEMENTS[name]
+    forward, turn = EXPECTED_MOVEMENTS[name]
     assert after["forward"] - before["forward"] == pytest.approx(forward, abs=0.7)
     assert after["turn"] - before["turn"] == pytest.approx(turn, abs=0.3)
     assert not any(info["held"] for info in infos)
 
 
-def test_no_target_is_unsafe_or_faster_than_a_gait_may_be(model):
+def test_targets_are_safe_and_within_the_speed_limit_of_gaits(model):
     env = LizardEnv()
     env.reset(seed=3)
     random, held_count, previous = np.random.default_rng(3), 0, np.zeros(4)
@@ -74,14 +73,14 @@ def test_no_target_is_unsafe_or_faster_than_a_gait_may_be(model):
     assert held_count > 0
 
 
-def test_a_robot_whose_pads_have_a_grain_is_refused():
-    grain = Path(__file__).parents[3] / "robots" / "grain.toml"
+def test_the_environment_rejects_pads_with_a_grain():
+    grain_path = Path(__file__).parents[3] / "robots" / "grain.toml"
     with pytest.raises(ValueError, match="grain"):
-        LizardEnv(lizard.Model.from_toml(grain))
+        LizardEnv(lizard.Model.from_toml(grain_path))
 
 
-def test_the_example_learns_a_gait_that_the_program_accepts(
-    monkeypatch, program, tmp_path
+def test_the_example_learns_a_gait_that_the_command_line_accepts(
+    monkeypatch, run_lizard, tmp_path
 ):
     for name, value in [
         ("GENERATIONS", 2),
@@ -89,9 +88,9 @@ def test_the_example_learns_a_gait_that_the_program_accepts(
         ("POPULATION", 4),
     ]:
         monkeypatch.setattr(learn_gait, name, value)
-    file = tmp_path / "learned.toml"
-    monkeypatch.setattr("sys.argv", ["learn_gait.py", str(file)])
+    output_path = tmp_path / "learned.toml"
+    monkeypatch.setattr("sys.argv", ["learn_gait.py", str(output_path)])
     learn_gait.main()
-    assert lizard.Model.from_toml(file).gait("learned").predict().forward > 10
-    answer = program("gaits", "--robot", file)
-    assert answer.returncode == 0 and "learned" in answer.stdout
+    assert lizard.Model.from_toml(output_path).gait("learned").predict().forward > 10
+    result = run_lizard("gaits", "--robot", output_path)
+    assert result.returncode == 0 and "learned" in result.stdout

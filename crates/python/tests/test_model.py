@@ -1,4 +1,4 @@
-"""Tests of the model: it agrees with geometry in numpy and with the program's JSON."""
+"""Tests that the model agrees with the geometry computed in numpy and with the command line's JSON output."""
 
 import json
 import os
@@ -9,8 +9,9 @@ import pytest
 
 import lizard
 
-# The paper's robot, mm, and its limits.
-BASE, CRANK, COUPLER, BODY, ARM, SLIDER = 20.0, 30.0, 50.0, 135.0, 30.0, 90.0
+# Dimensions (mm) and limits of the paper's robot.
+BASE, CRANK, COUPLER, BODY_LENGTH = 20.0, 30.0, 50.0, 135.0
+SLIDER_ARM, NOMINAL_SLIDER_LENGTH = 30.0, 90.0
 MIN_MARGIN, STROKE_RANGE = 0.3, (-15.0, 45.0)
 
 
@@ -18,49 +19,48 @@ def unit_vector(degrees: np.ndarray) -> np.ndarray:
     return np.stack([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))], -1)
 
 
-def random_poses(model: lizard.Model, count: int = 2000) -> np.ndarray:
+def draw_poses(model: lizard.Model, count: int = 2000) -> np.ndarray:
     return model.neutral + np.random.default_rng(1).uniform(-40, 40, (count, 4))
 
 
-def end_point(left: np.ndarray, right: np.ndarray, ahead: float) -> np.ndarray:
-    """The point at the couplers' length from two crank tips, on the outer side."""
+def compute_end_point(left: np.ndarray, right: np.ndarray, sign: float) -> np.ndarray:
+    """Computes the outer intersection of the coupler circles around two crank tips; sign: 1 for head, -1 for tail."""
     gap = right - left
     length = np.linalg.norm(gap, axis=-1, keepdims=True)
-    across = np.stack([-gap[..., 1], gap[..., 0]], -1) / length
-    return (left + right) / 2 + ahead * across * np.sqrt(COUPLER**2 - length**2 / 4)
+    normal = np.stack([-gap[..., 1], gap[..., 0]], -1) / length
+    return (left + right) / 2 + sign * normal * np.sqrt(COUPLER**2 - length**2 / 4)
 
 
-def crank_tips(angles: np.ndarray) -> np.ndarray:
-    x, y = BASE / 2, BODY / 2
+def compute_crank_tips(angles: np.ndarray) -> np.ndarray:
+    x, y = BASE / 2, BODY_LENGTH / 2
     shafts = np.array([[-x, y], [x, y], [x, -y], [-x, -y]])
     return shafts + CRANK * unit_vector(angles)
 
 
-def test_head_and_tail_are_at_the_intersections_of_circles_about_the_crank_tips(model):
-    angles = random_poses(model)
+def test_head_and_tail_are_at_the_intersections_of_the_coupler_circles(model):
+    angles = draw_poses(model)
     solved = model.solve(angles)
-    a1, a2, a3, a4 = np.moveaxis(crank_tips(angles), -2, 0)
-    np.testing.assert_allclose(solved.head, end_point(a1, a2, 1), atol=1e-9)
-    np.testing.assert_allclose(solved.tail, end_point(a4, a3, -1), atol=1e-9)
+    a1, a2, a3, a4 = np.moveaxis(compute_crank_tips(angles), -2, 0)
+    np.testing.assert_allclose(solved.head, compute_end_point(a1, a2, 1), atol=1e-9)
+    np.testing.assert_allclose(solved.tail, compute_end_point(a4, a3, -1), atol=1e-9)
 
 
-def test_a_sliders_length_is_the_distance_between_its_arms_tips(model):
-    angles = random_poses(model)
+def test_a_sliders_length_is_the_distance_between_the_tips_of_its_arms(model):
+    angles = draw_poses(model)
     solved = model.solve(angles)
     for side, (front, rear, turn) in enumerate([(0, 3, 90), (1, 2, -90)]):
         x = BASE / 2 * (-1 if side == 0 else 1)
+        y = BODY_LENGTH / 2
         ends = [
-            np.array([x, y]) + ARM * unit_vector(angles[:, servo] + offset)
-            for servo, y, offset in [(front, BODY / 2, turn), (rear, -BODY / 2, -turn)]
+            np.array([x, end_y]) + SLIDER_ARM * unit_vector(angles[:, servo] + offset)
+            for servo, end_y, offset in [(front, y, turn), (rear, -y, -turn)]
         ]
-        length = np.linalg.norm(ends[0] - ends[1], axis=-1)
-        np.testing.assert_allclose(solved.strokes[:, side], length - SLIDER, atol=1e-9)
+        strokes = np.linalg.norm(ends[0] - ends[1], axis=-1) - NOMINAL_SLIDER_LENGTH
+        np.testing.assert_allclose(solved.strokes[:, side], strokes, atol=1e-9)
 
 
-def test_margins_are_sines_between_links_and_a_pose_is_safe_by_margins_and_strokes(
-    model,
-):
-    angles = random_poses(model)
+def test_margins_are_sines_between_links(model):
+    angles = draw_poses(model)
     solved = model.solve(angles)
     t2, t3, t6, t7 = np.radians(solved.couplers.T)
     a1, a2, a3, a4 = np.radians(angles.T)
@@ -69,50 +69,57 @@ def test_margins_are_sines_between_links_and_a_pose_is_safe_by_margins_and_strok
     expected += [np.sin(a1), np.sin(a2), -np.sin(a3), -np.sin(a4)]
     np.testing.assert_allclose(solved.margins.T, expected, atol=1e-9)
     assert lizard.MARGINS[0] == "type2_head" and lizard.MARGINS[9] == "leg_lh"
+
+
+def test_a_pose_is_safe_if_its_margins_and_strokes_are_within_the_limits(model):
+    solved = model.solve(draw_poses(model))
     low, high = STROKE_RANGE
-    strokes_allowed = ((low <= solved.strokes) & (solved.strokes <= high)).all(-1)
-    safe = (solved.margins >= MIN_MARGIN).all(-1) & strokes_allowed
-    np.testing.assert_array_equal(solved.safe, safe)
-    assert 100 < safe.sum() < 1900
+    has_allowed_strokes = ((low <= solved.strokes) & (solved.strokes <= high)).all(-1)
+    expected = (solved.margins >= MIN_MARGIN).all(-1) & has_allowed_strokes
+    np.testing.assert_array_equal(solved.safe, expected)
+    assert 100 < expected.sum() < 1900
 
 
-def test_inverse_gives_back_the_points_in_any_shape(model):
+def test_inverse_recovers_the_angles_for_any_array_shape(model):
     angles = model.neutral + np.random.default_rng(2).uniform(-15, 15, (3, 5, 4))
     solved = model.solve(angles)
-    found = model.inverse(head=solved.head, tail=solved.tail)
-    np.testing.assert_allclose((found - angles + 180) % 360 - 180, 0, atol=1e-8)
+    recovered = model.inverse(head=solved.head, tail=solved.tail)
+    np.testing.assert_allclose((recovered - angles + 180) % 360 - 180, 0, atol=1e-8)
     tail_only = model.inverse(tail=solved.tail)
     assert (tail_only[..., :2] == model.neutral[:2]).all()
-    # In every working mode, each crank tip is a coupler's length away from the head point.
+    # In every working mode, the distance of each crank tip from the head point is the coupler's length.
     modes = model.working_modes("head", solved.head)
     assert modes.shape == (3, 5, 4, 2)
     assert model.solve(np.zeros((2, 0, 4))).margins.shape == (2, 0, 10)
-    shafts = np.array([[-BASE / 2, BODY / 2], [BASE / 2, BODY / 2]])
+    shafts = np.array([[-BASE / 2, BODY_LENGTH / 2], [BASE / 2, BODY_LENGTH / 2]])
     gaps = shafts + CRANK * unit_vector(modes) - solved.head[..., None, None, :]
     np.testing.assert_allclose(np.linalg.norm(gaps, axis=-1), COUPLER, atol=1e-9)
 
 
-def test_a_loop_that_does_not_close_gives_nan_and_a_reason(model):
+def test_a_loop_that_does_not_close_has_nan_and_a_reason(model):
     inverted = model.inverse(head=[[5, 120], [0, 500]])
     assert np.isnan(inverted[1, :2]).all() and np.isfinite(inverted[0]).all()
     open_pose = [180.0, 0.0, *model.neutral[2:]]
-    short_couplers = lizard.Model.from_toml(
-        lizard.default_toml()
-        .replace("l2 = 50.0", "l2 = 39.0")
-        .replace("l3 = 50.0", "l3 = 39.0")
-        .split("[gait.walk]")[0]
-    )
-    solved = short_couplers.solve([open_pose, short_couplers.neutral])
+    short_model = load_model_with_couplers(39.0)
+    solved = short_model.solve([open_pose, short_model.neutral])
     assert np.isnan(solved.head[0]).all() and not solved.safe[0] and solved.safe[1]
-    mobility = short_couplers.mobility([open_pose, short_couplers.neutral])
+    mobility = short_model.mobility([open_pose, short_model.neutral])
     assert mobility.freedoms.tolist() == [-1, 4]
-    assert short_couplers.reasons(open_pose) == [
-        "head: the crank tips are 80.000 mm apart, the couplers reach 78.000 mm"
+    assert short_model.reasons(open_pose) == [
+        "head: the crank tips are 80.000 mm apart, but the couplers reach only 78.000 mm"
     ]
 
 
-def test_jacobians_are_the_derivatives_of_the_joints(model):
-    angles, step = random_poses(model, 50), 1e-5
+def load_model_with_couplers(length: float) -> lizard.Model:
+    """Loads the default robot, without its gaits, with another length of the head's couplers."""
+    text = lizard.default_toml().split("[gait.walk]")[0]
+    for link in ("l2", "l3"):
+        text = text.replace(f"{link} = 50.0", f"{link} = {length}")
+    return lizard.Model.from_toml(text)
+
+
+def test_jacobians_are_the_derivatives_of_the_joint_coordinates(model):
+    angles, step = draw_poses(model, 50), 1e-5
     active, passive = model.jacobians(angles)
     slopes = np.empty((50, 8, 4))
     for servo in range(4):
@@ -129,71 +136,66 @@ def test_jacobians_are_the_derivatives_of_the_joints(model):
     np.testing.assert_allclose(active + passive @ slopes, 0, atol=1e-3)
 
 
-def test_solutions_equal_those_of_the_program(model, program):
-    angles = random_poses(model, 20)
+def test_solutions_match_the_command_line(model, run_lizard):
+    angles = draw_poses(model, 20)
     rows = "\n".join(",".join(map(str, row)) for row in angles)
-    answer = program("pose", "--json", text=rows + "\n")
-    lines = [json.loads(line) for line in answer.stdout.splitlines()]
+    result = run_lizard("pose", "--json", text=rows + "\n")
+    solutions = [json.loads(line) for line in result.stdout.splitlines()]
     solved = model.solve(angles)
-    assert len(lines) == 20
-    for i, line in enumerate(lines):
-        assert line["head"] == solved.head[i].tolist()
-        assert list(line["margins"].values()) == solved.margins[i].tolist()
-        assert line["safe"] == solved.safe[i]
-        assert line["why"] == model.reasons(angles[i])
+    assert len(solutions) == 20
+    for i, solution in enumerate(solutions):
+        assert solution["head"] == solved.head[i].tolist()
+        assert list(solution["margins"].values()) == solved.margins[i].tolist()
+        assert solution["safe"] == solved.safe[i]
+        assert solution["why"] == model.reasons(angles[i])
 
 
-def test_mobility_equals_that_of_the_program(model, program):
+def test_mobility_matches_the_command_line(model, run_lizard):
     with pytest.raises(ValueError, match="last axis"):
         model.mobility([0.0])
     for pose in [model.neutral, np.array([90, 90, 270, 270]), model.neutral - 20]:
         names = ["--theta1", "--theta4", "--theta8", "--theta5"]
         arguments = [word for pair in zip(names, pose) for word in pair]
-        answer = program("pose", "--show", "freedoms", "--json", *arguments)
-        body = json.loads(answer.stdout)[0]
-        found = model.mobility(pose)
-        assert (found.freedoms, found.loose) == (
-            body["freedoms"],
-            body["locked_freedoms"],
-        )
-    # The paper's couplers are never in line; where shorter ones are, the head is loose.
-    short = lizard.default_toml()
-    for link in ("l2", "l3"):
-        short = short.replace(f"{link} = 50.0", f"{link} = 35.0")
-    in_line_angle = np.degrees(np.arccos((35 - BASE / 2) / CRANK))
-    short_couplers = lizard.Model.from_toml(short.split("[gait.walk]")[0])
-    pose = [180 - in_line_angle, in_line_angle, *model.neutral[2:]]
-    mobility = short_couplers.mobility(pose)
+        result = run_lizard("pose", "--show", "freedoms", "--json", *arguments)
+        body = json.loads(result.stdout)[0]
+        mobility = model.mobility(pose)
+        assert mobility.freedoms == body["freedoms"]
+        assert mobility.loose == body["locked_freedoms"]
+
+
+def test_the_head_is_loose_if_its_couplers_are_collinear(model):
+    # The paper's couplers cannot become collinear, but shorter couplers can.
+    collinear_angle = np.degrees(np.arccos((35 - BASE / 2) / CRANK))
+    pose = [180 - collinear_angle, collinear_angle, *model.neutral[2:]]
+    mobility = load_model_with_couplers(35.0).mobility(pose)
     assert (mobility.freedoms, mobility.loose) == (4, 1)
 
 
-def test_gaits_equal_those_of_the_program(model, program):
-    answer = program("gaits", "--json")
-    lines = [json.loads(line) for line in answer.stdout.splitlines()]
-    lines = [line for line in lines if "gait" in line]
-    assert model.gaits == [line["gait"] for line in lines]
-    for line in lines:
-        gait = model.gait(line["gait"])
-        assert (gait.period, gait.peak_speed) == (line["period"], line["peak_speed"])
+def test_gaits_match_the_command_line(model, run_lizard):
+    result = run_lizard("gaits", "--json")
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    rows = [row for row in rows if "gait" in row]
+    assert model.gaits == [row["gait"] for row in rows]
+    for row in rows:
+        gait = model.gait(row["gait"])
+        assert (gait.period, gait.peak_speed) == (row["period"], row["peak_speed"])
         min_margin = min(
-            (line[kind] for kind in ("type2", "type1", "leg")),
+            (row[kind] for kind in ("type2", "type1", "leg")),
             key=lambda margin: margin["margin"],
         )
         assert gait.least_margin == (min_margin["what"], min_margin["margin"])
         for with_servos, key in [(False, "predicted"), (True, "by_servos")]:
             expected = [
-                np.nan if value is None else value for value in line[key].values()
+                np.nan if value is None else value for value in row[key].values()
             ]
-            found = gait.predict(with_servos=with_servos)
-            np.testing.assert_array_equal(found, expected)
+            predicted = gait.predict(with_servos=with_servos)
+            np.testing.assert_array_equal(predicted, expected)
 
 
-def test_frames_equal_those_of_the_trace_and_pulses_follow_the_servos_gain(
-    model, program
-):
+def test_frames_match_the_trace_and_pulses_match_the_servos_gain(model, run_lizard):
     gait = model.gait("arc left")
     assert gait.name == "arc-left"
-    rows = program("gaits", "--trace", "arc-left").stdout.splitlines()[1:]
+    rows = run_lizard("gaits", "--trace", "arc-left").stdout.splitlines()[1:]
     trace = np.array([[float(cell) for cell in row.split(",")] for row in rows])
     np.testing.assert_allclose(gait.times, trace[:, 0], atol=1e-9)
     np.testing.assert_allclose(gait.angles, trace[:, 1:], atol=5.1e-4)
@@ -206,27 +208,27 @@ def test_frames_equal_those_of_the_trace_and_pulses_follow_the_servos_gain(
         model.gait("wlak")
 
 
-def test_an_invalid_file_is_refused_with_the_programs_message(program, tmp_path):
-    file = tmp_path / "my.toml"
+def test_the_error_for_an_invalid_file_matches_the_command_line(run_lizard, tmp_path):
+    robot_path = tmp_path / "my.toml"
     text = lizard.default_toml()
     for entry, key in [
         ("amplitude = 20.0", "gait.walk"),
         ("min_us = 600.0", "servo.A1.min_us"),
     ]:
         assert entry in text
-        file.write_text(text.replace(entry, entry.split("=")[0] + "= 300.0", 1))
+        robot_path.write_text(text.replace(entry, entry.split("=")[0] + "= 300.0", 1))
         with pytest.raises(lizard.RobotFileError) as error:
-            lizard.Model.from_toml(file)
-        answer = program("gaits", "--robot", file)
-        assert answer.stderr == f"lizard: {error.value}\n" and answer.returncode == 2
-        assert error.value.key.startswith(key) and error.value.file == str(file)
-        line = file.read_text().splitlines()[error.value.line - 1]
+            lizard.Model.from_toml(robot_path)
+        result = run_lizard("gaits", "--robot", robot_path)
+        assert result.stderr == f"lizard: {error.value}\n" and result.returncode == 2
+        assert error.value.key.startswith(key) and error.value.file == str(robot_path)
+        line = robot_path.read_text().splitlines()[error.value.line - 1]
         assert line.startswith(entry.split(" ")[0])
     with pytest.raises(lizard.RobotFileError, match="none.toml"):
         lizard.Model.from_toml("none.toml")
 
 
-def test_a_single_gait_is_checked(model):
+def test_with_gait_validates_the_added_gait(model):
     table = '[gait.sway]\nperiod = 2.0\nwaveform = "wave"\nduty = 0.6\n'
     starts = "start = { LF = 0, RF = 0, RH = 0, LH = 0 }\n"
     swaying = model.with_gait(f"{table}amplitude = 10.0\n{starts}")
@@ -238,20 +240,20 @@ def test_a_single_gait_is_checked(model):
     assert error.value.line == 4 and error.value.key == "gait.sway.duty"
 
 
-def test_images_equal_those_of_the_program(model, program, tmp_path):
+def test_images_match_the_command_line(model, run_lizard, tmp_path):
     for options, only_robot in [([], False), (["--only-robot"], True)]:
-        file = tmp_path / "image.hex"
-        program("image", *options, "--output", file)
-        assert file.read_text() == model.image(only_robot=only_robot)
-    # The image of the robot alone is its section of flash.
+        image_path = tmp_path / "image.hex"
+        run_lizard("flash", "image", *options, "--output", image_path)
+        assert image_path.read_text() == model.image(only_robot=only_robot)
+    # The robot-only image holds exactly the robot's flash section.
     lines = [bytes.fromhex(line[1:]) for line in model.image(only_robot=True).split()]
     data = b"".join(line[4:-1] for line in lines if line[3] == 0)
     assert data == model.section() and sum(lines[0]) % 256 == 0
 
 
-def test_the_wheel_contains_its_licences_and_no_simulator(program):
-    answer = program("sim")
-    assert answer.returncode != 0 and "simulator" in answer.stderr
+def test_the_wheel_contains_its_licences_and_no_simulator(run_lizard):
+    result = run_lizard("sim")
+    assert result.returncode != 0 and "simulator" in result.stderr
     site_packages = Path(lizard.__file__).parent.parent
     installed = next(site_packages.glob("lizard_robot-*.dist-info"))
     metadata = (installed / "METADATA").read_text()

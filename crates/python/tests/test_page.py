@@ -1,4 +1,4 @@
-"""Tests that the examples of docs/python.md and of the README run as they are."""
+"""Tests that the unchanged examples in docs/python.md and in the README run."""
 
 import re
 import subprocess

@@ -1,6 +1,6 @@
-"""Tests of driving a robot: the core without a chip, and the firmware on a simulated UNO at a serial port.
+"""Tests of `Robot` with the firmware's core without a chip, and with a simulated UNO on a serial port.
 
-The environment variable `LIZARD` is the path of a program `lizard` with the simulator of a UNO.
+The environment variable `LIZARD` is the path of a program `lizard` with the UNO simulator.
 """
 
 import os
@@ -40,11 +40,11 @@ def port(tmp_path: Path) -> Iterator[Path]:
     uno.wait()
 
 
-def deadman(robot: lizard.Robot) -> int:
+def read_deadman(robot: lizard.Robot) -> int:
     return int(robot.ask("cal")[-2].removeprefix("# deadman "))
 
 
-def test_a_walk_of_two_cycles_takes_their_time_and_ends_where_the_gait_begins(
+def test_a_walk_of_two_cycles_takes_about_two_periods_and_ends_at_the_first_pose(
     robot, model
 ):
     first_frame = robot.status().frames
@@ -56,60 +56,59 @@ def test_a_walk_of_two_cycles_takes_their_time_and_ends_where_the_gait_begins(
     assert (status.gait, status.fault) == ("stop", "none")
     difference = np.array(status.pose) - model.gait("walk").angles[0]
     assert np.abs(difference).max() < 15
-    assert deadman(robot) == 0
+    assert read_deadman(robot) == 0
 
 
-def test_deadman_is_set_while_a_gait_runs_and_the_program_keeps_the_gait_running(robot):
+def test_a_gait_continues_while_the_program_drives_with_deadman(robot):
     robot.ask("deadman 700")
     robot.go("arc-left")
-    assert deadman(robot) == 700
+    assert read_deadman(robot) == 700
     time.sleep(2)
     assert robot.status().gait == "arc-left"
     robot.stop()
-    assert deadman(robot) == 700
+    assert read_deadman(robot) == 700
 
 
-def test_the_robot_stops_if_the_program_sends_nothing(robot):
+def test_the_robot_stops_if_the_program_sends_no_lines(robot):
     robot.go("walk")
-    robot._closing.set()  # the threads end, as with a program that is killed
+    robot._closing.set()  # the threads end, as in a killed program
     robot._keeper.join()
     robot._listener.join()
     board = robot._port.board
     for _ in range(60):
-        board.frame(b"")
-    answer = board.frame(b"status\n")
+        board.run_frame(b"")
+    answer = board.run_frame(b"status\n")
     assert "gait=walk" not in answer and "gait=" in answer
 
 
-def test_poses_are_reached_and_watched(robot, model):
-    target = tuple(np.round(model.neutral + [8, -8, 5, 5], 2))
+def test_watch_yields_the_poses_until_the_commanded_pose(robot, model):
+    target_pose = tuple(np.round(model.neutral + [8, -8, 5, 5], 2))
     frames: list[lizard.Frame] = []
 
-    def watch_until_reached() -> None:
+    def watch_until_final_pose() -> None:
         for frame in robot.watch(2):
             frames.append(frame)
-            if frame.pose == reached:
+            if frame.pose == final_pose:
                 return
 
-    reached = tuple(float(angle) for angle in target)
-    watcher = threading.Thread(target=watch_until_reached)
+    final_pose = tuple(float(angle) for angle in target_pose)
+    watcher = threading.Thread(target=watch_until_final_pose)
     watcher.start()
-    arrived = robot.pose(*target)
-    np.testing.assert_allclose(arrived, target, atol=0.011)
-    reached = arrived
+    final_pose = robot.pose(*target_pose)
+    np.testing.assert_allclose(final_pose, target_pose, atol=0.011)
     watcher.join(5)
     times = [frame.time for frame in frames]
     np.testing.assert_allclose(np.diff(times), 0.04, atol=1e-9)
-    assert frames[0].pose != arrived and frames[-1].pose == arrived
+    assert frames[0].pose != final_pose and frames[-1].pose == final_pose
 
 
-def test_a_refusal_has_the_robots_own_message_and_code(robot):
-    with pytest.raises(lizard.RobotError, match="A1 reaches") as error:
+def test_a_refusal_has_the_robots_message_and_code(robot):
+    with pytest.raises(lizard.RobotError, match="A1 must be") as error:
         robot.pose(0, 0, 0, 0)
     assert error.value.code == 3
     with pytest.raises(lizard.RobotError, match="the robot refuses `wlak`: unknown"):
         robot.go("wlak")
-    assert deadman(robot) == 0
+    assert read_deadman(robot) == 0
     robot.rest()
     robot.stop()
     for line in ("walk\nstop", "", "st\u00e4nd"):
@@ -122,7 +121,7 @@ def test_a_refusal_has_the_robots_own_message_and_code(robot):
     assert robot.status().gait == "stand"
 
 
-def test_a_reset_during_a_walk_is_reported_and_the_robot_can_walk_again(robot):
+def test_after_a_reset_wait_raises_an_error_and_the_robot_can_walk_again(robot):
     robot.walk()
     robot._port.board.reset()
     with pytest.raises(lizard.RobotError, match="the robot was reset"):
@@ -132,13 +131,13 @@ def test_a_reset_during_a_walk_is_reported_and_the_robot_can_walk_again(robot):
     robot.walk(cycles=1)
 
 
-def test_a_stop_from_another_thread_ends_the_wait(robot):
+def test_wait_raises_an_error_after_a_stop_or_a_timeout(robot):
     threading.Timer(0.5, robot.stop).start()
     start_time = time.monotonic()
     with pytest.raises(lizard.RobotError, match="`stop` has ended the gait"):
         robot.walk(cycles=20)
     assert time.monotonic() - start_time < 3
-    with pytest.raises(TimeoutError, match="still goes"):
+    with pytest.raises(TimeoutError, match="still moves"):
         robot.walk()
         robot.wait(timeout=0.2)
 
@@ -148,13 +147,13 @@ def test_a_with_block_that_raises_stops_the_robot():
         robot.walk()
         board = robot._port.board
         _ = 1 / 0
-    answer = board.frame(b"status\n")
+    answer = board.run_frame(b"status\n")
     assert "gait=stop" in answer
     with pytest.raises(lizard.RobotError, match="this robot is closed"):
         robot.walk()
 
 
-def test_another_robot_has_its_own_gaits_and_routines():
+def test_the_simulated_robot_has_the_routines_of_its_model():
     routine = '[routine.round]\nsteps = ["walk 1", "stand 0.5 s"]\nrepeat = 1\n'
     model = lizard.Model.from_toml(lizard.default_toml() + routine)
     with lizard.Robot.simulated(model) as robot:
@@ -163,7 +162,7 @@ def test_another_robot_has_its_own_gaits_and_routines():
         assert robot.status().gait in ("stand", "stop")
 
 
-def test_the_firmware_at_a_serial_port_is_driven_in_the_same_way(port):
+def test_a_board_on_a_serial_port_walks(port):
     with lizard.Robot(str(port)) as robot:
         robot.walk(cycles=1)
         assert robot.status().gait == "stop"
@@ -185,7 +184,7 @@ def test_unplugging_the_board_raises_a_connection_error(tmp_path):
             robot.status()
 
 
-def test_a_robot_behind_a_radio_at_another_baud_rate_can_be_driven(tmp_path):
+def test_a_robot_walks_over_a_radio_at_another_baud_rate(tmp_path):
     uno = start_uno(tmp_path / "uno", "--radio", "9600")
     try:
         with lizard.Robot(str(tmp_path / "uno")) as robot:
@@ -197,11 +196,11 @@ def test_a_robot_behind_a_radio_at_another_baud_rate_can_be_driven(tmp_path):
         uno.wait()
 
 
-def test_a_port_without_a_lizard_is_refused(tmp_path):
+def test_the_error_for_a_port_without_a_lizard_states_the_reason(tmp_path):
     with pytest.raises(OSError, match="no-port"):
         lizard.Robot(str(tmp_path / "no-port"))
     controller, terminal = os.openpty()
-    with pytest.raises(lizard.RobotError, match="nothing answers"):
+    with pytest.raises(lizard.RobotError, match="no banner and no answer"):
         lizard.Robot(os.ttyname(terminal))
     os.close(controller)
     os.close(terminal)

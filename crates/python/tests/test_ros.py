@@ -1,4 +1,4 @@
-"""Tests of the ROS support: the joints in the URDF, the gaits for velocities, and the node with a stand-in for ROS."""
+"""Tests of the ROS support: the URDF's joints, the choice of gait for a velocity, and the node with a fake rclpy."""
 
 import math
 import sys
@@ -14,20 +14,20 @@ import pytest
 import lizard
 from lizard.ros import JOINTS, TIMEOUT, TURN_LEVER_ARM, Driver, joint_values
 
-NODE = Path(__file__).parents[1] / "ros"
-ROBOTS = Path(__file__).parents[3] / "robots"
+ROS_PACKAGE_DIR = Path(__file__).parents[1] / "ros"
+ROBOTS_DIR = Path(__file__).parents[3] / "robots"
 
 
 @pytest.mark.parametrize("robot", ["paper", "unequal", "large"])
-def test_joint_values_close_every_loop_of_the_urdf(robot, program, tmp_path):
-    file = ROBOTS / f"{robot}.toml"
-    assert program("model", tmp_path / "a.urdf", "--robot", file).returncode == 0
-    model = lizard.Model.from_toml(file)
-    # MuJoCo reads URDF, too. These options make it keep every frame and ignore the meshes.
+def test_joint_values_close_every_loop_of_the_urdf(robot, run_lizard, tmp_path):
+    robot_path, urdf_path = ROBOTS_DIR / f"{robot}.toml", tmp_path / "robot.urdf"
+    assert run_lizard("model", urdf_path, "--robot", robot_path).returncode == 0
+    model = lizard.Model.from_toml(robot_path)
+    # MuJoCo also reads URDF. With these options, it keeps every frame and ignores the meshes.
     mujoco_options = (
         '<mujoco><compiler fusestatic="false" discardvisual="true"/></mujoco></robot>'
     )
-    urdf = (tmp_path / "a.urdf").read_text().replace("</robot>", mujoco_options)
+    urdf = urdf_path.read_text().replace("</robot>", mujoco_options)
     mujoco_model = mujoco.MjModel.from_xml_string(urdf)
     data = mujoco.MjData(mujoco_model)
     mimic_joints = [
@@ -38,12 +38,12 @@ def test_joint_values_close_every_loop_of_the_urdf(robot, program, tmp_path):
     body_names = [
         mujoco_model.body(number).name for number in range(mujoco_model.nbody)
     ]
-    pairs = [
+    closing_frame_pairs = [
         (name, f"{name[:-1]}2")
         for name in body_names
         if name.startswith("closing_") and name.endswith("_1")
     ]
-    assert len(pairs) >= 4
+    assert len(closing_frame_pairs) >= 4
     poses = model.neutral + np.random.default_rng(1).uniform(-35, 35, (400, 4))
     poses = poses[model.solve(poses).safe][:12]
     assert len(poses) == 12
@@ -55,7 +55,7 @@ def test_joint_values_close_every_loop_of_the_urdf(robot, program, tmp_path):
                 float(mimic["multiplier"]) * data.joint(mimic["joint"]).qpos
             )
         mujoco.mj_kinematics(mujoco_model, data)
-        for a, b in pairs:
+        for a, b in closing_frame_pairs:
             assert np.abs(data.body(a).xpos - data.body(b).xpos).max() < 1e-7, (a, b)
     assert np.abs(joint_values(model, model.neutral)).max() == 0
 
@@ -66,30 +66,28 @@ def robot():
         yield robot
 
 
-def test_the_chosen_gait_and_pace_come_nearest_to_the_velocity(robot, model):
+def test_the_chosen_gait_and_pace_are_closest_to_the_velocity(robot, model):
     driver = Driver(robot, model)
-    full_speeds = {
+    nominal_speeds = {
         speed.gait: (speed.forward, TURN_LEVER_ARM * speed.turn)
         for speed in driver.speeds
     }
     walk = model.gait("walk")
-    assert full_speeds["walk"][0] == pytest.approx(
+    assert nominal_speeds["walk"][0] == pytest.approx(
         walk.predict(with_servos=True).forward / 1000 / walk.period
     )
     # In `look`, two feet pull against the other two, so its direction is undecided.
-    assert "look" not in full_speeds
-    for forward, turn in np.random.default_rng(2).uniform(-1, 1, (200, 2)) * (
-        0.06,
-        0.5,
-    ):
+    assert "look" not in nominal_speeds
+    random = np.random.default_rng(2)
+    for forward, turn in random.uniform(-1, 1, (200, 2)) * (0.06, 0.5):
         target = (forward, TURN_LEVER_ARM * turn)
         min_distance = min(
             math.dist(target, (pace / 100 * x, pace / 100 * y))
-            for x, y in full_speeds.values()
+            for x, y in nominal_speeds.values()
             for pace in (0, *range(10, 101))
         )
         chosen = driver.choose(forward, turn)
-        x, y = full_speeds[chosen[0]] if chosen else (0, 0)
+        x, y = nominal_speeds[chosen[0]] if chosen else (0, 0)
         pace = chosen[1] / 100 if chosen else 0
         assert math.dist(target, (pace * x, pace * y)) < min_distance + 1e-4
     assert driver.choose(0, 0) is None
@@ -121,9 +119,7 @@ def test_the_robot_walks_while_velocities_arrive(robot, model):
     assert (status.gait, status.speed) == ("stop", 100)
 
 
-def test_a_robot_that_stopped_by_itself_reports_the_reason_once_and_walks_again(
-    robot, model
-):
+def test_after_a_reset_the_driver_raises_the_reason_once_and_walks_again(robot, model):
     driver = Driver(robot, model)
     driver.drive(0.03, 0)
     robot._port.board.reset()
@@ -137,8 +133,8 @@ def test_a_robot_that_stopped_by_itself_reports_the_reason_once_and_walks_again(
     assert robot.is_going
 
 
-def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
-    """Uses a stand-in for `rclpy`, which no package index has."""
+def test_the_node_publishes_joints_and_follows_velocity_commands(monkeypatch):
+    """Uses a fake `rclpy`, since `rclpy` is not on PyPI."""
     published, published_while_walking, logged, callbacks = [], [], [], {}
 
     class Message(types.SimpleNamespace):
@@ -151,12 +147,12 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
         def declare_parameter(self, name, value):
             return types.SimpleNamespace(value=value)
 
-        def create_publisher(self, kind, topic, depth):
+        def create_publisher(self, msg_type, topic, depth):
             return types.SimpleNamespace(
                 publish=lambda state: published.append((topic, state))
             )
 
-        def create_subscription(self, kind, topic, callback, depth):
+        def create_subscription(self, msg_type, topic, callback, depth):
             callbacks[topic] = callback
 
         def create_timer(self, period, callback):
@@ -182,7 +178,7 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
             callbacks["timer"]()
             time.sleep(0.1)
         assert node.robot.is_going
-        # After a reset of the board, the node follows its poses again and reports the reset once.
+        # After a reset of the board, the node publishes the joints again and logs the reset once.
         node.robot._port.board.reset()
         published_while_walking.extend(published)
         published.clear()
@@ -207,22 +203,22 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
     rclpy = types.ModuleType("rclpy")
     rclpy.init, rclpy.ok, rclpy.spin = lambda: None, lambda: is_running[0], spin
     rclpy.shutdown = rclpy.try_shutdown = shutdown
-    for name, names in [
+    for module_name, attributes in [
         ("rclpy.node", {"Node": Node}),
         ("geometry_msgs.msg", {"Twist": Message}),
         ("sensor_msgs.msg", {"JointState": Message}),
     ]:
-        module = types.ModuleType(name)
-        module.__dict__.update(names)
-        monkeypatch.setitem(sys.modules, name, module)
-    for name in ("geometry_msgs", "sensor_msgs"):
-        monkeypatch.setitem(sys.modules, name, types.ModuleType(name))
+        module = types.ModuleType(module_name)
+        module.__dict__.update(attributes)
+        monkeypatch.setitem(sys.modules, module_name, module)
+    for package in ("geometry_msgs", "sensor_msgs"):
+        monkeypatch.setitem(sys.modules, package, types.ModuleType(package))
     monkeypatch.setitem(sys.modules, "rclpy", rclpy)
-    monkeypatch.syspath_prepend(NODE)
+    monkeypatch.syspath_prepend(ROS_PACKAGE_DIR)
     from lizard_ros.node import main
 
     main()
-    # `watch` reports the first error, `cmd_vel` the second; the gait is refused, and so is the pace at shutdown.
+    # The errors are from `watch`, from `cmd_vel`, from the refused gait, and from the refused pace at shutdown.
     assert logged == [
         "the robot no longer sends its poses",
         "the robot was reset",
@@ -243,5 +239,8 @@ def test_the_node_publishes_joints_and_obeys_velocities(monkeypatch):
 
 
 def test_the_ros_package_has_the_same_version_as_the_wheel():
-    assert f"<version>{lizard.__version__}<" in (NODE / "package.xml").read_text()
-    assert f'version="{lizard.__version__}"' in (NODE / "setup.py").read_text()
+    package, setup = (
+        (ROS_PACKAGE_DIR / name).read_text() for name in ("package.xml", "setup.py")
+    )
+    assert f"<version>{lizard.__version__}<" in package
+    assert f'version="{lizard.__version__}"' in setup

@@ -13,26 +13,26 @@ pub struct RobotIdentity {
 impl RobotIdentity {
     /// Returns the identity that a board will report for a robot.
     #[must_use]
-    pub fn of(robot: &lizard_core::numbers::robot::Robot) -> Self {
+    pub fn for_robot(robot: &lizard_core::numbers::robot::Robot) -> Self {
         let name = robot.robot_name().map(char::from).collect();
         let hash = format!("{:08x}", robot.hash());
         Self { name, hash }
     }
 }
 
-/// The firmware and the robot that a board has.
+/// The firmware and the robot on a board.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Banner {
     /// The firmware's version.
     pub version: String,
-    /// The robot in the flash; `None` if there is no robot or it is damaged.
+    /// The robot in the flash; `None` if the robot is missing or damaged.
     pub robot: Option<RobotIdentity>,
 }
 
 impl Banner {
-    /// Parses a banner; `None` for any other line, including a banner that was cut off and one of old firmware, which
-    /// had its robot compiled in.
+    /// Parses a banner; `None` for any other line, including a truncated banner and a banner of old firmware, which had
+    /// its robot compiled in.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
         let (line, _) = line.strip_prefix("# lizard ")?.split_once(',')?;
@@ -78,7 +78,7 @@ mod tests {
     }
 
     #[test]
-    fn other_lines_and_banners_that_were_cut_off_are_rejected() {
+    fn other_lines_and_truncated_banners_are_rejected() {
         for line in [
             "hello",
             "# lizard ",

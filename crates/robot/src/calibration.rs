@@ -1,22 +1,24 @@
-//! The calibration of one robot, which the console command `save` stores, as console lines and as a file.
+//! The calibration of one robot (the settings that the console command `save` stores), and its two forms: console lines
+//! and a TOML file.
 //!
-//! Two robots built from one robot.toml differ in the teeth on which the horns sit and in the servos themselves. The
-//! host program and the page measure these differences and store them, both by the rules of this module.
+//! Two robots built from the same robot.toml differ in their servos and in the spline tooth on which each horn is
+//! mounted. The host program and the page measure and store these differences; both use this module.
 
 use std::collections::VecDeque;
 
 use lizard_core::console::command::MAX_DEADMAN_MS;
+use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use toml::de::DeTable;
 
-use crate::file::{Checked, Error, Section, UnlocatedError, parse};
-use crate::measures::servo::SERVO_NAMES;
+use crate::config::servo::SERVO_NAMES;
+use crate::file::{Error, ReadResult, Section, UnlocatedError, parse};
 
-/// The value of the key `format`. Its number increases when a key changes its meaning.
-const FORMAT: &str = "lizard calibration 1";
+/// The value of the key `format`. The number is incremented when the meaning of a key changes.
+const FORMAT_VERSION: &str = "lizard calibration 1";
 /// The comment at the start of a calibration file.
 const FILE_HEADER: &str = "\
-# A lizard's calibration. `lizard calibrate restore` gives it back to the robot.
-# Angles in degrees; trim and limit as the console has them, scale in us per degree.
+# A lizard's calibration. `lizard calibrate restore` sends it to the robot again.
+# Angles in degrees; trim and limit in the console's convention, scale in us per degree.
 
 ";
 /// Largest difference between settings that count as equal: slightly less than half of 0.01, the last digit that the
@@ -27,7 +29,7 @@ const TOLERANCE: f64 = 0.0049;
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Calibration {
-    /// The action after power-on: a gait, or rest.
+    /// The gait that starts after power-on, or `rest`.
     pub boot: String,
     /// Time without a line after which a gait ends, ms; 0 for never.
     pub deadman: u16,
@@ -45,23 +47,24 @@ pub struct ServoSettings {
     pub limit: [f64; 2],
     /// The direction in which a longer pulse turns the servo: `+` for counter-clockwise, or `-`.
     pub dir: char,
-    /// Change of the pulse's width per degree, us.
+    /// Change in pulse width per degree, us.
     pub scale: f64,
 }
 
 impl ServoSettings {
-    /// Returns the settings of a servo that turns in the opposite direction. The neutral pulse width stays the same,
-    /// so the trim changes its sign.
+    /// Returns the settings of a servo that turns in the opposite direction. The neutral pulse width stays the same, so
+    /// the trim's sign changes.
     #[must_use]
     pub fn reversed(self) -> Self {
         Self {
             dir: if self.dir == '+' { '-' } else { '+' },
+            // Not `-self.trim`, which would be -0.0 for a trim of 0.
             trim: 0.0 - self.trim,
             ..self
         }
     }
 
-    /// Returns the settings with another scale, us/deg. The neutral pulse width stays the same: the trim is
+    /// Returns the settings with another scale, us/deg. The neutral pulse width stays the same, because the trim is
     /// converted to the new scale.
     #[must_use]
     pub fn with_scale(self, scale: f64) -> Self {
@@ -73,8 +76,8 @@ impl ServoSettings {
         }
     }
 
-    /// Parses a servo's line in the answer to `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, given
-    /// without `# A1 `. `None` if a setting is missing or cannot be read.
+    /// Parses a servo's line in the answer to `cal`, such as `# A1 trim 0 limit 48.59 228.59 dir + scale 10`, without
+    /// the leading `# A1 `. `None` if a setting is missing or invalid.
     fn parse(line: &str) -> Option<Self> {
         let words: Vec<&str> = line.split(' ').collect();
         let [
@@ -101,7 +104,7 @@ impl ServoSettings {
     }
 
     /// Reads the table of a servo in a calibration file.
-    fn from_section(section: &Section) -> Checked<Self> {
+    fn from_section(section: &Section) -> ReadResult<Self> {
         let read_number = |key| {
             let value = section.number(key, -360.0, 360.0, "deg")?;
             require_two_decimals(section, key, value)
@@ -128,7 +131,7 @@ impl ServoSettings {
 }
 
 impl Calibration {
-    /// Parses the answer to `cal`; skips other lines. `None` if a setting is missing or cannot be read.
+    /// Parses the answer to `cal`; skips other lines. `None` if a setting is missing or invalid.
     #[must_use]
     pub fn from_cal_answer(lines: &[String]) -> Option<Self> {
         let text_after = |keyword: &str| {
@@ -152,7 +155,7 @@ impl Calibration {
 
     /// Returns the console lines that set all these settings.
     #[must_use]
-    pub fn console_lines(&self) -> Vec<String> {
+    pub fn to_console_lines(&self) -> Vec<String> {
         let servos = self.servos.iter().zip(1..).flat_map(|(servo, number)| {
             let [min, max] = servo.limit;
             [
@@ -169,7 +172,7 @@ impl Calibration {
         servos.chain(general_lines).collect()
     }
 
-    /// True if a robot would print the same settings for both calibrations, apart from full turns in the limits.
+    /// True if a robot would print the same settings for both calibrations, except for full turns in the limits.
     #[must_use]
     pub fn is_equivalent_to(&self, other: &Self) -> bool {
         let is_near = |a: f64, b: f64| (a - b).abs() < TOLERANCE;
@@ -189,12 +192,13 @@ impl Calibration {
             })
     }
 
-    /// Returns the text of the calibration file: TOML, so that a person can read and change it.
+    /// Returns the text of the calibration file in TOML, which a person can read and edit.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let Self { boot, deadman, .. } = self;
-        let mut text =
-            format!("{FILE_HEADER}format = \"{FORMAT}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n");
+        let mut text = format!(
+            "{FILE_HEADER}format = \"{FORMAT_VERSION}\"\nboot = \"{boot}\"\ndeadman = {deadman}\n"
+        );
         for (name, servo) in SERVO_NAMES.iter().zip(&self.servos) {
             let ServoSettings {
                 trim,
@@ -209,10 +213,10 @@ impl Calibration {
         text
     }
 
-    /// Parses the text of a calibration file; errors give the file's `name`.
+    /// Parses the text of a calibration file; errors name the file as `name`.
     ///
     /// # Errors
-    /// Returns the first mistake, with its line and key.
+    /// Returns the first error, with its line and key.
     pub fn parse(text: &str, name: &str) -> Result<Self, Error> {
         parse(text, Self::from_table).map_err(|error| Error {
             file: name.to_owned(),
@@ -221,11 +225,12 @@ impl Calibration {
     }
 
     /// Reads the tables of a calibration file.
-    fn from_table(table: &DeTable) -> Checked<Self> {
+    fn from_table(table: &DeTable) -> ReadResult<Self> {
         let format = table.get("format").map(|value| value.get_ref().as_str());
-        if format != Some(Some(FORMAT)) {
-            let problem =
-                format!("must be \"{FORMAT}\": this is not a calibration that can be read");
+        if format != Some(Some(FORMAT_VERSION)) {
+            let problem = format!(
+                "must be \"{FORMAT_VERSION}\": this is not a calibration file of a supported version"
+            );
             return Err(UnlocatedError::new("format", problem));
         }
         let root = Section::root(table, &["format", "boot", "deadman", "servo"])?;
@@ -260,9 +265,9 @@ impl Calibration {
 /// the calibration.
 ///
 /// The robot refuses a line after which a gait would leave the servos' travel. This may happen while the settings
-/// change one by one, even if the old and the new calibration are both valid. So refused lines are sent again after
-/// the others, as long as each round has fewer of them. Then all lines are sent once more after `factory`, which sets
-/// robot.toml's values.
+/// change one by one, even if the old and the new calibration are both valid. Refused lines are therefore sent again
+/// after the other lines, as long as their number falls from round to round. Then all lines are sent once more after
+/// `factory`, which sets robot.toml's values.
 #[derive(Clone, Debug)]
 pub struct Transfer {
     /// The lines for all settings.
@@ -276,31 +281,32 @@ pub struct Transfer {
     /// Number of lines in the current round.
     round_line_count: usize,
     /// True once the round that starts with `factory` has begun.
-    has_sent_factory: bool,
+    is_factory_round: bool,
 }
 
 impl Transfer {
     /// Creates a transfer that has not sent a line yet.
     #[must_use]
     pub fn new(calibration: &Calibration) -> Self {
-        let lines = calibration.console_lines();
+        let lines = calibration.to_console_lines();
         Self {
             unsent_lines: lines.clone().into(),
             last_line: String::new(),
             refused_lines: Vec::new(),
             round_line_count: lines.len(),
-            has_sent_factory: false,
+            is_factory_round: false,
             all_lines: lines,
         }
     }
 
-    /// Returns the next line to send; `None` if no line is left, or if no line of a round after `factory` was accepted.
+    /// Returns the next line to send; `None` if no line is left, or if the robot refused every line of a round after
+    /// `factory`.
     pub fn next_line(&mut self) -> Option<String> {
         if self.unsent_lines.is_empty() && !self.refused_lines.is_empty() {
             if self.refused_lines.len() < self.round_line_count {
                 self.unsent_lines = std::mem::take(&mut self.refused_lines).into();
-            } else if !self.has_sent_factory {
-                self.has_sent_factory = true;
+            } else if !self.is_factory_round {
+                self.is_factory_round = true;
                 self.refused_lines.clear();
                 self.unsent_lines = self.all_lines.clone().into();
                 self.unsent_lines.push_front("factory".to_owned());
@@ -311,13 +317,13 @@ impl Transfer {
         Some(self.last_line.clone())
     }
 
-    /// Records that the robot has refused the last line. Returns true if it is the first refusal of the round.
+    /// Records that the robot refused the last line. Returns true if this is the round's first refusal.
     pub fn record_refusal(&mut self) -> bool {
         self.refused_lines.push(std::mem::take(&mut self.last_line));
         self.refused_lines.len() == 1
     }
 
-    /// True if all lines have been sent and none of them is still refused.
+    /// True if all lines have been sent and accepted.
     #[must_use]
     pub fn is_done(&self) -> bool {
         self.unsent_lines.is_empty() && self.refused_lines.is_empty()
@@ -327,11 +333,11 @@ impl Transfer {
 /// True if a text has the form of a gait's name and may be sent to the robot unchanged.
 fn is_gait_name(text: &str) -> bool {
     let is_allowed = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
-    !text.is_empty() && text.len() <= 48 && text.chars().all(is_allowed)
+    !text.is_empty() && text.len() <= MAX_NAME_BYTES && text.chars().all(is_allowed)
 }
 
-/// Returns the value if it has at most two decimals, the most that the console accepts; refuses it otherwise.
-fn require_two_decimals(section: &Section, key: &str, value: f64) -> Checked<f64> {
+/// Returns the value if it has at most two decimals, which is the most that the console accepts; otherwise an error.
+fn require_two_decimals(section: &Section, key: &str, value: f64) -> ReadResult<f64> {
     match (value * 100.0 - (value * 100.0).round()).abs() < 1e-6 {
         true => Ok(value),
         false => Err(section.error(

@@ -1,24 +1,24 @@
-//! The reference of all keys, docs/robot-toml.md, generated from the reader.
+//! The reference for all keys, docs/robot-toml.md, generated from the reader.
 //!
-//! keys.txt has the meaning of each key. Each key's range, unit and default are recorded while the reader reads a robot
-//! with every table.
+//! keys.txt contains the meaning of each key. Each key's range, unit and default are recorded while the reader reads a
+//! robot with every table.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use crate::config::RobotConfig;
 use crate::file::{self, Error, KEY_READS, KeyRead, Section, format_number};
 use crate::gaits::{define, routine};
-use crate::measures::Measures;
 use crate::robot::TOP_LEVEL_KEYS;
 
-/// The page of the book with the reference.
+/// Path of the reference page.
 const PAGE_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/robot-toml.md");
 /// The line of the page after which the reference starts.
-const KEYS_MARK: &str = "<!-- keys of robot.toml -->\n";
+const REFERENCE_MARKER: &str = "<!-- keys of robot.toml -->\n";
 
-/// The text of a robot with every table, and with each key whose default the reader does not record.
+/// Returns the text of a robot with every table, and with each key whose default the reader does not record.
 fn robot_text_with_every_table() -> String {
-    let more_text = "
+    let extra_tables = "
         [leg.drive]\nkind = \"strut\"
         [joints]
         [supply]
@@ -39,15 +39,15 @@ fn robot_text_with_every_table() -> String {
         .replace("mass = 435.0", "mass = 435.0\ncentre = [0.0, 0.0]")
         .replace("mount = ", "hip_forward = 55.0\nhip_side = 35.0\nmount = ")
         .replace("[servo.A1]", "[servo]\nmodel = \"SG-90\"\n[servo.A1]");
-    text + &more_text
+    text + &extra_tables
         .lines()
         .map(|line| format!("{}\n", line.trim()))
         .collect::<String>()
 }
 
-/// The name of a key in keys.txt. There, the names that an author chooses, the four servos, the four legs, and both
-/// ends share one entry each.
-fn generic_name(key: &str) -> String {
+/// Converts a key to its name in keys.txt, in which the names that an author chooses, the four servos, the four legs,
+/// and both ends share one entry each.
+fn to_generic_name(key: &str) -> String {
     let names: Vec<&str> = key.split('.').collect();
     let parts = names.iter().enumerate().map(|(index, name)| {
         let name = name.split('[').next().unwrap_or(name);
@@ -63,21 +63,21 @@ fn generic_name(key: &str) -> String {
     parts.collect::<Vec<_>>().join(".")
 }
 
-/// The cells of a key in the reference that the reader records: its values and its default.
+/// The cells that the reader records for a key of the reference: values and default.
 #[derive(Default)]
 struct RecordedCells {
     values: Option<String>,
     default: Option<String>,
 }
 
-/// All keys that the reader knows, except keys whose values are tables.
-fn recorded_keys() -> BTreeMap<String, RecordedCells> {
+/// Records all keys that the reader accepts, except keys whose values are tables.
+fn record_keys() -> BTreeMap<String, RecordedCells> {
     KEY_READS.with_borrow_mut(Vec::clear);
     read_definitions(&robot_text_with_every_table()).expect("the robot with every table is valid");
-    let reads = KEY_READS.with_borrow_mut(std::mem::take);
+    let key_reads = KEY_READS.with_borrow_mut(std::mem::take);
     let mut keys = BTreeMap::<String, RecordedCells>::new();
-    for (key, read) in &reads {
-        let recorded_cells = keys.entry(generic_name(key)).or_default();
+    for (key, read) in &key_reads {
+        let recorded_cells = keys.entry(to_generic_name(key)).or_default();
         if let KeyRead::Number {
             range: (min, max),
             unit,
@@ -91,10 +91,10 @@ fn recorded_keys() -> BTreeMap<String, RecordedCells> {
         }
     }
     let is_table = |read: &&(String, KeyRead)| matches!(read.1, KeyRead::Table);
-    for (table, _) in reads.iter().filter(is_table) {
+    for (table, _) in key_reads.iter().filter(is_table) {
         // Lists of harmonics are recorded as tables, but are keys, too.
         if !table.ends_with(".x") && !table.ends_with(".y") {
-            keys.remove(&generic_name(table));
+            keys.remove(&to_generic_name(table));
         }
     }
     keys
@@ -106,8 +106,8 @@ struct KeyLine {
     cells: [&'static str; 4],
 }
 
-/// The tables of keys.txt, each with its name, its meaning and its keys.
-fn reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
+/// Reads the tables of keys.txt, each with its name, its meaning and its keys.
+fn read_reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
     let mut tables: Vec<(_, _, Vec<KeyLine>)> = Vec::new();
     let lines = include_str!("keys.txt").lines();
     for line in lines.filter(|line| !line.is_empty() && !line.starts_with("# ")) {
@@ -131,9 +131,11 @@ fn reference_tables() -> Vec<(&'static str, &'static str, Vec<KeyLine>)> {
 }
 
 #[test]
-fn every_key_that_is_read_is_in_the_reference_and_no_other() {
-    let read_keys: BTreeSet<String> = recorded_keys().into_keys().collect();
-    let listed_keys = reference_tables().into_iter().flat_map(|(.., lines)| lines);
+fn the_reference_lists_exactly_the_keys_that_are_read() {
+    let read_keys: BTreeSet<String> = record_keys().into_keys().collect();
+    let listed_keys = read_reference_tables()
+        .into_iter()
+        .flat_map(|(.., lines)| lines);
     let listed_keys: BTreeSet<String> = listed_keys.map(|line| line.key).collect();
     assert_eq!(
         read_keys
@@ -142,14 +144,14 @@ fn every_key_that_is_read_is_in_the_reference_and_no_other() {
         Vec::<&String>::new(),
         "src/keys.txt must list exactly the keys that are read"
     );
-    assert!(read_keys.len() > 120, "{}", read_keys.len());
+    assert!(read_keys.len() > 120, "only {} keys", read_keys.len());
 }
 
 #[test]
-fn the_page_of_keys_agrees_with_the_reader() {
-    let keys = recorded_keys();
+fn the_reference_page_is_up_to_date() {
+    let keys = record_keys();
     let mut text = String::new();
-    for (table, meaning, lines) in reference_tables() {
+    for (table, meaning, lines) in read_reference_tables() {
         match table {
             "" => _ = write!(text, "## Top\n\n{meaning}\n\n"),
             _ => _ = write!(text, "## [{table}]\n\n{meaning}\n\n"),
@@ -170,8 +172,8 @@ fn the_page_of_keys_agrees_with_the_reader() {
         text.push('\n');
     }
     let page = std::fs::read_to_string(PAGE_PATH).expect(PAGE_PATH);
-    let (text_before, _) = page.split_once(KEYS_MARK).expect(KEYS_MARK);
-    let expected = format!("{text_before}{KEYS_MARK}\n{}\n", text.trim_end());
+    let (text_before, _) = page.split_once(REFERENCE_MARKER).expect(REFERENCE_MARKER);
+    let expected = format!("{text_before}{REFERENCE_MARKER}\n{}\n", text.trim_end());
     if std::env::var_os("BLESS_KEYS").is_some() {
         std::fs::write(PAGE_PATH, expected).expect(PAGE_PATH);
     } else {
@@ -182,22 +184,22 @@ fn the_page_of_keys_agrees_with_the_reader() {
     }
 }
 
-/// Reads measures, gaits and routines, but does not compute their tables, which would take long.
+/// Reads configuration, gaits and routines, but does not compute their tables, which takes long.
 fn read_definitions(text: &str) -> Result<(), Error> {
     file::parse(text, |table| {
         let root = Section::root(table, &TOP_LEVEL_KEYS)?;
-        let measures = Measures::read(&root)?;
-        let gaits = define::read_gaits(&root, &measures)?;
+        let config = RobotConfig::read(&root)?;
+        let gaits = define::read_gaits(&root, &config)?;
         let names: Vec<&str> = gaits.iter().map(|gait| gait.name.as_str()).collect();
-        routine::read_routines(&root, &names, &measures.inputs).map(|_| ())
+        routine::read_routines(&root, &names, &config.inputs).map(|_| ())
     })
 }
 
 #[test]
-fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
+fn exactly_the_required_keys_of_the_reference_cannot_be_left_out() {
     let text = robot_text_with_every_table();
     let mut checked_key_count = 0;
-    for (table, _, lines) in reference_tables() {
+    for (table, _, lines) in read_reference_tables() {
         let start = match table {
             "" => 0,
             _ => match text.find(&format!("\n[{}]", table.replace("NAME", "walk"))) {
@@ -212,22 +214,23 @@ fn a_key_may_be_left_out_if_and_only_if_the_reference_says_so() {
                 .map_or(text.len(), |end| start + end);
             let is_key = |line: &&str| line.split('=').next().unwrap_or("").trim() == cells[0];
             let Some(line) = text[start..end].lines().find(is_key) else {
-                assert_ne!(cells[2], "needed", "{table}.{}", cells[0]);
+                assert_ne!(cells[2], "required", "{table}.{}", cells[0]);
                 continue;
             };
-            let shorter_text = format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
-            let message = read_definitions(&shorter_text)
+            let text_without_key =
+                format!("{}{}", &text[..start], text[start..].replacen(line, "", 1));
+            let message = read_definitions(&text_without_key)
                 .err()
                 .map(|error| error.to_string());
-            let is_needed = message.is_some_and(|message| message.contains("is missing"));
+            let is_required = message.is_some_and(|message| message.contains("is missing"));
             assert_eq!(
-                is_needed,
-                cells[2].starts_with("needed"),
+                is_required,
+                cells[2].starts_with("required"),
                 "{table}.{}",
                 cells[0]
             );
             checked_key_count += 1;
         }
     }
-    assert!(checked_key_count > 50, "{checked_key_count}");
+    assert!(checked_key_count > 50, "only {checked_key_count} keys");
 }

@@ -1,35 +1,32 @@
-//! A reader and checker of robot.toml, the robot's measurements and gaits, for the host program,
-//! the page, the firmware's build script and the tests.
+//! A reader and checker of robot.toml, the robot's configuration and gaits, for the host program, the page, the
+//! firmware's build script and the tests.
 //!
-//! [`Robot::load`] reads the file and checks everything in it, including every sample of
-//! every gait, so every `Robot` can walk. It provides the gaits in floating point together
-//! with the tables that the firmware reads ([`CheckedGait`]), the robot in the integers
-//! of the core ([`CoreRobot`]) and the section of flash that carries these to the board
+//! [`Robot::load`] reads the file and checks everything in it, including every sample of every gait, so every `Robot`
+//! can walk. A `Robot` provides the gaits in floating point together with the firmware's tables ([`CheckedGait`]), the
+//! robot in the core's integers ([`CoreRobot`]) and the section of flash that carries these to the board
 //! ([`Robot::section`]).
 //!
 //! A file passes through the folders in this order: `file/` parses the text and reports errors in it,
-//! `measures/` checks the ranges of the measurements, `gaits/` computes the gaits in floating point, `tables/`
+//! `config/` checks the ranges of dimensions and parameters, `gaits/` computes the gaits in floating point, `tables/`
 //! rounds them to the integers of the chip, `checks/` checks every sample, and `reports/` formats tables for people.
 //! `lizard-contact` computes the movement over the floor; its types are exported here, too.
 //!
-//! All of the file except its gaits becomes `Measures`. The `Measures` and the gaits' `Tables` become the
-//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all three, and a
-//! [`CoreRobot`] is the core's view of the robot. docs/firmware.md lists the types of other crates
-//! that also describe a robot.
+//! The whole file except its gaits becomes a `RobotConfig`. The `RobotConfig` and the gaits' `Tables` become the
+//! integers, [`lizard_core::numbers::section::Content`]. A [`Robot`] holds all three, and a [`CoreRobot`] is the core's
+//! view of the robot. docs/firmware.md lists the types of other crates that also describe a robot.
 //!
 //! # When not to use it
-//! For the geometry alone use `lizard-kinematics`, and for feet on a floor `lizard-contact`:
-//! neither needs a file. On a microcontroller use `lizard-core`: this crate needs `std` and
-//! floating point.
+//! For the geometry alone use `lizard-kinematics`, and for feet on a floor `lizard-contact`; neither needs a file. On a
+//! microcontroller use `lizard-core`, because this crate needs `std` and floating point.
 
 mod banner;
 mod calibration;
 mod checks;
+mod config;
 mod file;
 mod gaits;
 #[cfg(test)]
 mod keys;
-mod measures;
 mod reports;
 mod robot;
 mod status;
@@ -41,23 +38,24 @@ mod units;
 pub use banner::{Banner, RobotIdentity};
 pub use calibration::{Calibration, ServoSettings, Transfer};
 pub use checks::{
-    Audit, CheckedGait, Effort, HIGH_LINE_SHARE, LeastMargin, PeakSpeed, SimulatedCycle, TableError,
+    Audit, CheckedGait, Effort, HIGH_UTILISATION, LeastMargin, PeakSpeed, SimulatedCycle,
+    TableError,
+};
+pub use config::servo;
+pub use config::{
+    Coil, FUSE_RATING_A, Horn, INPUT_NAMES, Inputs, LegPlan, LegPoints, MIN_SWITCH_RATING_A, Pad,
+    Parts, Plate, Rail, Screw, Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
 };
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
-pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, command_of};
+pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};
 pub use lizard_contact::{
     Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, JointFriction, Motor, Motors,
     Place, Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
 };
-pub use measures::servo;
-pub use measures::{
-    Coil, FUSE_RATING_A, Horn, INPUT_NAMES, Inputs, LegPlace, LegPlan, MIN_SWITCH_RATING_A, Pad,
-    Parts, Plate, Rail, Screw, Servo, ServoBody, ServoType, SpeedLimits, Supplies, healthy_rail_mv,
-};
 pub use reports::verdict;
 pub use reports::{
-    Assumptions, Extreme, MovementRange, PACES_PERCENT, Report, Round, Row, Sensitivity,
-    ServoTable, SpringCost, UNDECIDED_NOTE, WITHOUT_CONTACTS_NOTE, plausible_range,
+    Assumptions, DriveEffect, Extreme, GaitRow, MovementRange, OPEN_INPUTS_NOTE, PACES_PERCENT,
+    Report, RoutineRow, Sensitivity, ServoTable, UNDECIDED_NOTE, plausible_range,
 };
 pub use robot::Robot;
 pub use status::{Status, parse_pose_report};

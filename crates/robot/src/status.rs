@@ -1,9 +1,9 @@
-//! The robot's reports about itself: its answer to `status`, and the poses that it sends after `watch`.
+//! The robot's reports: the answer to `status`, and the poses that the robot sends after `watch`.
 
-/// The name of the fault of a board without a usable robot in its flash.
+/// The fault name of a board without a usable robot in its flash.
 const NO_ROBOT_FAULT: &str = "robot";
 
-/// The state that a robot reports.
+/// The reported state of a robot.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "camelCase"))]
@@ -24,13 +24,13 @@ pub struct Status {
     pub is_held: bool,
     /// The fault's name; `None` without a fault.
     pub fault: Option<String>,
-    /// Supply of the board, volts; `None` until it is measured.
+    /// Supply voltage of the board, V; `None` until it is measured.
     pub vcc: Option<f64>,
-    /// Supply of the servos, volts; `None` if it is not measured.
+    /// Supply voltage of the servos, V; `None` if it is not measured.
     pub rail: Option<f64>,
     /// Number of late pulse edges.
     pub late_edges: u32,
-    /// Number of bytes that were lost on reception.
+    /// Number of bytes lost on reception.
     pub lost_bytes: u32,
     /// Cause of the last reset.
     pub reset_cause: String,
@@ -43,35 +43,37 @@ impl Status {
     #[must_use]
     pub fn parse(answer: &str) -> Option<Self> {
         let pairs = answer.strip_prefix("ok ")?;
-        let value_of = |key: &str| {
+        let find_value = |key: &str| {
             let mut pairs = pairs.split(' ').filter_map(|pair| pair.split_once('='));
             pairs.find_map(|(name, value)| (name == key).then_some(value))
         };
-        let number_of = |key: &str| value_of(key)?.parse().ok();
-        let count_of = |key: &str| value_of(key).and_then(|n| n.parse().ok()).unwrap_or(0);
-        let pose = value_of("pose").and_then(parse_angles);
-        let margin = number_of("margin");
+        let find_number = |key: &str| find_value(key)?.parse().ok();
+        let find_count = |key: &str| find_value(key).and_then(|n| n.parse().ok()).unwrap_or(0);
+        let pose = find_value("pose").and_then(parse_angles);
+        let margin = find_number("margin");
         let has_pose_and_margin = pose.is_some() && margin.is_some();
-        if !has_pose_and_margin && value_of("fault") != Some(NO_ROBOT_FAULT) {
+        if !has_pose_and_margin && find_value("fault") != Some(NO_ROBOT_FAULT) {
             return None;
         }
         Some(Self {
-            gait: value_of("gait")?.to_owned(),
-            phase: number_of("phase").unwrap_or(0.0),
+            gait: find_value("gait")?.to_owned(),
+            phase: find_number("phase").unwrap_or(0.0),
             pose,
-            pace: number_of("speed"),
-            frames: value_of("frames").and_then(|n| n.parse().ok()).unwrap_or(0),
+            pace: find_number("speed"),
+            frames: find_value("frames")
+                .and_then(|n| n.parse().ok())
+                .unwrap_or(0),
             margin,
-            is_held: value_of("guard") == Some("held"),
-            fault: value_of("fault")
+            is_held: find_value("guard") == Some("held"),
+            fault: find_value("fault")
                 .filter(|name| *name != "none")
                 .map(str::to_owned),
-            vcc: number_of("vcc"),
-            rail: number_of("rail"),
-            late_edges: count_of("late"),
-            lost_bytes: count_of("rx_lost"),
-            reset_cause: value_of("reset").unwrap_or_default().to_owned(),
-            reset_count: count_of("resets"),
+            vcc: find_number("vcc"),
+            rail: find_number("rail"),
+            late_edges: find_count("late"),
+            lost_bytes: find_count("rx_lost"),
+            reset_cause: find_value("reset").unwrap_or_default().to_owned(),
+            reset_count: find_count("resets"),
         })
     }
 
@@ -81,9 +83,9 @@ impl Status {
         !matches!(self.gait.as_str(), "stand" | "pose" | "stop" | "rest")
     }
 
-    /// Returns the state as one line for a terminal.
+    /// Formats the state as one line for a terminal.
     #[must_use]
-    pub fn status_line(&self) -> String {
+    pub fn format_line(&self) -> String {
         let mut line = self.gait.clone();
         if let Some([a1, a2, a3, a4]) = self.pose {
             line += &format!("  A1..A4 {a1:.1} {a2:.1} {a3:.1} {a4:.1}");
@@ -111,7 +113,7 @@ impl Status {
     }
 }
 
-/// Parses a line `# t=<frame> pose=<angles>`: the frame and the servo angles, degrees. `None` for any other line.
+/// Parses a line `# t=<frame> pose=<angles>` into the frame and the servo angles, degrees; `None` for any other line.
 #[must_use]
 pub fn parse_pose_report(line: &str) -> Option<(u64, [f64; 4])> {
     let (frame, pose) = line.strip_prefix("# t=")?.split_once(" pose=")?;
@@ -138,7 +140,7 @@ mod tests {
         reset=external resets=3 vcc=5.02 rail=5.91";
 
     #[test]
-    fn a_status_is_parsed_and_summarised_in_one_line() {
+    fn a_status_is_parsed_and_formatted_in_one_line() {
         let status = Status::parse(WALKING_STATUS).expect("the line is a status");
         assert!(status.is_moving());
         assert_eq!((status.phase, status.pace), (0.35, Some(100.0)));
@@ -147,20 +149,20 @@ mod tests {
             ("external", 3)
         );
         assert_eq!(
-            status.status_line(),
+            status.format_line(),
             "arc-left  A1..A4 138.6 41.4 318.6 221.4  margin 0.81  5.02 V  servos 5.91 V  \
              no fault  2 bytes lost"
         );
     }
 
     #[test]
-    fn a_fault_and_a_hold_by_the_guard_are_in_capitals() {
+    fn faults_and_holds_by_the_guard_are_in_capitals() {
         for (old, new, phrase) in [
             ("fault=none", "fault=supply", "FAULT supply"),
             ("clear", "held", "HELD by the guard"),
         ] {
             let status = Status::parse(&WALKING_STATUS.replace(old, new));
-            let line = status.expect("the line is a status").status_line();
+            let line = status.expect("the line is a status").format_line();
             assert!(line.contains(phrase), "{line}");
         }
     }
@@ -170,7 +172,7 @@ mod tests {
         let line = "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0";
         let status = Status::parse(line).expect("the line is a status");
         assert_eq!((status.pose, status.margin, status.vcc), (None, None, None));
-        assert_eq!(status.status_line(), "rest  FAULT robot");
+        assert_eq!(status.format_line(), "rest  FAULT robot");
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Helpers for unit tests that read the robot files in robots/.
+//! Helpers for unit tests, which read the robot files in robots/.
 
 use crate::{Error, Robot};
 
@@ -11,7 +11,7 @@ pub fn robot_text(name: &str) -> String {
     std::fs::read_to_string(&path).expect(&path)
 }
 
-/// Parses a robot's file with parts of its text replaced, each at its first occurrence.
+/// Parses a robot's file after replacing texts in it, each at its first occurrence.
 pub fn robot_with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> {
     let mut text = robot_text(name);
     for (old, new) in changes {

@@ -1,16 +1,16 @@
-//! Unit constants of the core, as floating-point numbers.
+//! The core's unit constants as floating-point numbers.
 
 use lizard_core::numbers::units;
 
-/// Steps of the core's angles per degree.
+/// The core's angle steps per degree.
 pub const STEPS_PER_DEGREE: f64 = units::STEPS_PER_TURN as f64 / 360.0;
 
 /// Frames, of 20 ms each, per second.
 pub const FRAMES_PER_SECOND: f64 = units::FRAMES_PER_SECOND as f64;
 
-/// Number of frames with an unchanged pose in `status` after which a robot is taken to stand still. It must exceed
-/// the pause between two motions: `stand` brakes for seven frames, and the first frames of the next motion change
-/// the angles by less than the hundredth of a degree that `status` shows.
+/// Number of frames with an unchanged pose in `status` after which a robot counts as standing still. It must exceed the
+/// pause between two motions: `stand` brakes for seven frames, and the first frames of the next motion change the
+/// angles by less than 0.01 degrees, the resolution of `status`.
 pub const STILL_FRAMES: u64 = 12;
 
 /// Processor cycles per microsecond.

@@ -38,7 +38,7 @@ static double input_mv(const struct adc *adc)
 {
 	double mv = channel_mv(adc, adc->mux);
 	return adc->mux == BANDGAP
-	       ? adc->previous_mv + (mv - adc->previous_mv) * adc->settled_share
+	       ? adc->previous_mv + (mv - adc->previous_mv) * adc->settled_fraction
 	       : mv;
 }
 
@@ -61,8 +61,8 @@ static avr_cycle_count_t finish_conversion(avr_t *avr, avr_cycle_count_t when, v
 {
 	struct adc *adc = param;
 	uint8_t *control = &avr->data[REG_ADCSRA];
-	adc->converting = false;
-	if (!adc->result_locked)
+	adc->is_converting = false;
+	if (!adc->is_result_locked)
 		adc->result = adc->sampled_code;
 	*control &= ~ADSC;
 	avr_raise_interrupt(avr, &adc->stock->adc);
@@ -80,7 +80,7 @@ static void arm_timers(struct adc *adc)
 
 static void stop_conversion(struct adc *adc)
 {
-	adc->converting = false;
+	adc->is_converting = false;
 	adc->next_is_first = true;
 	avr_cycle_timer_cancel(adc->avr, sample, adc);
 	avr_cycle_timer_cancel(adc->avr, finish_conversion, adc);
@@ -92,12 +92,12 @@ static void begin_conversion(struct adc *adc, uint64_t edge)
 	uint64_t clock = cycles_per_clock(avr);
 	uint64_t ready_at = adc->enabled_at > adc->selected_at ? adc->enabled_at : adc->selected_at;
 	uint64_t waited_cycles = edge > ready_at ? edge - ready_at : 0;
-	adc->settled_share = waited_cycles < SETTLING_CYCLES
+	adc->settled_fraction = waited_cycles < SETTLING_CYCLES
 	                     ? (double)waited_cycles / SETTLING_CYCLES
 	                     : 1.0;
 	adc->mux = avr->data[REG_ADMUX] & MUX;
 	adc->reference = avr->data[REG_ADMUX] & REFS;
-	adc->converting = true;
+	adc->is_converting = true;
 	avr->data[REG_ADCSRA] |= ADSC;
 	adc->sample_at = edge + sample_half_clocks[adc->next_is_first] * clock / 2;
 	adc->end_at = edge + length_half_clocks[adc->next_is_first] * clock / 2;
@@ -120,7 +120,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	uint8_t old = avr->data[address];
 	uint8_t control = value & (ADEN | ADATE | ADIE | ADPS);
 	control |= old & ADIF & ~value;
-	control |= adc->converting ? ADSC : 0;
+	control |= adc->is_converting ? ADSC : 0;
 	if (!(control & ADEN)) {
 		stop_conversion(adc);
 		control &= ~ADSC;
@@ -130,7 +130,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	avr->data[address] = control;
 	if (!(control & ADIF))
 		adc->stock->adc.pending = 0; /* a conversion that ends in this cycle sets ADIF again */
-	if ((control & ADEN) && (value & ADSC) && !adc->converting)
+	if ((control & ADEN) && (value & ADSC) && !adc->is_converting)
 		begin_conversion(adc, next_edge(adc, cycle));
 	interrupts_request_check(adc->interrupts);
 }
@@ -152,8 +152,8 @@ static uint8_t read_result(avr_t *avr, avr_io_addr_t address, void *param)
 	uint16_t shown_result = avr->data[REG_ADMUX] & ADLAR ? adc->result << 6 : adc->result;
 	/* "When ADCL is read, the ADC Data Register is not updated until ADCH is
 	 * read" (24.9.3). */
-	adc->result_locked = address == REG_ADCL;
-	return adc->result_locked ? shown_result : shown_result >> 8;
+	adc->is_result_locked = address == REG_ADCL;
+	return adc->is_result_locked ? shown_result : shown_result >> 8;
 }
 
 static void ignore_write(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
@@ -197,7 +197,7 @@ void adc_set_pin(struct adc *adc, uint8_t channel, uint16_t mv)
 void adc_reset(struct adc *adc)
 {
 	stop_conversion(adc);
-	adc->result_locked = false;
+	adc->is_result_locked = false;
 	adc->result = 0;
 	adc->enabled_at = adc->selected_at = 0;
 	adc->previous_mv = adc->pin_mv[0];

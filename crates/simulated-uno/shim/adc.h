@@ -1,6 +1,6 @@
-/* The ADC according to the ATmega328P's data sheet, chapter 24: it measures against a supply that changes,
- * the bandgap needs time to settle, the first conversion takes 25 ADC clocks and every other 13,
- * and a result is read in two halves.
+/* The ADC according to the ATmega328P's data sheet, chapter 24. It measures relative to a supply that
+ * changes, the bandgap needs time to settle, the first conversion takes 25 ADC clocks and every other
+ * one 13, and a result is read in two halves.
  *
  * Not modelled: triggers other than free running, the noise reduction sleep, the settling of a
  * reference that is switched, the errors of an ADC clock above 200 kHz.
@@ -28,19 +28,19 @@ struct adc {
 	uint64_t enabled_at;            /* cycle at which ADEN was set */
 	uint64_t selected_at;           /* cycle at which the channel was selected */
 	double previous_mv;             /* voltage of the previously selected channel */
-	bool converting;                /* a conversion is in progress */
-	bool next_is_first;             /* the next conversion is the first since ADEN was set */
-	bool result_locked;             /* ADCL has been read and ADCH has not */
+	bool is_converting;             /* a conversion is in progress */
+	bool next_is_first;             /* the next conversion is the first one since ADEN was set */
+	bool is_result_locked;          /* ADCL has been read, but not yet ADCH */
 	uint8_t mux;                    /* channel of the conversion in progress */
 	uint8_t reference;              /* REFS bits of the conversion in progress */
-	double settled_share;           /* settling of the bandgap when the conversion began, 0 to 1 */
+	double settled_fraction;        /* settling of the bandgap when the conversion began, 0 to 1 */
 	uint64_t sample_at;             /* cycle at which the conversion samples its input */
 	uint64_t end_at;                /* cycle at which the conversion ends */
 	uint16_t sampled_code;          /* result of the conversion in progress, once sampled */
 	uint16_t result;                /* contents of the ADC Data Register, right adjusted */
 };
 
-/* All that the stock fidelity needs: access to simavr's ADC for adc_set_pin. */
+/* Gives adc_set_pin access to simavr's ADC, which is sufficient for the stock fidelity. */
 void adc_attach(struct adc *adc, avr_t *avr);
 /* Replaces simavr's callbacks for the ADC's registers. */
 void adc_correct(struct adc *adc, const struct instruction *instruction,

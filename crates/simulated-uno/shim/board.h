@@ -1,4 +1,4 @@
-/* The parts of one simulated UNO. Private to uno.c, restart.c and chip_access.c.
+/* The parts of a simulated UNO. Private to uno.c, restart.c and chip_access.c.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -25,13 +25,13 @@
 struct uno {
 	avr_t *avr;               /* simavr's model of the chip */
 	avr_io_t io;              /* our entry at the end of simavr's list of parts to reset */
-	bool data_sheet;          /* true: behaves as in the data sheet; false: as stock simavr */
+	bool is_data_sheet;       /* true: behaves as in the data sheet; false: as stock simavr */
 
-	uint64_t now;             /* current cycle; runs ahead of avr->cycle only while the CPU sleeps */
-	uint64_t asleep_cycles;   /* cycles up to avr->cycle in which the CPU slept */
+	uint64_t now;             /* current cycle; ahead of avr->cycle only while the CPU sleeps */
+	uint64_t sleep_cycles;    /* cycles up to avr->cycle in which the CPU slept */
 	uint64_t watchdog_resets; /* number of resets by the watchdog */
-	bool powered_off;         /* true from a power cut until the power is restored */
-	bool stop_at_line;        /* true: a run ends when the firmware has sent a line feed */
+	bool is_powered_off;      /* true from a power cut until the power is restored */
+	bool stops_at_line;       /* true: a run ends when the firmware has sent a line feed */
 	uint16_t data_end;        /* first SRAM address after the firmware's static data */
 	char error_message[256];  /* the last error that simavr logged; empty if none */
 

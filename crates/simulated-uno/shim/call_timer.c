@@ -13,33 +13,33 @@ void call_timer_attach(struct call_timer *timer, const avr_t *avr,
 
 void call_timer_reset(struct call_timer *timer)
 {
-	timer->in_call = false;
+	timer->is_in_call = false;
 }
 
-void call_timer_set(struct call_timer *timer, bool enabled, uint32_t entry)
+void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry)
 {
-	timer->enabled = enabled;
+	timer->is_enabled = is_enabled;
 	timer->entry = entry;
-	timer->in_call = false;
+	timer->is_in_call = false;
 }
 
 void call_timer_check(struct call_timer *timer)
 {
 	const avr_t *avr = timer->avr;
 	uint16_t sp = avr->data[R_SPL] | avr->data[R_SPH] << 8;
-	if (timer->in_call && avr->pc == timer->return_address && sp == timer->stack_pointer + 2) {
+	if (timer->is_in_call && avr->pc == timer->return_address && sp == timer->stack_pointer + 2) {
 		uint64_t interrupt_cycles =
 			handlers_cycles(timer->handlers) - timer->handler_cycles_at_entry;
 		struct call *call = list_push(&timer->calls);
 		*call = (struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles };
-		timer->in_call = false;
-	} else if (!timer->in_call && avr->pc == timer->entry) {
+		timer->is_in_call = false;
+	} else if (!timer->is_in_call && avr->pc == timer->entry) {
 		/* The firmware may have set any stack pointer, so the address may wrap. */
 		uint8_t high = avr->data[(uint16_t)(sp + 1)], low = avr->data[(uint16_t)(sp + 2)];
 		timer->return_address = (high << 8 | low) << 1;
 		timer->stack_pointer = sp;
 		timer->enter_cycle = avr->cycle;
 		timer->handler_cycles_at_entry = handlers_cycles(timer->handlers);
-		timer->in_call = true;
+		timer->is_in_call = true;
 	}
 }

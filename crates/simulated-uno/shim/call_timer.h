@@ -16,8 +16,8 @@ struct call {
 struct call_timer {
 	const avr_t *avr;
 	const struct handlers *handlers;
-	bool enabled;            /* true: simavr must run one instruction at a time */
-	bool in_call;            /* true between the entry and the return of a timed call */
+	bool is_enabled;         /* true: simavr must run one instruction at a time */
+	bool is_in_call;         /* true between the entry and the return of a timed call */
 	uint32_t entry;          /* byte address of the function in flash */
 	/* The timed call in progress: */
 	uint32_t return_address; /* byte address in flash after the call instruction */
@@ -31,6 +31,6 @@ void call_timer_attach(struct call_timer *timer, const avr_t *avr,
                        const struct handlers *handlers);
 void call_timer_reset(struct call_timer *timer);
 /* Starts or stops timing the calls of the function at byte address `entry`. */
-void call_timer_set(struct call_timer *timer, bool enabled, uint32_t entry);
-/* To be called before each instruction: detects the start and the end of a timed call. */
+void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry);
+/* Detects the start and the end of a timed call; must be called before each instruction. */
 void call_timer_check(struct call_timer *timer);

@@ -41,8 +41,8 @@ avr_io_t *chip_peripheral(avr_t *avr, const char *kind);
  * cycle timers. */
 uint64_t chip_cycles_until(const avr_t *avr, uint64_t cycle);
 
-/* A callback that simavr calls for each write or read of an I/O register. hook_write and
- * hook_read replace one, which simavr's own registration functions refuse to do. */
+/* A callback for each write or read of an I/O register. hook_write and hook_read can replace an
+ * existing callback, unlike simavr's own registration functions. */
 struct write_hook { avr_io_write_t callback; void *param; };
 struct read_hook { avr_io_read_t callback; void *param; };
 

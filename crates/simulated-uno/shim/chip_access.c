@@ -8,23 +8,23 @@
 void uno_reset(struct uno *uno)
 {
 	restart_catch_up(uno);
-	if (!uno->powered_off && !uno->supply.holds_reset)
+	if (!uno->is_powered_off && !uno->supply.holds_reset)
 		restart(uno, RESET_EXTERNAL);
 }
 
 void uno_power_cycle(struct uno *uno)
 {
 	restart_catch_up(uno);
-	if (!uno->powered_off)
+	if (!uno->is_powered_off)
 		restart_cut_power(uno);
-	uno->powered_off = false;
+	uno->is_powered_off = false;
 	supply_power_on(&uno->supply);
 	restart(uno, uno->supply.holds_reset ? RESET_HOLD : RESET_POWER_ON);
 }
 
-void uno_set_boot_loader(struct uno *uno, bool on)
+void uno_set_boot_loader(struct uno *uno, bool is_present)
 {
-	uno->reset.has_boot_loader = on;
+	uno->reset.has_boot_loader = is_present;
 	if (uno->avr->cycle == 0) { /* not started yet: affects the current start, too */
 		uno->reset.mcusr = RESET_POWER_ON;
 		restart(uno, 0);
@@ -33,14 +33,14 @@ void uno_set_boot_loader(struct uno *uno, bool on)
 
 void uno_set_noise_seed(struct uno *uno, uint64_t seed)
 {
-	uno->reset.noise_state = seed * 2 + 1; /* odd, since zero would stay zero */
+	uno->reset.noise_state = seed * 2 + 1; /* odd, because zero would stay zero */
 }
 
 bool uno_is_held_in_reset(const struct uno *uno) { return uno->supply.holds_reset; }
 struct list *uno_reset_events(struct uno *uno) { return &uno->reset.events; }
 uint8_t *uno_eeprom(struct uno *uno) { return uno->eeprom.stock->eeprom; }
 struct list *uno_eeprom_operations(struct uno *uno) { return &uno->eeprom.operations; }
-void uno_set_torn_ones(struct uno *uno, uint8_t ones) { uno->eeprom.torn_ones = ones; }
+void uno_set_torn_bits(struct uno *uno, uint8_t ones) { uno->eeprom.torn_bits = ones; }
 
 void uno_cut_power_at(struct uno *uno, uint64_t cycle)
 {
@@ -83,9 +83,9 @@ void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv)
 	adc_set_pin(&uno->adc, channel, mv);
 }
 
-void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed)
+void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool is_closed)
 {
-	contacts_set(&uno->contacts, address, bit, closed);
+	contacts_set(&uno->contacts, address, bit, is_closed);
 }
 
 void uno_set_boot_address(struct uno *uno, uint32_t address)

@@ -28,13 +28,13 @@ void contacts_attach(struct contacts *contacts, avr_t *avr)
 		contacts->stock_reads[i] = hook_read(avr, pin_registers[i], read_pin, contacts);
 }
 
-void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool closed)
+void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool is_closed)
 {
 	for (int i = 0; i < CONTACT_PORT_COUNT; i++) {
 		if (pin_registers[i] != address)
 			continue;
 		contacts->contact_bits[i] |= 1 << bit;
 		contacts->closed_bits[i] &= ~(1 << bit);
-		contacts->closed_bits[i] |= closed << bit;
+		contacts->closed_bits[i] |= is_closed << bit;
 	}
 }

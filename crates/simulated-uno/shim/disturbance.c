@@ -9,15 +9,15 @@ void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
 	*disturbance = (struct disturbance){ .avr = avr, .handlers = handlers };
 }
 
-/* True if interrupts have been enabled for at least one instruction. interrupt_state is
- * negative until then; simavr does not count it up while the CPU sleeps. */
+/* True if interrupts have been enabled for at least one instruction. Until then, interrupt_state
+ * is negative; simavr does not increment it while the CPU sleeps. */
 static bool accepts_interrupts(const avr_t *avr)
 {
 	return avr->sreg[S_I] && (avr->interrupt_state >= 0 || avr->state == cpu_Sleeping);
 }
 
-/* True if the previous instruction was `sei` or a store to SREG and interrupts were off
- * before: the instruction after it is executed before any interrupt. */
+/* True if the previous instruction, `sei` or a store to SREG, has enabled interrupts: the next
+ * instruction is then executed before any interrupt. */
 static bool follows_enable(const avr_t *avr)
 {
 	if (avr->pc < 2 || avr->interrupt_state >= 0)
@@ -33,7 +33,7 @@ void disturbance_serve(struct disturbance *disturbance)
 	if (!disturbance->blocked_cycles || !accepts_interrupts(avr))
 		return;
 	avr->state = cpu_Running;
-	/* Cycle by cycle, so that each event meanwhile, such as the arrival of a byte, has
+	/* Cycle by cycle, so that each event meanwhile, such as the arrival of a byte, happens at
 	 * its own time. */
 	for (; disturbance->blocked_cycles; disturbance->blocked_cycles--) {
 		avr->cycle++;

@@ -1,5 +1,5 @@
 /* Disturbances of the CPU that a test imposes: a foreign interrupt, which has no source on the
- * chip and outranks all others, and a main program that makes no progress.
+ * chip and the highest priority, and a main program that makes no progress.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -10,17 +10,17 @@
 struct disturbance {
 	avr_t *avr;
 	const struct handlers *handlers;
-	uint64_t blocked_cycles; /* remaining cycles of the foreign interrupt; 0: none is pending */
+	uint64_t blocked_cycles; /* remaining cycles of the foreign interrupt; 0 if none is pending */
 	uint64_t stalled_until;  /* the main program executes nothing before this cycle */
 };
 
 void disturbance_attach(struct disturbance *disturbance, avr_t *avr,
                         const struct handlers *handlers);
 /* Serves the foreign interrupt if it is pending and interrupts are enabled: its cycles pass
- * without an instruction, while timers and the serial line continue and set their flags. To
- * be called before the chip's interrupts are served. */
+ * without an instruction, while timers and the serial line continue and set their flags. Must be
+ * called before the chip's interrupts are served. */
 void disturbance_serve(struct disturbance *disturbance);
-/* True while a disturbance is pending or in progress; simavr must then run one instruction at a
+/* True while a disturbance is pending or in progress: simavr must then run one instruction at a
  * time. */
 bool disturbance_is_active(const struct disturbance *disturbance);
 /* True if the next instruction belongs to the main program and the main program is stalled. */

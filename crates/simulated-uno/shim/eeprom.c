@@ -5,11 +5,11 @@ enum { /* EECR */
 	EEPM = 3 << 4, EERIE = 1 << 3, EEMPE = 1 << 2, EEPE = 1 << 1, EERE = 1 << 0,
 };
 
-#define ARMED_CYCLES 4 /* EEPE must be set within these after EEMPE */
+#define ARMED_CYCLES 4 /* after EEMPE is set, EEPE must be set within this time */
 #define READ_HALT_CYCLES 4 /* the CPU is halted after EERE is set */
 #define WRITE_HALT_CYCLES 2 /* the CPU is halted after EEPE is set */
 
-/* Durations of an operation by enum eeprom_mode (table 8-1). */
+/* Durations of an operation, indexed by enum eeprom_mode (table 8-1). */
 static const uint64_t duration_cycles[] = {
 	3400 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US, 1800 * CHIP_CYCLES_PER_US,
 };
@@ -27,8 +27,8 @@ static uint16_t selected_address(const avr_t *avr)
 
 static void set_idle(struct eeprom *eeprom)
 {
-	eeprom->busy = false;
-	eeprom->interrupts->eeprom_ready.requested = true;
+	eeprom->is_busy = false;
+	eeprom->interrupts->eeprom_ready.is_requested = true;
 }
 
 static avr_cycle_count_t finish_operation(avr_t *avr, avr_cycle_count_t when, void *param)
@@ -57,25 +57,25 @@ static void arm_timers(struct eeprom *eeprom)
 		                         eeprom);
 }
 
-/* The cycle at which the erase phase of an erase-and-write operation ends. The data sheet
- * does not say; half of the duration is assumed. */
+/* The cycle at which the erase phase of an erase-and-write operation ends. The data sheet does not
+ * specify it; half of the duration is assumed. */
 static uint64_t erase_end(const struct eeprom *eeprom)
 {
 	return eeprom->started_at + (eeprom->ends_at - eeprom->started_at) / 2;
 }
 
-/* Counts this operation towards the requested power cut. Returns the cycle of the cut, in the
- * middle of the requested phase; 0 if the cut is not in this operation. */
+/* Counts this operation for the requested power cut. Returns the cycle of the cut, in the middle of
+ * the requested phase, or 0 if the cut is not in this operation. */
 static uint64_t take_cut_request(struct eeprom *eeprom, uint8_t mode)
 {
 	struct eeprom_cut_request *request = &eeprom->cut_request;
-	if (!request->pending)
+	if (!request->is_pending)
 		return 0;
 	if (request->skip_count) {
 		request->skip_count--;
 		return 0;
 	}
-	request->pending = false;
+	request->is_pending = false;
 	uint64_t middle = erase_end(eeprom);
 	if (mode == EEPROM_ERASE || mode == EEPROM_WRITE)
 		return middle;
@@ -94,8 +94,8 @@ static void begin_operation(struct eeprom *eeprom, uint64_t cycle)
 	uint8_t new_value = mode == EEPROM_ERASE ? 0xff : mode == EEPROM_WRITE ? old_value & data : data;
 	struct eeprom_operation *operation = list_push(&eeprom->operations);
 	*operation = (struct eeprom_operation){ cycle, address, mode, old_value, new_value, false };
-	eeprom->busy = true;
-	eeprom->interrupts->eeprom_ready.requested = false;
+	eeprom->is_busy = true;
+	eeprom->interrupts->eeprom_ready.is_requested = false;
 	eeprom->written_data = data;
 	eeprom->started_at = cycle;
 	eeprom->ends_at = cycle + duration_cycles[mode];
@@ -110,16 +110,16 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 	uint64_t cycle = instruction_effect_cycle(eeprom->instruction);
 	uint8_t touched = instruction_touched_bits(eeprom->instruction);
 	uint8_t ones = value & touched;
-	bool armed = cycle <= eeprom->armed_until;
-	uint8_t stored_bits = touched & (EERIE | (eeprom->busy ? 0 : EEPM));
+	bool is_armed = cycle <= eeprom->armed_until;
+	uint8_t stored_bits = touched & (EERIE | (eeprom->is_busy ? 0 : EEPM));
 	uint8_t kept_bits = avr->data[address] & (EERIE | EEPM) & ~stored_bits;
 	avr->data[address] = kept_bits | (value & stored_bits);
 	interrupts_request_check(eeprom->interrupts);
-	if (eeprom->busy)
+	if (eeprom->is_busy)
 		ones &= EEMPE;
 	if ((ones & EEMPE) && !(value & touched & EEPE))
 		eeprom->armed_until = cycle + ARMED_CYCLES;
-	if ((ones & EEPE) && armed) {
+	if ((ones & EEPE) && is_armed) {
 		begin_operation(eeprom, cycle);
 	} else if (ones & EERE) {
 		avr->data[REG_EEDR] = eeprom->stock->eeprom[selected_address(avr)];
@@ -131,7 +131,7 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	const struct eeprom *eeprom = param;
 	uint8_t value = avr->data[address] & (EERIE | EEPM);
-	if (eeprom->busy)
+	if (eeprom->is_busy)
 		value |= EEPE;
 	if (avr->cycle < eeprom->armed_until)
 		value |= EEMPE;
@@ -143,7 +143,7 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 static void write_address(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)
 {
 	const struct eeprom *eeprom = param;
-	if (!eeprom->busy)
+	if (!eeprom->is_busy)
 		avr->data[address] = address == REG_EEARH ? value & 0x03 : value;
 }
 
@@ -174,7 +174,7 @@ void eeprom_reset(struct eeprom *eeprom)
 {
 	avr_t *avr = eeprom->avr;
 	eeprom->armed_until = 0;
-	if (!eeprom->busy)
+	if (!eeprom->is_busy)
 		return;
 	/* "During reset, the EEPMn bits will be reset to 0b00 unless the EEPROM
 	 * is busy programming" (8.6.3). */
@@ -184,15 +184,15 @@ void eeprom_reset(struct eeprom *eeprom)
 
 void eeprom_tear(struct eeprom *eeprom)
 {
-	if (!eeprom->busy)
+	if (!eeprom->is_busy)
 		return;
 	avr_t *avr = eeprom->avr;
 	struct eeprom_operation *operation = latest_operation(eeprom);
-	uint8_t ones = eeprom->torn_ones;
-	bool erasing = operation->mode == EEPROM_ERASE;
+	uint8_t ones = eeprom->torn_bits;
+	bool is_erasing = operation->mode == EEPROM_ERASE;
 	if (operation->mode != EEPROM_ERASE && operation->mode != EEPROM_WRITE)
-		erasing = avr->cycle < erase_end(eeprom);
-	if (erasing)
+		is_erasing = avr->cycle < erase_end(eeprom);
+	if (is_erasing)
 		operation->new_value = operation->old_value | ones;
 	else if (operation->mode == EEPROM_WRITE)
 		operation->new_value = operation->old_value & (eeprom->written_data | ones);
@@ -207,7 +207,7 @@ void eeprom_tear(struct eeprom *eeprom)
 
 void eeprom_cancel_cut(struct eeprom *eeprom)
 {
-	eeprom->cut_request.pending = false;
+	eeprom->cut_request.is_pending = false;
 	eeprom->cut_at = 0;
 	avr_cycle_timer_cancel(eeprom->avr, cut_power, eeprom);
 }

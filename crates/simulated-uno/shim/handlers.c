@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "handlers.h"
 
-#define RETI_CYCLES 4 /* simavr reports a `reti` before it counts its cycles */
+#define RETI_CYCLES 4 /* simavr reports `reti` before it counts these cycles */
 
 uint64_t handlers_cycles(const struct handlers *handlers)
 {

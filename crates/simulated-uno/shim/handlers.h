@@ -1,4 +1,4 @@
-/* Statistics of interrupts: how often each one is served, and the cycles that its handler takes.
+/* Statistics of interrupts: the number of times that each is served, and the cycles of its handler.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -6,16 +6,16 @@
 
 #include "chip.h"
 
-struct vector_use {
+struct vector_stats {
 	uint64_t entries; /* number of times that the interrupt was served */
 	uint64_t cycles;  /* cycles spent in its handler */
 };
 
 struct handlers {
 	const avr_t *avr;
-	struct vector_use vectors[CHIP_VECTOR_COUNT];
-	uint8_t running_vectors[16]; /* vector numbers of the nested handlers, the innermost last */
-	uint8_t depth;               /* number of nested handlers; 0: the main program runs */
+	struct vector_stats vectors[CHIP_VECTOR_COUNT];
+	uint8_t running_vectors[16]; /* vector numbers of the nested handlers, innermost last */
+	uint8_t depth;               /* number of nested handlers; 0 while the main program runs */
 	uint64_t running_since;      /* cycle at which the innermost handler started or resumed */
 	uint64_t finished_cycles;    /* cycles spent in handlers up to `running_since` */
 };

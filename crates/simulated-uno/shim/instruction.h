@@ -1,5 +1,4 @@
-/* The instruction being executed: the cycle at which its store takes effect, and the bits that
- * it writes.
+/* The current instruction: the cycle at which its store takes effect, and the bits that it writes.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -9,25 +8,25 @@
 
 struct instruction {
 	avr_t *avr;
-	bool executing; /* true inside an instruction, false inside a simavr timer */
+	bool is_executing; /* true during an instruction, false during a simavr timer */
 };
 
 /* Executes the next instruction, or several, up to avr->run_cycle_limit cycles. */
 void instruction_run(struct instruction *instruction);
-/* The cycle at which the store being executed takes effect: the last cycle of its
- * instruction. simavr calls back in the first cycle, so an edge made by `sbi` would be one
- * cycle early compared with an edge made by `out`. */
+/* The cycle at which the current store takes effect: the last cycle of its instruction. simavr calls
+ * back in the first cycle, so an edge made by `sbi` would be one cycle early compared with an edge
+ * made by `out`. */
 uint64_t instruction_effect_cycle(const struct instruction *instruction);
-/* The bits to which the instruction writes a one, given the `value` that simavr reports:
- * `sbi` writes a single bit, but simavr implements it as a read and a write of all eight. */
+/* The bits to which the instruction writes a one, given the `value` that simavr reports: `sbi`
+ * writes a single bit, but simavr implements it as a read and a write of all eight bits. */
 uint8_t instruction_written_bits(const struct instruction *instruction, uint8_t value);
-/* The bits of an I/O register that the instruction being executed can change: one bit if it
- * is `sbi` or `cbi`, otherwise all. */
+/* The bits of an I/O register that the current instruction can change: one bit for `sbi` and `cbi`,
+ * otherwise all bits. */
 uint8_t instruction_touched_bits(const struct instruction *instruction);
-/* Halts the CPU for `cycles` after the instruction being executed. simavr does not count
- * these cycles in the slice of instructions that it runs at once, so end the slice, too, or
- * timers are late. */
+/* Halts the CPU for `cycles` after the current instruction. simavr does not count these cycles in
+ * the slice of instructions that it runs at once, so the caller must also end the slice; otherwise
+ * timers would be late. */
 void instruction_halt_cpu(const struct instruction *instruction, unsigned cycles);
-/* Ends the slice of instructions that simavr runs at once, so that timers and interrupts are
- * served right after the instruction being executed. */
+/* Ends the slice of instructions that simavr runs at once, so that timers and interrupts are served
+ * right after the current instruction. */
 void instruction_end_slice(const struct instruction *instruction);

@@ -12,12 +12,12 @@ static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *
 	if (!avr_regbit_get(avr, vector->enable))
 		return false;
 	if (vector == interrupts->eeprom_ready.vector)
-		return interrupts->eeprom_ready.requested;
+		return interrupts->eeprom_ready.is_requested;
 	return vector->raised.reg ? avr_regbit_get(avr, vector->raised) : vector->pending;
 }
 
-/* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from the flags. Returns
- * the interrupt of highest priority; NULL if none is due. */
+/* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from the flags. Returns the
+ * interrupt with the highest priority, or NULL if none is due. */
 static avr_int_vector_t *collect_due(const struct interrupts *interrupts)
 {
 	avr_t *avr = interrupts->avr;
@@ -62,7 +62,7 @@ bool interrupts_serve(struct interrupts *interrupts)
 		return false;
 	}
 	if (avr->interrupt_state < 0) {
-		/* simavr waits for two instructions after `sei`, the chip for one. */
+		/* simavr waits for two instructions after `sei`, the chip for one instruction. */
 		if (++avr->interrupt_state < 0)
 			return false;
 	}

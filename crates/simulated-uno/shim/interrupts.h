@@ -1,9 +1,9 @@
 /* Corrections of simavr 1.6's interrupts according to the ATmega328P's data sheet.
  *
- * - An interrupt takes 4 cycles to enter, 4 more from sleep (7.7.1).
- * - An enabled interrupt is served whenever its flag is set, even if it was enabled after the
- *   flag was set, and after `sei` when one more instruction has run.
- * - A one written to TIFRn clears that flag and no other.
+ * - Entering an interrupt takes 4 cycles, and 4 more from sleep (7.7.1).
+ * - An enabled interrupt is served whenever its flag is set, even if it was enabled after the flag
+ *   was set. After `sei`, one more instruction is executed first.
+ * - A one written to TIFRn clears that flag and no other flag.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -11,10 +11,10 @@
 
 #include "instruction.h"
 
-/* An interrupt without a flag: it is requested as long as its condition holds. */
+/* An interrupt without a flag, which is requested as long as its condition holds. */
 struct level_interrupt {
 	const avr_int_vector_t *vector;
-	bool requested; /* true while the condition holds */
+	bool is_requested; /* the condition holds */
 };
 
 struct interrupts {
@@ -26,9 +26,9 @@ struct interrupts {
 };
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
-/* To be called when a flag or an enable bit has changed: all interrupts are checked right
- * after the instruction being executed. */
+/* Has all interrupts checked right after the current instruction; must be called when a flag or an
+ * enable bit has changed. */
 void interrupts_request_check(struct interrupts *interrupts);
-/* Enters the handler of the due interrupt of highest priority. Returns true if cycles have
+/* Enters the handler of the due interrupt with the highest priority. Returns true if cycles have
  * passed. */
 bool interrupts_serve(struct interrupts *interrupts);

@@ -23,5 +23,5 @@ void serial_bytes_push(struct serial_bytes *bytes, uint64_t cycle, uint8_t byte)
 {
 	struct serial_byte *last = list_push(&bytes->bytes);
 	*last = (struct serial_byte){ cycle, byte };
-	bytes->line_ended |= byte == '\n';
+	bytes->has_line_ended |= byte == '\n';
 }

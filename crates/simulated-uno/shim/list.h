@@ -9,9 +9,9 @@
 
 struct list {
 	void *items;
-	size_t count;     /* items in use */
-	size_t capacity;  /* items allocated */
-	size_t item_size; /* bytes of one item */
+	size_t count;     /* number of items in use */
+	size_t capacity;  /* number of allocated items */
+	size_t item_size; /* size of an item, bytes */
 };
 
 /* Appends an uninitialised item and returns its address. Aborts if memory runs out. */
@@ -23,7 +23,7 @@ struct serial_byte { uint64_t cycle; uint8_t byte; };
 /* The bytes of one direction of the serial line. */
 struct serial_bytes {
 	struct list bytes;  /* struct serial_byte */
-	bool line_ended;    /* true after a line feed, until the reader resets it */
+	bool has_line_ended; /* true after a line feed, until the reader resets it */
 };
 
 void serial_bytes_init(struct serial_bytes *bytes);

@@ -1,5 +1,4 @@
-/* Correction: `sbi PINx, n` toggles pin n alone. simavr 1.6 toggles every pin of the port that is
- * high.
+/* Corrects `sbi PINx, n`: it toggles only pin n. simavr 1.6 toggles every high pin of the port.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

@@ -3,8 +3,8 @@
 
 #include <simavr/avr_ioport.h>
 
-/* Arduino's pin numbers: 0 to 7 are D0 to D7, port D; 8 to 13 are D8 to D13, port B; 14 to 19
- * are A0 to A5, port C. */
+/* Arduino's pin numbers: 0 to 7 are D0 to D7 (port D), 8 to 13 are D8 to D13 (port B), 14 to 19 are
+ * A0 to A5 (port C). */
 static const struct recorded_port board_ports[3] = {
 	{ .name = 'D', .first_pin = 0, .pin_count = 8 },
 	{ .name = 'B', .first_pin = 8, .pin_count = 6 },

@@ -1,5 +1,5 @@
-/* An oscilloscope on the board: records every edge of the chosen pins, and every store to
- * GPIOR0, with which the firmware may mark an event.
+/* An oscilloscope on the board: records every edge of the chosen pins and every store to GPIOR0, with
+ * which the firmware can mark an event.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -16,7 +16,7 @@ struct recorded_port {
 	struct recorder *recorder;
 	char name;          /* 'B', 'C' or 'D' */
 	uint8_t first_pin;  /* Arduino number of the port's bit 0 */
-	uint8_t pin_count;  /* number of the port's pins that the board has */
+	uint8_t pin_count;  /* number of the port's pins on the board */
 };
 
 struct recorder {

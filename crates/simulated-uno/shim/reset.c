@@ -16,18 +16,18 @@ static void write_mcusr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *
 	avr->data[address] = reset->mcusr;
 }
 
-void reset_attach(struct reset *reset, avr_t *avr, bool data_sheet)
+void reset_attach(struct reset *reset, avr_t *avr, bool is_data_sheet)
 {
 	*reset = (struct reset){
 		.avr = avr,
-		.data_sheet = data_sheet,
+		.is_data_sheet = is_data_sheet,
 		.noise_state = INITIAL_NOISE_STATE,
 		.initial_sram = calloc(1, avr->ramend + 1),
 		.events.item_size = sizeof(struct reset_event),
 	};
 	if (!reset->initial_sram)
 		abort();
-	if (data_sheet)
+	if (is_data_sheet)
 		hook_write(avr, REG_MCUSR, write_mcusr, reset);
 }
 
@@ -39,7 +39,7 @@ void reset_request(struct reset *reset, enum reset_cause cause)
 
 void reset_request_power_cut(struct reset *reset)
 {
-	reset->power_cut_requested = true;
+	reset->is_power_cut_requested = true;
 	reset->avr->run_cycle_count = 1;
 }
 
@@ -56,7 +56,7 @@ void reset_stop_timers(const struct reset *reset)
 	}
 }
 
-/* Returns the cause that is recorded if there are several at once. */
+/* Returns the cause that is recorded if several causes occur at once. */
 static uint8_t main_cause(uint8_t causes)
 {
 	static const uint8_t causes_by_rank[] = { RESET_POWER_ON, RESET_BROWN_OUT, RESET_WATCHDOG };
@@ -75,8 +75,8 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 	}
 	if (causes & RESET_POWER_ON)
 		reset->mcusr = RESET_POWER_ON;
-	else if (causes && !reset->data_sheet)
-		reset->mcusr = causes; /* stock simavr discards the earlier ones */
+	else if (causes && !reset->is_data_sheet)
+		reset->mcusr = causes; /* stock simavr discards the earlier causes */
 	else
 		reset->mcusr |= causes;
 	if (reset->has_boot_loader)

@@ -1,8 +1,8 @@
-/* Resets according to the ATmega328P's data sheet, chapter 11: pending requests, the causes in MCUSR, and
- * the SRAM at power-on.
+/* Resets according to the ATmega328P's data sheet, chapter 11: pending requests, the causes in MCUSR,
+ * and the SRAM at power-on.
  *
- * A part requests a reset or a power cut here; restart.c carries it out between two
- * instructions. simavr 1.6 has only the watchdog's reset, and MCUSR keeps only the last cause.
+ * A part requests a reset or a power cut here; restart.c executes the request between two
+ * instructions. simavr 1.6 has only the watchdog's reset, and its MCUSR keeps only the last cause.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -21,17 +21,17 @@ struct reset_event { uint64_t cycle; uint8_t cause; };
 
 struct reset {
 	avr_t *avr;
-	bool data_sheet;
+	bool is_data_sheet;
 	bool has_boot_loader;     /* a boot loader clears MCUSR before the firmware starts */
-	uint8_t requested_causes; /* causes of the requested reset, 0: none is requested */
-	bool power_cut_requested;
+	uint8_t requested_causes; /* causes of the requested reset; 0 if none is requested */
+	bool is_power_cut_requested;
 	uint8_t mcusr;            /* MCUSR, which simavr's reset clears */
 	uint64_t noise_state;     /* state of the random generator whose output fills the SRAM */
 	uint8_t *initial_sram;    /* the data space right after power-on */
-	struct list events;       /* all resets, power-on included: struct reset_event */
+	struct list events;       /* all resets, including power-on: struct reset_event */
 };
 
-void reset_attach(struct reset *reset, avr_t *avr, bool data_sheet);
+void reset_attach(struct reset *reset, avr_t *avr, bool is_data_sheet);
 void reset_request(struct reset *reset, enum reset_cause cause);
 void reset_request_power_cut(struct reset *reset);
 /* Stops Timer0, Timer1 and Timer2, which would continue after simavr's reset. */
@@ -42,6 +42,6 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now);
 void reset_restore_mcusr(const struct reset *reset);
 /* Fills r0 to r31 and the SRAM with noise, as power-on does. */
 void reset_fill_sram(struct reset *reset);
-/* The first SRAM address from `from` on that no longer contains its noise: the lowest address
- * that the stack has reached, if static data ends at `from`. */
+/* The first SRAM address, starting at `from`, that no longer contains its noise. If static data ends
+ * at `from`, this is the lowest address that the stack has reached. */
 uint16_t reset_first_changed(const struct reset *reset, uint16_t from);

@@ -15,7 +15,7 @@ void restart(struct uno *uno, uint8_t causes)
 		reset_fill_sram(&uno->reset);
 	if (causes & RESET_WATCHDOG)
 		uno->watchdog_resets++;
-	/* Before avr_reset, since watchdog_reset reads WDRF. */
+	/* Before avr_reset, because watchdog_reset reads WDRF. */
 	reset_record(&uno->reset, causes, uno->avr->cycle);
 	avr_reset(uno->avr);
 	reset_restore_mcusr(&uno->reset);
@@ -23,7 +23,7 @@ void restart(struct uno *uno, uint8_t causes)
 
 bool restart_if_requested(struct uno *uno)
 {
-	if (uno->reset.power_cut_requested) {
+	if (uno->reset.is_power_cut_requested) {
 		restart_cut_power(uno);
 		return true;
 	}
@@ -37,7 +37,7 @@ bool restart_wait_for_supply(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	uint64_t next = avr_cycle_timer_process(avr);
-	if (uno->reset.requested_causes || uno->reset.power_cut_requested)
+	if (uno->reset.requested_causes || uno->reset.is_power_cut_requested)
 		return true;
 	uint64_t left = until - avr->cycle;
 	avr->cycle += next < left ? next : left;
@@ -56,9 +56,9 @@ void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run)
 
 void restart_cut_power(struct uno *uno)
 {
-	uno->reset.power_cut_requested = false;
+	uno->reset.is_power_cut_requested = false;
 	uno->reset.requested_causes = 0;
-	uno->powered_off = true;
+	uno->is_powered_off = true;
 	eeprom_tear(&uno->eeprom);
 	release_pins_and_stop_timers(uno);
 }
@@ -68,6 +68,6 @@ void restart_catch_up(struct uno *uno)
 	avr_t *avr = uno->avr;
 	if (uno->now <= avr->cycle)
 		return;
-	uno->asleep_cycles += uno->now - avr->cycle;
+	uno->sleep_cycles += uno->now - avr->cycle;
 	avr->cycle = uno->now;
 }

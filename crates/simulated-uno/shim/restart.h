@@ -1,4 +1,4 @@
-/* Carries out resets and power cuts, between two instructions.
+/* Executes resets and power cuts between two instructions.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -6,19 +6,18 @@
 
 #include "board.h"
 
-/* Resets the chip now. `causes`: one or more bits of enum reset_cause; 0: none is recorded. */
+/* Resets the chip now. `causes`: bits of enum reset_cause; 0 if no reset is to be recorded. */
 void restart(struct uno *uno, uint8_t causes);
-/* Carries out the reset or power cut that a part has requested. Returns true if there was
- * one. */
+/* Executes the reset or power cut that a part has requested. Returns false if none is requested. */
 bool restart_if_requested(struct uno *uno);
 /* Advances the clock to the next simavr timer or to `until` while the supply holds the chip
  * in reset. Returns true. */
 bool restart_wait_for_supply(struct uno *uno, uint64_t until);
-/* Carries out the reset that stock simavr's watchdog requests by replacing avr->run.
- * `normal_run`: the callback that was there before. */
+/* Executes the reset that stock simavr's watchdog requests by replacing avr->run. `normal_run`: the
+ * previous value of avr->run. */
 void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run);
-/* Switches the power off: nothing runs until it is restored. */
+/* Switches the power off: nothing runs until the power is restored. */
 void restart_cut_power(struct uno *uno);
-/* Advances simavr's clock to the current cycle. To be called before the board is changed from
+/* Advances simavr's clock to the current cycle; must be called before the board is changed from
  * outside. */
 void restart_catch_up(struct uno *uno);

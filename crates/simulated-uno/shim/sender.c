@@ -29,13 +29,13 @@ static bool take_next_byte(struct sender *sender, struct line_byte *byte)
 static avr_cycle_count_t end_byte(avr_t *avr, avr_cycle_count_t when, void *param)
 {
 	struct sender *sender = param;
-	sender->busy = false;
+	sender->is_busy = false;
 	const struct receiver *receiver = &sender->receiver;
 	uint8_t received = receiver->receive_byte(receiver->param, sender->current_byte,
 	                                          sender->cycles_per_bit);
 	serial_bytes_push(&sender->delivered, avr->cycle, received);
-	/* Check again when the line is free, even if the queue is empty now: a byte queued
-	 * until then starts at that cycle. */
+	/* Check again when the line is free, even if the queue is empty now: a byte that is queued
+	 * meanwhile starts at that cycle. */
 	uint64_t cycles_to_free_line = chip_cycles_until(avr, ceil(sender->line_free_at));
 	avr_cycle_timer_register(avr, cycles_to_free_line, begin_byte, sender);
 	return 0;
@@ -45,12 +45,12 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 {
 	struct sender *sender = param;
 	const struct receiver *receiver = &sender->receiver;
-	if (sender->busy || !take_next_byte(sender, &sender->current_byte))
+	if (sender->is_busy || !take_next_byte(sender, &sender->current_byte))
 		return 0;
 	/* Fractions of a cycle carry over, so the rate is right in the long run. */
 	double start = sender->line_free_at > when - 1.0 ? sender->line_free_at : when;
 	double frame_cycles = FRAME_BITS * sender->cycles_per_bit;
-	sender->busy = true;
+	sender->is_busy = true;
 	sender->sent_count++;
 	sender->line_free_at = start + receiver->frame_cycles(receiver->param, frame_cycles);
 	receiver->on_start_bit(receiver->param);
@@ -59,12 +59,12 @@ static avr_cycle_count_t begin_byte(avr_t *avr, avr_cycle_count_t when, void *pa
 	return 0;
 }
 
-/* Schedules the next byte if there is one and none is on the line or scheduled. */
+/* Schedules the next byte, if any, unless a byte is on the line or already scheduled. */
 static void schedule_next_byte(struct sender *sender, uint64_t now)
 {
 	avr_t *avr = sender->avr;
-	bool empty = sender->next_index == sender->queue.count && !sender->flood_length;
-	if (empty || sender->busy || avr_cycle_timer_status(avr, begin_byte, sender))
+	bool is_empty = sender->next_index == sender->queue.count && !sender->flood_length;
+	if (is_empty || sender->is_busy || avr_cycle_timer_status(avr, begin_byte, sender))
 		return;
 	uint64_t free_at = ceil(sender->line_free_at);
 	uint64_t begin = now > avr->cycle ? now : avr->cycle;
@@ -86,7 +86,7 @@ void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, 
 
 void sender_reset(struct sender *sender, uint64_t now)
 {
-	sender->busy = false;
+	sender->is_busy = false;
 	schedule_next_byte(sender, now);
 }
 
@@ -95,17 +95,17 @@ void sender_set_baud(struct sender *sender, double baud)
 	sender->cycles_per_bit = CHIP_FREQUENCY / baud;
 }
 
-void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_bit_low,
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool is_stop_bit_low,
                  uint64_t now)
 {
 	for (size_t i = 0; i < length; i++) {
 		struct line_byte *last = list_push(&sender->queue);
-		*last = (struct line_byte){ bytes[i], stop_bit_low };
+		*last = (struct line_byte){ bytes[i], is_stop_bit_low };
 	}
 	schedule_next_byte(sender, now);
 }
 
-void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
+void sender_set_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now)
 {
 	free(sender->flood_bytes);
 	sender->flood_bytes = NULL;
@@ -122,5 +122,5 @@ void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, ui
 
 size_t sender_unsent_count(const struct sender *sender)
 {
-	return sender->queue.count - sender->next_index + sender->busy;
+	return sender->queue.count - sender->next_index + sender->is_busy;
 }

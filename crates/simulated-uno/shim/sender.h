@@ -1,5 +1,5 @@
 /* The other end of the serial cable: a PC's UART. It sends bytes back to back, without a pause
- * between a stop bit and the next start bit, whether or not the UNO keeps up.
+ * between a stop bit and the next start bit, even if the UNO does not keep up.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -10,19 +10,19 @@
 /* A byte on the line. */
 struct line_byte {
 	uint8_t value;
-	bool stop_bit_low;  /* the line is low where the stop bit should be */
+	bool is_stop_bit_low;  /* the line is low during the stop bit */
 };
 
 /* The UART at the UNO's end of the cable. */
 struct receiver {
 	void *param;
-	/* Returns the cycles from one start bit to the next, given the length of the sender's
+	/* Returns the number of cycles between two start bits, given the length of the sender's
 	 * frame. */
 	double (*frame_cycles)(void *param, double sender_frame_cycles);
 	/* Called when a start bit begins. */
 	void (*on_start_bit)(void *param);
-	/* Takes a byte from the line. Returns the received value, 0xff if it has a framing
-	 * error. `cycles_per_bit`: the sender's. */
+	/* Takes a byte from the line. Returns the received value, or 0xff after a framing error.
+	 * `cycles_per_bit`: the length of the sender's bits. */
 	uint8_t (*receive_byte)(void *param, struct line_byte byte, double cycles_per_bit);
 };
 
@@ -33,25 +33,25 @@ struct sender {
 	double line_free_at;            /* cycle at which the last stop bit ends */
 	struct list queue;              /* struct line_byte */
 	size_t next_index;              /* index of the first unsent byte in the queue */
-	uint8_t *flood_bytes;           /* sent repeatedly whenever the queue is empty; NULL: none */
+	uint8_t *flood_bytes;           /* sent repeatedly while the queue is empty; NULL if none */
 	size_t flood_length;            /* number of bytes in `flood_bytes` */
 	size_t flood_position;          /* index of the next byte in `flood_bytes` */
 	uint64_t sent_count;            /* number of bytes put on the line so far */
-	struct line_byte current_byte;  /* the byte on the line while `busy` */
-	bool busy;                      /* a byte is on the line */
+	struct line_byte current_byte;  /* the byte on the line while `is_busy` */
+	bool is_busy;                   /* a byte is on the line */
 	struct serial_bytes delivered;  /* bytes that have arrived at the receiver */
 };
 
 void sender_attach(struct sender *sender, avr_t *avr, struct receiver receiver, double baud);
-/* To be called after simavr's reset, which drops all timers: resumes sending. The byte on the
- * line is lost. */
+/* Resumes sending; must be called after simavr's reset, which drops all timers. The byte on the line
+ * is lost. */
 void sender_reset(struct sender *sender, uint64_t now);
 void sender_set_baud(struct sender *sender, double baud);
-/* Queues bytes. `now`, here and below: the current cycle, which may be ahead of avr->cycle
- * while the CPU sleeps. */
-void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool stop_bit_low,
+/* Queues bytes. `now`, also below: the current cycle, which may be ahead of avr->cycle while the CPU
+ * sleeps. */
+void sender_send(struct sender *sender, const uint8_t *bytes, size_t length, bool is_stop_bit_low,
                  uint64_t now);
 /* Sends `bytes` repeatedly whenever the queue is empty; length 0 ends the flood. */
-void sender_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
-/* The number of queued bytes that have not arrived. */
+void sender_set_flood(struct sender *sender, const uint8_t *bytes, size_t length, uint64_t now);
+/* The number of queued bytes that have not yet arrived. */
 size_t sender_unsent_count(const struct sender *sender);

@@ -8,9 +8,8 @@ static void on_transmit(struct avr_irq_t *irq, uint32_t value, void *param)
 	serial_bytes_push(stock->transmitted, cycle, value);
 }
 
-/* Stock simavr takes 11 bits for a frame. At the sender's true rate, a long stream would
- * overflow its receive buffer of 64 bytes, so the sender sends no faster than simavr
- * receives. */
+/* In stock simavr, a frame has 11 bits. At the sender's true rate, a long stream would overflow
+ * simavr's receive buffer of 64 bytes, so the sender sends no faster than simavr receives. */
 static double frame_cycles(void *param, double sender_frame_cycles)
 {
 	const struct stock_uart *stock = param;
@@ -25,9 +24,9 @@ static void on_start_bit(void *param)
 static uint8_t receive_byte(void *param, struct line_byte byte, double cycles_per_bit)
 {
 	const struct stock_uart *stock = param;
-	uint32_t input = byte.value | (byte.stop_bit_low ? UART_INPUT_FE : 0);
+	uint32_t input = byte.value | (byte.is_stop_bit_low ? UART_INPUT_FE : 0);
 	avr_raise_irq(stock->uart->io.irq + UART_IRQ_INPUT, input);
-	return byte.stop_bit_low ? 0xff : byte.value;
+	return byte.is_stop_bit_low ? 0xff : byte.value;
 }
 
 void stock_uart_attach(struct stock_uart *stock, const struct instruction *instruction,

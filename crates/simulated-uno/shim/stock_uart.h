@@ -13,7 +13,7 @@
 struct stock_uart {
 	avr_uart_t *uart;                       /* simavr's USART0 */
 	const struct instruction *instruction;
-	struct serial_bytes *transmitted;       /* record of the bytes that it transmits */
+	struct serial_bytes *transmitted;       /* record of the transmitted bytes */
 };
 
 /* Switches off simavr's pauses and its echo to stdout, and records the transmitted bytes. */

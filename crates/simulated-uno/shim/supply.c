@@ -13,8 +13,8 @@ double supply_mv(const struct supply *supply, uint64_t cycle)
 	if (cycle >= supply->ramp_end)
 		return supply->to_mv;
 	double ramp_cycles = (double)(supply->ramp_end - supply->ramp_start);
-	double elapsed_share = (double)(cycle - supply->ramp_start) / ramp_cycles;
-	return supply->from_mv + (supply->to_mv - supply->from_mv) * elapsed_share;
+	double elapsed_fraction = (double)(cycle - supply->ramp_start) / ramp_cycles;
+	return supply->from_mv + (supply->to_mv - supply->from_mv) * elapsed_fraction;
 }
 
 /* The voltage below which the supply holds the chip in reset: "VBOT- = VBOT - VHYST/2"
@@ -30,15 +30,15 @@ static double release_above_mv(const struct supply *supply)
 	return supply->brown_out_mv > 0 ? supply->brown_out_mv + HYSTERESIS_MV / 2 : POWER_ON_RISING_MV;
 }
 
-/* The first cycle after now at which the ramp is beyond `level_mv`; 0: never. */
+/* The first cycle after the current one at which the ramp is beyond `level_mv`; 0: never. */
 static uint64_t crossing_cycle(const struct supply *supply, double level_mv)
 {
 	double change_mv = supply->to_mv - supply->from_mv;
-	double share = (level_mv - supply->from_mv) / change_mv;
-	if (!(share >= 0 && share < 1))
+	double fraction = (level_mv - supply->from_mv) / change_mv;
+	if (!(fraction >= 0 && fraction < 1))
 		return 0;
 	uint64_t ramp_cycles = supply->ramp_end - supply->ramp_start;
-	uint64_t cycle = supply->ramp_start + (uint64_t)(share * ramp_cycles) + 1;
+	uint64_t cycle = supply->ramp_start + (uint64_t)(fraction * ramp_cycles) + 1;
 	return cycle > supply->avr->cycle ? cycle : 0;
 }
 
@@ -58,7 +58,7 @@ static void schedule(struct supply *supply)
 	}
 	avr_t *avr = supply->avr;
 	avr_cycle_timer_cancel(avr, check_supply, supply);
-	if (next_check && supply->data_sheet)
+	if (next_check && supply->is_data_sheet)
 		avr_cycle_timer_register(avr, next_check - avr->cycle, check_supply, supply);
 }
 
@@ -67,21 +67,21 @@ static void apply_voltage(struct supply *supply, double mv)
 	if (mv < MIN_OPERATING_MV)
 		eeprom_tear(supply->eeprom);
 	if (mv < POWER_ON_FALLING_MV)
-		supply->sram_lost = true;
+		supply->has_lost_sram = true;
 	if (!supply->holds_reset && mv < hold_below_mv(supply)) {
 		supply->holds_reset = true;
 		reset_request(supply->reset, RESET_HOLD);
 	} else if (supply->holds_reset && mv > release_above_mv(supply)) {
 		supply->holds_reset = false;
-		reset_request(supply->reset, supply->sram_lost ? RESET_POWER_ON : RESET_BROWN_OUT);
-		supply->sram_lost = false;
+		reset_request(supply->reset, supply->has_lost_sram ? RESET_POWER_ON : RESET_BROWN_OUT);
+		supply->has_lost_sram = false;
 	}
 }
 
-/* Holds the chip in reset or releases it, depending on the current voltage. */
+/* Holds the chip in reset or releases it, according to the current voltage. */
 static void update(struct supply *supply, uint64_t now)
 {
-	if (!supply->data_sheet)
+	if (!supply->is_data_sheet)
 		return;
 	apply_voltage(supply, supply_mv(supply, now));
 	schedule(supply);
@@ -102,7 +102,7 @@ static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *par
 }
 
 void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
-                   struct eeprom *eeprom, bool data_sheet)
+                   struct eeprom *eeprom, bool is_data_sheet)
 {
 	*supply = (struct supply){
 		.avr = avr,
@@ -111,7 +111,7 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
 		.from_mv = NOMINAL_MV,
 		.to_mv = NOMINAL_MV,
 		.brown_out_mv = BROWN_OUT_MV,
-		.data_sheet = data_sheet,
+		.is_data_sheet = is_data_sheet,
 	};
 }
 
@@ -160,8 +160,8 @@ void supply_reset(struct supply *supply)
 
 void supply_power_on(struct supply *supply)
 {
-	supply->holds_reset = supply->sram_lost = false;
+	supply->holds_reset = supply->has_lost_sram = false;
 	double mv = supply_mv(supply, supply->avr->cycle);
-	if (supply->data_sheet && mv < release_above_mv(supply))
-		supply->holds_reset = supply->sram_lost = true;
+	if (supply->is_data_sheet && mv < release_above_mv(supply))
+		supply->holds_reset = supply->has_lost_sram = true;
 }

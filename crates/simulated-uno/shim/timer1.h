@@ -1,5 +1,5 @@
-/* Timer1's 16-bit registers according to the data sheet (16.3): a high byte is read and written through
- * TEMP, a byte that all these registers share. simavr 1.6 stores a high byte at once.
+/* Timer1's 16-bit registers according to the data sheet (16.3): a high byte is read and written
+ * through the shared byte TEMP. simavr 1.6 stores a high byte at once.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */

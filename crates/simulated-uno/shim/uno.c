@@ -1,8 +1,8 @@
 /* One simulated UNO: connects its parts, and runs the loop that executes instructions.
  *
  * The loop never waits for the wall clock. A run ends at the requested cycle, even if the CPU
- * sleeps and simavr's next event is later: then uno->now is ahead of avr->cycle. So several
- * short runs have exactly the result of one long run.
+ * sleeps and simavr's next event is later: then uno->now is ahead of avr->cycle. Therefore
+ * several short runs have exactly the result of one long run.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -18,8 +18,8 @@
 #include "board.h"
 #include "restart.h"
 
-/* The largest number of cycles that simavr runs without returning to the loop. A run may end
- * that much too late. */
+/* The largest number of cycles that simavr runs without returning to the loop, and by which a run
+ * may end too late. */
 #define MAX_SLICE_CYCLES 256
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
@@ -29,8 +29,8 @@ static void on_log(avr_t *avr, const int level, const char *format, va_list args
 		vsnprintf(uno->error_message, sizeof uno->error_message, format, args);
 }
 
-/* simavr polls D2 and D3 on every cycle while they are low, in case the firmware wants a level
- * interrupt. This switches the polling off, which is slow. */
+/* While D2 or D3 is low, simavr polls it on every cycle, in case the firmware uses a level
+ * interrupt. This function switches the polling off, because it is slow. */
 static void disable_level_polling(avr_t *avr)
 {
 	avr_extint_set_strict_lvl_trig(avr, 0, 0);
@@ -43,7 +43,7 @@ static void on_reset(struct avr_io_t *io)
 	disable_level_polling(uno->avr);
 	handlers_reset(&uno->handlers);
 	call_timer_reset(&uno->call_timer);
-	if (uno->data_sheet) {
+	if (uno->is_data_sheet) {
 		timer1_reset(&uno->timer1);
 		usart_reset(&uno->usart);
 		eeprom_reset(&uno->eeprom);
@@ -72,8 +72,8 @@ static void join_reset_chain(avr_t *avr, avr_io_t *io)
 	*link = io;
 }
 
-/* simavr reports a store beyond SRAM as a crash, but only after it has stored there. So give
- * it all 64 KiB that an AVR can address. */
+/* simavr reports a store beyond SRAM as a crash, but only after the store. Therefore the data space
+ * gets all 64 KiB that an AVR can address. */
 static void widen_data_space(avr_t *avr)
 {
 	size_t size = avr->ramend + 1;
@@ -83,7 +83,7 @@ static void widen_data_space(avr_t *avr)
 	memset(avr->data + size, 0, UINT16_MAX + 1 - size);
 }
 
-struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
+struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud)
 {
 	struct uno *uno = calloc(1, sizeof *uno);
 	avr_t *avr = avr_make_mcu_by_name("atmega328p");
@@ -97,7 +97,7 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	avr->log = LOG_ERROR;
 
 	uno->avr = avr;
-	uno->data_sheet = data_sheet;
+	uno->is_data_sheet = is_data_sheet;
 	uno->instruction.avr = avr;
 	recorder_attach(&uno->recorder, &uno->instruction, pins);
 	handlers_attach(&uno->handlers, avr);
@@ -106,12 +106,12 @@ struct uno *uno_new(bool data_sheet, uint32_t pins, double baud)
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
-	reset_attach(&uno->reset, avr, data_sheet);
+	reset_attach(&uno->reset, avr, is_data_sheet);
 	eeprom_attach(&uno->eeprom, avr);
 	adc_attach(&uno->adc, avr);
 	contacts_attach(&uno->contacts, avr);
-	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, data_sheet);
-	if (data_sheet) {
+	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, is_data_sheet);
+	if (is_data_sheet) {
 		interrupts_attach(&uno->interrupts, &uno->instruction);
 		timer1_attach(&uno->timer1, avr);
 		pin_toggle_attach(&uno->pin_toggle, &uno->instruction);
@@ -166,7 +166,7 @@ uint16_t uno_lowest_stack_address(const struct uno *uno)
 static void run_instructions(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	if (uno->call_timer.enabled) {
+	if (uno->call_timer.is_enabled) {
 		call_timer_check(&uno->call_timer);
 		avr->run_cycle_limit = 1;
 	} else if (disturbance_is_active(&uno->disturbance)) {
@@ -175,22 +175,22 @@ static void run_instructions(struct uno *uno, uint64_t until)
 		uint64_t left = until > avr->cycle ? until - avr->cycle : 1;
 		avr->run_cycle_limit = left < MAX_SLICE_CYCLES ? left : MAX_SLICE_CYCLES;
 	}
-	/* The count that simavr computed with the old limit may reach beyond `until`. */
+	/* The count that simavr computed from the old limit may extend beyond `until`. */
 	if (avr->run_cycle_count > avr->run_cycle_limit)
 		avr->run_cycle_count = avr->run_cycle_limit;
 	instruction_run(&uno->instruction);
 }
 
-/* Sleeps for `cycles`, until simavr's next timer. Returns false if `until` comes first. In
- * the stock fidelity, the CPU wakes a cycle late, as in simavr. */
+/* Sleeps for `cycles`, until simavr's next timer. Returns false if `until` is earlier. In the
+ * stock fidelity, the CPU wakes a cycle late, as in simavr. */
 static bool sleep_until_timer(struct uno *uno, uint64_t cycles, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	cycles += uno->data_sheet ? 0 : 1;
+	cycles += uno->is_data_sheet ? 0 : 1;
 	if (avr->cycle + cycles > until)
 		return false;
 	avr->cycle += cycles;
-	uno->asleep_cycles += cycles;
+	uno->sleep_cycles += cycles;
 	uno->interrupts.ends_sleep = true;
 	return true;
 }
@@ -198,7 +198,7 @@ static bool sleep_until_timer(struct uno *uno, uint64_t cycles, uint64_t until)
 static void service_interrupts(struct uno *uno)
 {
 	avr_t *avr = uno->avr;
-	if (!uno->data_sheet) {
+	if (!uno->is_data_sheet) {
 		if (avr->interrupt_state)
 			avr_service_interrupts(avr);
 	} else if (avr->interrupt_state || uno->interrupts.needs_check) {
@@ -207,17 +207,17 @@ static void service_interrupts(struct uno *uno)
 	}
 }
 
-/* True if the sleeping CPU has interrupts off and no reset can wake it. */
+/* True if interrupts are disabled in the sleeping CPU and no reset can wake it. */
 static bool is_halted(const struct uno *uno)
 {
 	if (uno->avr->sreg[S_I])
 		return false;
-	return !uno->data_sheet ||
+	return !uno->is_data_sheet ||
 	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
 }
 
-/* Keeps the CPU asleep if interrupts are off: simavr lets an interrupt with its enable bit
- * set wake it. */
+/* Keeps the CPU asleep if interrupts are disabled: in simavr, an interrupt whose enable bit is set
+ * wakes it all the same. */
 static void stay_asleep(avr_t *avr)
 {
 	if (avr->state == cpu_Running && !avr->sreg[S_I])
@@ -225,13 +225,13 @@ static void stay_asleep(avr_t *avr)
 }
 
 /* Executes a few instructions, or advances the clock while the CPU cannot execute any. Returns
- * false if the power is off or nothing happens before cycle `until`. `normal_run`: avr->run as long
- * as stock simavr's watchdog does not request a reset. */
+ * false if the power is off or nothing happens before cycle `until`. `normal_run`: the value of
+ * avr->run unless stock simavr's watchdog requests a reset. */
 static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	if (restart_if_requested(uno))
-		return !uno->powered_off;
+		return !uno->is_powered_off;
 	if (uno->supply.holds_reset)
 		return restart_wait_for_supply(uno, until);
 	if (avr->state == cpu_Sleeping)
@@ -258,7 +258,7 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 		}
 		if (!sleep_until_timer(uno, cycles_to_timer, until))
 			return false;
-		if (uno->data_sheet) {
+		if (uno->is_data_sheet) {
 			avr_cycle_timer_process(avr); /* fires the timer that is due now */
 			stay_asleep(avr);
 		}
@@ -272,50 +272,50 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	avr_run_t normal_run = avr->run;
-	uno->transmitted.line_ended = false;
-	while (avr->cycle < until && !uno->powered_off) {
+	uno->transmitted.has_line_ended = false;
+	while (avr->cycle < until && !uno->is_powered_off) {
 		if (avr->state != cpu_Running && avr->state != cpu_Sleeping)
 			break;
 		if (!step(uno, normal_run, until))
 			break;
-		if (uno->transmitted.line_ended && uno->stop_at_line)
+		if (uno->transmitted.has_line_ended && uno->stops_at_line)
 			break;
 	}
 	restart_if_requested(uno); /* requested in the last cycle */
-	bool line_ended = uno->transmitted.line_ended && uno->stop_at_line;
-	bool alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
-	/* The CPU sleeps and nothing is due before `until`: that is the current cycle, ahead
+	bool has_line_ended = uno->transmitted.has_line_ended && uno->stops_at_line;
+	bool is_alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
+	/* The CPU sleeps and nothing is due before `until`, so `until` is the current cycle, ahead
 	 * of simavr's. */
-	bool lags = alive && !line_ended && !uno->powered_off && avr->cycle < until;
-	uno->now = lags ? until : avr->cycle;
-	if (uno->powered_off)
-		return STOP_OFF;
+	bool is_behind = is_alive && !has_line_ended && !uno->is_powered_off && avr->cycle < until;
+	uno->now = is_behind ? until : avr->cycle;
+	if (uno->is_powered_off)
+		return STOP_POWER_CUT;
 	if (avr->state == cpu_Done)
 		return STOP_HALTED;
-	if (!alive)
+	if (!is_alive)
 		return STOP_CRASHED;
-	return line_ended ? STOP_LINE : STOP_TIME;
+	return has_line_ended ? STOP_LINE_SENT : STOP_CYCLE_REACHED;
 }
 
-uint64_t uno_asleep_cycles(const struct uno *uno)
+uint64_t uno_sleep_cycles(const struct uno *uno)
 {
-	bool lags = uno->now > uno->avr->cycle;
-	return uno->asleep_cycles + (lags ? uno->now - uno->avr->cycle : 0);
+	bool is_behind = uno->now > uno->avr->cycle;
+	return uno->sleep_cycles + (is_behind ? uno->now - uno->avr->cycle : 0);
 }
 
-void uno_time_calls(struct uno *uno, bool on, uint32_t entry)
+void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry)
 {
-	call_timer_set(&uno->call_timer, on, entry);
+	call_timer_set(&uno->call_timer, is_enabled, entry);
 }
 
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_bit_low)
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool is_stop_bit_low)
 {
-	sender_send(&uno->sender, bytes, length, stop_bit_low, uno->now);
+	sender_send(&uno->sender, bytes, length, is_stop_bit_low, uno->now);
 }
 
-void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length)
+void uno_set_flood(struct uno *uno, const uint8_t *bytes, size_t length)
 {
-	sender_flood(&uno->sender, bytes, length, uno->now);
+	sender_set_flood(&uno->sender, bytes, length, uno->now);
 }
 
 void uno_block_cpu(struct uno *uno, uint64_t cycles)
@@ -324,7 +324,7 @@ void uno_block_cpu(struct uno *uno, uint64_t cycles)
 	uno->disturbance.blocked_cycles = cycles;
 	if (avr->state != cpu_Sleeping)
 		return; /* served by the loop, as soon as interrupts are enabled */
-	uno->asleep_cycles += uno->now - avr->cycle;
+	uno->sleep_cycles += uno->now - avr->cycle;
 	avr->cycle = uno->now;
 	disturbance_serve(&uno->disturbance);
 	uno->now = avr->cycle;
@@ -348,7 +348,7 @@ void uno_poke(struct uno *uno, uint16_t address, uint8_t value)
 void uno_set_baud(struct uno *uno, double baud) { sender_set_baud(&uno->sender, baud); }
 uint32_t uno_cycles_per_bit(const struct uno *uno) { return usart_cycles_per_bit(uno->avr); }
 uint8_t uno_sample_byte(uint8_t byte, double ratio) { return usart_sample_byte(byte, ratio); }
-void uno_stop_at_line(struct uno *uno, bool on) { uno->stop_at_line = on; }
+void uno_set_stop_at_line(struct uno *uno, bool is_enabled) { uno->stops_at_line = is_enabled; }
 size_t uno_unsent_count(const struct uno *uno) { return sender_unsent_count(&uno->sender); }
 uint64_t uno_sent_count(const struct uno *uno) { return uno->sender.sent_count; }
 uint64_t uno_now(const struct uno *uno) { return uno->now; }
@@ -359,7 +359,7 @@ uint32_t uno_pin_levels(const struct uno *uno) { return uno->recorder.levels; }
 const char *uno_error_message(const struct uno *uno) { return uno->error_message; }
 const uint8_t *uno_data(const struct uno *uno) { return uno->avr->data; }
 uint32_t uno_data_size(const struct uno *uno) { return uno->avr->ramend + 1; }
-const struct vector_use *uno_vectors(const struct uno *uno) { return uno->handlers.vectors; }
+const struct vector_stats *uno_vectors(const struct uno *uno) { return uno->handlers.vectors; }
 struct list *uno_edges(struct uno *uno) { return &uno->recorder.edges; }
 struct list *uno_marks(struct uno *uno) { return &uno->recorder.marks; }
 struct list *uno_transmitted(struct uno *uno) { return &uno->transmitted.bytes; }

@@ -11,41 +11,40 @@ struct uno;
 
 /* The reason for the end of a run. Must match `StopReason` in src/ffi.rs. */
 enum stop_reason {
-	STOP_TIME,    /* the requested cycle is reached */
-	STOP_LINE,    /* the firmware has sent a line feed */
-	STOP_HALTED,  /* the CPU sleeps, and nothing can wake it */
-	STOP_CRASHED, /* invalid instruction or address; see uno_error_message */
-	STOP_OFF,     /* the power has been cut */
+	STOP_CYCLE_REACHED, /* the requested cycle was reached */
+	STOP_LINE_SENT,     /* the firmware has sent a line feed */
+	STOP_HALTED,        /* the CPU sleeps, and nothing can wake it */
+	STOP_CRASHED,       /* invalid instruction or address; see uno_error_message */
+	STOP_POWER_CUT,     /* the power was cut */
 };
 
-/* Directs simavr's error messages to the uno that they concern. To be called once. */
+/* Directs simavr's error messages to the uno that they concern. Call this function once. */
 void uno_set_logger(void);
-/* `data_sheet`: true for the data-sheet fidelity, simavr corrected to match the data sheet; false
- * for the stock fidelity, simavr as it is. `pins`: the pins whose edges are recorded, bit n =
- * Arduino pin n. `baud`: the sender's baud rate. */
-struct uno *uno_new(bool data_sheet, uint32_t pins, double baud);
+/* `is_data_sheet`: true for the data-sheet fidelity (simavr corrected to match the data sheet), false
+ * for the stock fidelity (simavr without corrections). `pins`: the pins whose edges are recorded,
+ * bit n = Arduino pin n. `baud`: the sender's baud rate. */
+struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud);
 void uno_free(struct uno *uno);
 /* Copies `size` bytes into flash at a byte address. Returns false if they do not fit. */
 bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address);
-/* To be called after the last uno_load: flash contains code up to byte address `code_end`, and
- * static data ends before data address `data_end`. */
+/* Must be called after the last uno_load. The code in flash ends before byte address `code_end`, and
+ * the static data before data address `data_end`. */
 void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end);
 /* Runs until cycle `until`, or until another stop reason occurs. */
 enum stop_reason uno_run(struct uno *uno, uint64_t until);
-/* While `on` is true, a run ends as soon as the firmware has sent a complete line. */
-void uno_stop_at_line(struct uno *uno, bool on);
+/* While `is_enabled`, a run ends as soon as the firmware has sent a complete line. */
+void uno_set_stop_at_line(struct uno *uno, bool is_enabled);
 /* Starts or stops timing the calls of the function at byte address `entry`. */
-void uno_time_calls(struct uno *uno, bool on, uint32_t entry);
-/* Queues bytes for the serial line. `stop_bit_low`: the line is low where each stop bit
- * should be. */
-void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool stop_bit_low);
+void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry);
+/* Queues bytes for the serial line. `is_stop_bit_low`: the line is low during each stop bit. */
+void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool is_stop_bit_low);
 /* Sends `bytes` repeatedly whenever the queue is empty; length 0 ends the flood. */
-void uno_flood(struct uno *uno, const uint8_t *bytes, size_t length);
+void uno_set_flood(struct uno *uno, const uint8_t *bytes, size_t length);
 /* Sets the sender's baud rate. */
 void uno_set_baud(struct uno *uno, double baud);
 /* The length of a bit of the chip's USART, cycles, as its registers set it. */
 uint32_t uno_cycles_per_bit(const struct uno *uno);
-/* Returns the byte that a receiver reads if its bit is `ratio` times as long as the sender's; see
+/* Returns the byte that a receiver reads if its bits are `ratio` times as long as the sender's; see
  * usart_sample_byte. */
 uint8_t uno_sample_byte(uint8_t byte, double ratio);
 /* Occupies the CPU for `cycles`, as a foreign interrupt would, at once or as soon as interrupts are
@@ -55,14 +54,14 @@ void uno_block_cpu(struct uno *uno, uint64_t cycles);
 void uno_stall_main(struct uno *uno, uint64_t until);
 /* Writes to a data address as the instruction `sts` would. */
 void uno_poke(struct uno *uno, uint16_t address, uint8_t value);
-/* The number of queued bytes that have not arrived at the uno. */
+/* The number of queued bytes that have not yet arrived at the uno. */
 size_t uno_unsent_count(const struct uno *uno);
-/* The number of bytes put on the line towards the uno, floods included. */
+/* The number of bytes sent to the uno so far, including floods. */
 uint64_t uno_sent_count(const struct uno *uno);
 /* The current cycle. */
 uint64_t uno_now(const struct uno *uno);
-/* The cycles that the CPU has slept until now, an unfinished sleep included. */
-uint64_t uno_asleep_cycles(const struct uno *uno);
+/* The cycles in which the CPU has slept so far, including an unfinished sleep. */
+uint64_t uno_sleep_cycles(const struct uno *uno);
 /* The byte address in flash of the next instruction. */
 uint32_t uno_pc(const struct uno *uno);
 /* The number of resets by the watchdog. */
@@ -78,8 +77,8 @@ const char *uno_error_message(const struct uno *uno);
 /* The data space: registers r0 to r31, I/O registers and SRAM. */
 const uint8_t *uno_data(const struct uno *uno);
 uint32_t uno_data_size(const struct uno *uno);
-/* CHIP_VECTOR_COUNT items, by vector number. */
-const struct vector_use *uno_vectors(const struct uno *uno);
+/* CHIP_VECTOR_COUNT items, indexed by the vector number. */
+const struct vector_stats *uno_vectors(const struct uno *uno);
 struct list *uno_edges(struct uno *uno);             /* struct edge */
 struct list *uno_marks(struct uno *uno);             /* struct mark */
 struct list *uno_transmitted(struct uno *uno);       /* struct serial_byte */
@@ -93,7 +92,7 @@ void uno_reset(struct uno *uno);
 /* Cuts the power and restores it at once. */
 void uno_power_cycle(struct uno *uno);
 /* Simulates the effects of a boot loader: MCUSR is zero when the firmware starts. */
-void uno_set_boot_loader(struct uno *uno, bool on);
+void uno_set_boot_loader(struct uno *uno, bool is_present);
 /* Chooses the noise that the next power-on leaves in the SRAM. */
 void uno_set_noise_seed(struct uno *uno, uint64_t seed);
 /* True while the supply is too low for the chip to run. */
@@ -101,13 +100,13 @@ bool uno_is_held_in_reset(const struct uno *uno);
 struct list *uno_reset_events(struct uno *uno);      /* struct reset_event */
 uint8_t *uno_eeprom(struct uno *uno);                /* 1024 bytes */
 struct list *uno_eeprom_operations(struct uno *uno); /* struct eeprom_operation */
-/* Sets the bits that read as 1 in a torn byte besides those of its old value (power cut while
- * it is erased) or of its new value (power cut while it is written). */
-void uno_set_torn_ones(struct uno *uno, uint8_t ones);
+/* Sets the bits that read as 1 in a torn byte, in addition to the ones of its old value (if the
+ * power is cut during the erase phase) or of its new value (during the write phase). */
+void uno_set_torn_bits(struct uno *uno, uint8_t ones);
 /* Cuts the power at this cycle. */
 void uno_cut_power_at(struct uno *uno, uint64_t cycle);
-/* Cuts the power in an EEPROM operation, after `skip_count` others have begun. `in_write`: in
- * its write phase, not in its erase phase. */
+/* Cuts the power in an EEPROM operation, after `skip_count` skipped operations. `in_write`: true for
+ * the write phase, false for the erase phase. */
 void uno_cut_power_in_operation(struct uno *uno, uint64_t skip_count, bool in_write);
 /* Cancels every power cut that has not happened yet. */
 void uno_cancel_power_cut(struct uno *uno);
@@ -123,9 +122,9 @@ void uno_set_bandgap(struct uno *uno, double mv);
 void uno_set_analog(struct uno *uno, uint8_t channel, uint16_t mv);
 /* Closes or opens a contact between ground and bit `bit` of the port whose PIN register has this
  * data address. */
-void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool closed);
+void uno_set_contact(struct uno *uno, uint16_t address, uint8_t bit, bool is_closed);
 
-/* Makes every reset, and the current start, begin at this byte address in flash, as the fuse
+/* Makes the program start at this byte address in flash, now and after every reset, as the fuse
  * BOOTRST does. */
 void uno_set_boot_address(struct uno *uno, uint32_t address);
 uint8_t *uno_flash(struct uno *uno);                 /* 32768 bytes */

@@ -13,7 +13,7 @@ enum { /* UCSR0B */
 
 #define DATA_BITS 8
 #define FRAME_BITS 10
-/* The largest relative error of the baud rate at which the last sample is still inside the stop bit. */
+/* The largest relative baud rate error at which the last sample is still inside the stop bit. */
 #define BAUD_TOLERANCE 0.045
 
 uint32_t usart_cycles_per_bit(const avr_t *avr)
@@ -40,9 +40,9 @@ static void update_receive_flags(struct usart *usart)
 	avr_t *avr = usart->avr;
 	uint8_t *status = &avr->data[REG_UCSR0A];
 	*status &= ~(RXC | FE | DOR);
-	if (usart->received_count && usart->received[0].frame_error)
+	if (usart->received_count && usart->received[0].has_frame_error)
 		*status |= FE;
-	if (usart->overrun)
+	if (usart->has_overrun)
 		*status |= DOR;
 	if (usart->received_count) {
 		avr_raise_interrupt(avr, &usart->vectors->rxc); /* sets RXC */
@@ -55,8 +55,8 @@ static void on_start_bit(void *param)
 	struct usart *usart = param;
 	if (usart->received_count < RECEIVE_CAPACITY)
 		return;
-	usart->received_count--; /* the incoming byte overwrites the shift register */
-	usart->overrun = true;
+	usart->received_count--; /* the next byte overwrites the shift register */
+	usart->has_overrun = true;
 	usart->overrun_count++;
 	update_receive_flags(usart);
 }
@@ -68,11 +68,11 @@ static uint8_t receive_byte(void *param, struct line_byte byte, double sender_cy
 	if (!(avr->data[REG_UCSR0B] & RXEN))
 		return byte.value;
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
-	bool frame_error = byte.stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
+	bool has_frame_error = byte.is_stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
 	uint8_t value = usart_sample_byte(byte.value, ratio);
-	usart->received[usart->received_count++] = (struct received){ value, frame_error };
+	usart->received[usart->received_count++] = (struct received){ value, has_frame_error };
 	update_receive_flags(usart);
-	return frame_error ? 0xff : value;
+	return has_frame_error ? 0xff : value;
 }
 
 static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
@@ -84,7 +84,7 @@ static uint8_t read_data(avr_t *avr, avr_io_addr_t addr, void *param)
 	usart->received_count--;
 	for (int i = 0; i < usart->received_count; i++)
 		usart->received[i] = usart->received[i + 1];
-	usart->overrun = false;
+	usart->has_overrun = false;
 	usart->vectors->rxc.pending = 0;
 	interrupts_request_check(usart->interrupts);
 	update_receive_flags(usart);
@@ -142,10 +142,10 @@ static void write_control(avr_t *avr, avr_io_addr_t addr, uint8_t value, void *p
 	avr->data[addr] = value;
 	if (!(value & RXEN)) {
 		usart->received_count = 0;
-		usart->overrun = false;
+		usart->has_overrun = false;
 		update_receive_flags(usart);
 	}
-	interrupts_request_check(usart->interrupts); /* an interrupt enabled while its flag is set fires */
+	interrupts_request_check(usart->interrupts); /* an interrupt fires if it is enabled while its flag is set */
 }
 
 /* The receiver does not slow the sender down. */

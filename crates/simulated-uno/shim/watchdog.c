@@ -7,9 +7,9 @@ enum { /* WDTCSR */
 };
 
 #define OSCILLATOR_HZ 128000u
-#define SHORTEST_PERIOD 2048u /* with WDP = 0, in cycles of the oscillator */
+#define SHORTEST_PERIOD 2048u /* with WDP = 0, oscillator cycles */
 #define MAX_WDP 9 /* higher values are reserved */
-#define CHANGE_WINDOW_CYCLES 4 /* WDE and WDP may change for so long after WDCE is set */
+#define CHANGE_WINDOW_CYCLES 4 /* time after WDCE is set in which WDE and WDP may change */
 
 /* The time-out in CPU cycles, given WDTCSR. */
 static uint64_t period_cycles(uint8_t control)
@@ -51,8 +51,7 @@ static void schedule(struct watchdog *watchdog)
 	avr_cycle_timer_register(avr, chip_cycles_until(avr, due), on_time_out, watchdog);
 }
 
-/* Called by simavr with each request to its parts; `wdr` is one of them. Returns -1 for the
- * others. */
+/* Called by simavr with each request to its parts, such as `wdr`. Returns -1 for other requests. */
 static int on_request(avr_io_t *io, uint32_t request, void *param)
 {
 	if (request != AVR_IOCTL_WATCHDOG_RESET)

@@ -1,7 +1,7 @@
 /* The watchdog according to the ATmega328P's data sheet, 11.8 and 11.9.2.
  *
- * simavr 1.6 never resets while the interrupt is enabled, restarts the counter
- * when its prescaler is changed, and clears WDIE in interrupt mode.
+ * simavr 1.6 never resets the chip while the watchdog interrupt is enabled, restarts the counter when
+ * the prescaler is changed, and clears WDIE in interrupt mode.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -27,7 +27,7 @@ struct watchdog {
 /* Replaces simavr's watchdog. */
 void watchdog_attach(struct watchdog *watchdog, const struct instruction *instruction,
                      struct interrupts *interrupts, struct reset *reset);
-/* To be called after a reset: switches the watchdog on if WDRF is set, otherwise off. */
+/* Switches the watchdog on if WDRF is set, otherwise off; must be called after a reset. */
 void watchdog_reset(struct watchdog *watchdog);
 /* True if the watchdog will reset the chip unless the firmware acts. */
 bool watchdog_may_reset(const struct watchdog *watchdog);

@@ -4,15 +4,15 @@ use crate::ffi;
 use crate::{Pin, Uno};
 
 impl Uno {
-    /// Sets the voltage of the bandgap reference, mV; 1100 by default. The data sheet allows 1000 to 1200, and each
-    /// chip has its own constant value. With [`Fidelity::Stock`](crate::Fidelity) the voltage is always 1100.
+    /// Sets the voltage of the bandgap reference, mV; 1100 by default. The data sheet allows 1000 to 1200 mV, and each
+    /// chip has its own constant value. With [`Fidelity::Stock`](crate::Fidelity) the voltage is always 1100 mV.
     ///
     /// # Panics
-    /// If the voltage is not within 1000 to 1200 mV.
+    /// If the voltage is not between 1000 and 1200 mV.
     pub fn set_bandgap_mv(&mut self, mv: f64) {
         assert!(
             (1000.0..=1200.0).contains(&mv),
-            "a bandgap reference has 1000 to 1200 mV, not {mv}"
+            "the bandgap reference must be between 1000 and 1200 mV, but is {mv} mV"
         );
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
@@ -26,7 +26,7 @@ impl Uno {
         let channel = pin.number().checked_sub(Pin::a(0).number());
         let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim takes the channel
-        // modulo the eight that there are.
+        // modulo the number of channels.
         unsafe { ffi::uno_set_analog(self.raw, channel, mv) }
     }
 }

@@ -1,10 +1,10 @@
-//! Compiler for small AVR programs that a test contains as text.
+//! Compiles small AVR programs that a test contains as text.
 //!
 //! A test of a driver, or of the simulator itself, needs a program of about ten lines whose cycles can be counted by
-//! hand with the data sheet. Such a program is easiest to read next to the expected result. This module needs
+//! hand with the data sheet. Such a program is easiest to read next to the expected result. This module requires
 //! Debian's `gcc-avr` and `avr-libc`.
 //!
-//! All functions except [`run`] panic with avr-gcc's own message if avr-gcc rejects the program, because a test
+//! If avr-gcc rejects the program, all functions except [`run`] panic with avr-gcc's own message, because a test
 //! cannot handle the error.
 
 use std::ffi::OsStr;
@@ -16,7 +16,7 @@ use crate::Image;
 /// Compiles C (or, inside `asm`, assembly) with avr-gcc for the UNO's chip.
 ///
 /// # Panics
-/// If avr-gcc is missing, or if it rejects the program: then with avr-gcc's own message.
+/// If avr-gcc is missing or rejects the program.
 #[must_use]
 pub fn compile_c(source: &str) -> Image {
     build(source, "c", &["-O2", "-std=gnu11"])
@@ -67,7 +67,7 @@ pub fn run(flags: &[&str], inputs: &[&OsStr], output: &Path) -> Result<(), Strin
     match result.status.success() {
         true => Ok(()),
         false => Err(format!(
-            "avr-gcc refuses the program:\n{}",
+            "avr-gcc rejects the program:\n{}",
             String::from_utf8_lossy(&result.stderr)
         )),
     }

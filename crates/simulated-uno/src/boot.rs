@@ -11,8 +11,8 @@ impl Uno {
     pub fn with_boot_loader(loader: Image, fidelity: Fidelity) -> Self {
         let start = loader.code_start();
         let uno = Self::with_image(loader, fidelity);
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; `Image` has checked that its code,
-        // and so its start, is inside flash.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; `Image` has checked that its code
+        // is inside flash.
         unsafe { ffi::uno_set_boot_address(uno.raw, start) }
         uno
     }
@@ -25,7 +25,7 @@ impl Uno {
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 
-    /// Changes bytes of flash without the program's involvement, as worn-out memory cells do.
+    /// Changes bytes in flash from outside the program, as worn-out memory cells do.
     ///
     /// # Panics
     /// If the bytes do not fit into flash.
@@ -38,8 +38,8 @@ impl Uno {
         flash[start..start + bytes.len()].copy_from_slice(bytes);
     }
 
-    /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow for as long as the
-    /// UNO runs.
+    /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow as long as the UNO
+    /// runs.
     pub(crate) fn clear_received(&mut self) {
         self.clear_items(ffi::uno_received);
     }

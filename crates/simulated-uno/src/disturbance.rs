@@ -8,15 +8,14 @@ use crate::ffi;
 impl Uno {
     /// Interrupts the program for `cycles`, with priority over all of the chip's own interrupts. Meanwhile the
     /// program executes nothing, but flags are set and bytes arrive. The interruption starts at once, or as soon as
-    /// interrupts are enabled. A second call before its start replaces the first.
+    /// interrupts are enabled. A second call before this start replaces the first call.
     pub fn block_interrupts(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim counts the cycles.
         unsafe { ffi::uno_block_cpu(self.raw, cycles) }
     }
 
-    /// Stops the main program for this many cycles, as if its next instruction took that long. Interrupts are
-    /// served meanwhile. While interrupts are disabled, the main program is not stopped: it continues until it
-    /// enables them.
+    /// Stops the main program for `cycles`, as if its next instruction took that long. Interrupts are served
+    /// meanwhile. While interrupts are disabled, the main program continues until it enables them.
     pub fn stall_main(&mut self, cycles: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_stall_main(self.raw, self.cycle() + cycles) }

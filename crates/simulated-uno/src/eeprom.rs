@@ -1,8 +1,8 @@
 //! The EEPROM, and power failures while it is written.
 //!
 //! Programming a byte takes 3.4 ms. If a firmware loses power during that time, it must find either its old or its
-//! new settings at the next start. To check this, a test can cut the power while any byte is programmed, and choose the
-//! bits that are set in that byte afterwards.
+//! new settings at the next start. To check this, a test can cut the power while any byte is programmed, and can choose
+//! the bits that are set in that byte afterwards.
 
 use crate::Uno;
 use crate::ffi;
@@ -36,7 +36,7 @@ pub struct EepromOperation {
     pub mode: EepromMode,
     /// The byte's value before the operation.
     pub old_value: u8,
-    /// The byte's value after the operation. While the operation is in progress: the value that the byte will have
+    /// The byte's value after the operation or, while the operation is in progress, the value that the byte will have
     /// if the power does not fail.
     pub new_value: u8,
     /// True if the power failed during the operation.
@@ -48,12 +48,11 @@ pub struct EepromOperation {
 pub enum PowerCut {
     /// At this cycle since power-on.
     AtCycle(u64),
-    /// In the middle of the erase phase of a later operation, after this number of skipped operations: 0 is the
-    /// next operation.
+    /// In the middle of a later operation's erase phase, after this number of skipped operations; 0 is the next
+    /// operation.
     InErase(u64),
-    /// In the middle of the write phase of a later operation, after this number of skipped operations: 0 is the
-    /// next operation. An operation that only erases or only writes is cut in its middle by both `InErase` and
-    /// `InWrite`.
+    /// In the middle of a later operation's write phase, after this number of skipped operations; 0 is the next
+    /// operation. Both `InErase` and `InWrite` cut an operation that only erases or only writes in its middle.
     InWrite(u64),
 }
 
@@ -85,9 +84,8 @@ impl Uno {
     /// `ones` chooses the value that remains in the byte of an operation in progress, whose old value is `old` and
     /// whose data is `new`. During the erase phase, zeros of the old value become ones one after another: the byte is
     /// `old | ones`. During the write phase, ones become zeros: the byte is `new | ones`, or `old & (new | ones)` in
-    /// [`EepromMode::WriteOnly`]. So `ones` = 0 gives the value at the first instant of the erase phase and at the last
-    /// instant of the write phase; 0xff gives the value at the last instant of the erase phase and at the first instant
-    /// of the write phase.
+    /// [`EepromMode::WriteOnly`]. Therefore `ones` = 0 gives the value at the start of the erase phase and at the end
+    /// of the write phase, and 0xff the value at the end of the erase phase and at the start of the write phase.
     ///
     /// With [`Fidelity::Stock`](crate::Fidelity), only [`PowerCut::AtCycle`] has an effect, and it never tears a
     /// byte.
@@ -115,9 +113,9 @@ impl Uno {
     }
 
     /// Sets the bits that remain set in a byte after a power failure other than [`Uno::cut_power`]: a supply below
-    /// 1.8 V, or [`Uno::power_cycle`]. They have the meaning of the argument `ones` of [`Uno::cut_power`].
+    /// 1.8 V, or [`Uno::power_cycle`]. For the meaning of `ones`, see [`Uno::cut_power`].
     pub fn set_torn_bits(&mut self, ones: u8) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
-        unsafe { ffi::uno_set_torn_ones(self.raw, ones) }
+        unsafe { ffi::uno_set_torn_bits(self.raw, ones) }
     }
 }

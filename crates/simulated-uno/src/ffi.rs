@@ -1,10 +1,10 @@
-//! Declarations of the C functions in `shim/`. This module is private; [`crate::Uno`] is the safe interface to these
-//! functions. The items of the shim's lists are public types with C layout: [`crate::Edge`], [`crate::SerialByte`]
-//! and others.
+//! Declarations of the C functions in `shim/`, which are documented in `shim/uno.h`. This module is private;
+//! [`crate::Uno`] is the safe interface to these functions. The items of the shim's lists are public types with C
+//! layout: [`crate::Edge`], [`crate::SerialByte`] and others.
 
 use std::ffi::{c_char, c_void};
 
-/// `struct uno` of the shim, which only the shim reads and writes.
+/// Opaque `struct uno`, accessed only by the shim.
 #[repr(C)]
 pub struct RawUno {
     _opaque: [u8; 0],
@@ -22,13 +22,13 @@ pub struct RawList {
     pub item_size: usize,
 }
 
-/// `struct vector_use` of the shim: statistics of an interrupt vector.
+/// `struct vector_stats` of the shim: statistics of an interrupt vector.
 #[repr(C)]
 #[derive(Clone, Copy)]
-pub struct RawVectorUse {
+pub struct RawVectorStats {
     /// The number of times that the interrupt was served.
     pub entries: u64,
-    /// The cycles spent in its handler.
+    /// The cycles spent in the interrupt's handler.
     pub cycles: u64,
 }
 
@@ -38,33 +38,33 @@ pub const VECTOR_COUNT: usize = 26;
 /// `enum stop_reason` of the shim: the reason for the end of a run.
 #[repr(C)]
 #[derive(Clone, Copy, PartialEq, Eq)]
-#[expect(dead_code, reason = "only the shim makes these values")]
+#[expect(dead_code, reason = "only the shim constructs these values")]
 pub enum StopReason {
-    /// The requested cycle is reached.
-    Time,
+    /// The requested cycle was reached.
+    CycleReached,
     /// The firmware has sent a line feed.
-    Line,
+    LineSent,
     /// The CPU sleeps, and nothing can wake it.
     Halted,
     /// The firmware has executed an invalid instruction or used an invalid address.
     Crashed,
-    /// The power has been cut.
-    Off,
+    /// The power was cut.
+    PowerCut,
 }
 
 unsafe extern "C" {
     pub fn uno_set_logger();
-    pub fn uno_new(data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
+    pub fn uno_new(is_data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
     pub fn uno_free(uno: *mut RawUno);
     pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
     pub fn uno_finish_loading(uno: *mut RawUno, code_end: u32, data_end: u16);
     pub fn uno_set_boot_address(uno: *mut RawUno, address: u32);
     pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
     pub fn uno_run(uno: *mut RawUno, until: u64) -> StopReason;
-    pub fn uno_stop_at_line(uno: *mut RawUno, on: bool);
-    pub fn uno_time_calls(uno: *mut RawUno, on: bool, entry: u32);
-    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, stop_bit_low: bool);
-    pub fn uno_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
+    pub fn uno_set_stop_at_line(uno: *mut RawUno, is_enabled: bool);
+    pub fn uno_time_calls(uno: *mut RawUno, is_enabled: bool, entry: u32);
+    pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, is_stop_bit_low: bool);
+    pub fn uno_set_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);
     pub fn uno_cycles_per_bit(uno: *const RawUno) -> u32;
     pub fn uno_sample_byte(byte: u8, ratio: f64) -> u8;
@@ -74,7 +74,7 @@ unsafe extern "C" {
     pub fn uno_unsent_count(uno: *const RawUno) -> usize;
     pub fn uno_sent_count(uno: *const RawUno) -> u64;
     pub fn uno_now(uno: *const RawUno) -> u64;
-    pub fn uno_asleep_cycles(uno: *const RawUno) -> u64;
+    pub fn uno_sleep_cycles(uno: *const RawUno) -> u64;
     pub fn uno_pc(uno: *const RawUno) -> u32;
     pub fn uno_watchdog_resets(uno: *const RawUno) -> u64;
     pub fn uno_overrun_count(uno: *const RawUno) -> u64;
@@ -83,7 +83,7 @@ unsafe extern "C" {
     pub fn uno_error_message(uno: *const RawUno) -> *const c_char;
     pub fn uno_data(uno: *const RawUno) -> *const u8;
     pub fn uno_data_size(uno: *const RawUno) -> u32;
-    pub fn uno_vectors(uno: *const RawUno) -> *const RawVectorUse;
+    pub fn uno_vectors(uno: *const RawUno) -> *const RawVectorStats;
     pub fn uno_edges(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_transmitted(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_received(uno: *mut RawUno) -> *mut RawList;
@@ -91,13 +91,13 @@ unsafe extern "C" {
     pub fn uno_calls(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_reset(uno: *mut RawUno);
     pub fn uno_power_cycle(uno: *mut RawUno);
-    pub fn uno_set_boot_loader(uno: *mut RawUno, on: bool);
+    pub fn uno_set_boot_loader(uno: *mut RawUno, is_present: bool);
     pub fn uno_set_noise_seed(uno: *mut RawUno, seed: u64);
     pub fn uno_is_held_in_reset(uno: *const RawUno) -> bool;
     pub fn uno_reset_events(uno: *mut RawUno) -> *mut RawList;
     pub fn uno_eeprom(uno: *mut RawUno) -> *mut u8;
     pub fn uno_eeprom_operations(uno: *mut RawUno) -> *mut RawList;
-    pub fn uno_set_torn_ones(uno: *mut RawUno, ones: u8);
+    pub fn uno_set_torn_bits(uno: *mut RawUno, ones: u8);
     pub fn uno_cut_power_at(uno: *mut RawUno, cycle: u64);
     pub fn uno_cut_power_in_operation(uno: *mut RawUno, skip_count: u64, in_write: bool);
     pub fn uno_cancel_power_cut(uno: *mut RawUno);
@@ -105,6 +105,6 @@ unsafe extern "C" {
     pub fn uno_ramp_supply(uno: *mut RawUno, mv: f64, cycles: u64);
     pub fn uno_set_brown_out(uno: *mut RawUno, mv: f64);
     pub fn uno_set_bandgap(uno: *mut RawUno, mv: f64);
-    pub fn uno_set_contact(uno: *mut RawUno, address: u16, bit: u8, closed: bool);
+    pub fn uno_set_contact(uno: *mut RawUno, address: u16, bit: u8, is_closed: bool);
     pub fn uno_set_analog(uno: *mut RawUno, channel: u8, mv: u16);
 }

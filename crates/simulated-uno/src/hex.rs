@@ -1,12 +1,12 @@
-//! Intel HEX reader for firmware images without debug information.
+//! Reads firmware images in Intel HEX format, which has no debug information.
 
 use ihex::Record;
 
 use crate::image::{FLASH_SIZE, Image, LoadError};
 
 impl Image {
-    /// Reads Intel HEX. The format has neither symbols nor the size of static data, so
-    /// [`Image::static_ram`] is 0 and no function has a name.
+    /// Parses Intel HEX. The format has neither symbols nor the size of static data, so [`Image::static_ram`] is 0 and
+    /// no function has a name.
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -38,7 +38,7 @@ impl Image {
     }
 }
 
-/// Adds a line's bytes to the last segment if their address is the segment's end, otherwise as a new segment.
+/// Appends a line's bytes to the last segment if their address is the segment's end, otherwise adds a new segment.
 fn append(
     segments: &mut Vec<(u32, Vec<u8>)>,
     address: u64,

@@ -13,7 +13,7 @@ pub const SRAM_START: u16 = 0x0100;
 /// The address after the last byte of SRAM.
 pub const SRAM_END: u16 = 0x0900;
 
-/// The size limit of a file, bytes: much more than an ELF file with 32 KiB of code and all its debug information.
+/// The size limit of a file, bytes: much more than an ELF file with 32 KiB of code and all debug information.
 const MAX_FILE_BYTES: u64 = 4 << 20;
 
 /// The address of the data space, which contains SRAM, in the single address space of avr-gcc's linker script.
@@ -21,7 +21,7 @@ const DATA_SPACE: u64 = 0x80_0000;
 /// The address of the EEPROM in the single address space of avr-gcc's linker script.
 const EEPROM_SPACE: u64 = 0x81_0000;
 
-/// The reason why an image cannot be loaded.
+/// An error while an image is loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -33,13 +33,13 @@ pub enum LoadError {
         source: std::io::Error,
     },
     /// The bytes are not an ELF file.
-    #[error("not an ELF file of an AVR: {0}")]
+    #[error("not an AVR ELF file: {0}")]
     Elf(#[from] object::read::Error),
     /// The file is longer than 4 MiB, the limit for any firmware.
-    #[error("not an ELF file of an AVR: it is longer than {} MiB", MAX_FILE_BYTES >> 20)]
+    #[error("not an AVR ELF file: it is longer than {} MiB", MAX_FILE_BYTES >> 20)]
     TooLong,
     /// The ELF file is for another machine.
-    #[error("not an ELF file of an AVR")]
+    #[error("not an AVR ELF file")]
     NotAvr,
     /// A segment does not fit into its memory.
     #[error("{size} bytes at {address:#x} do not fit an ATmega328P")]
@@ -50,7 +50,7 @@ pub enum LoadError {
         size: u64,
     },
     /// The file has no code.
-    #[error("the file holds no code")]
+    #[error("the file contains no code")]
     Empty,
     /// A line of the file is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
@@ -61,25 +61,25 @@ pub enum LoadError {
         reason: String,
     },
     /// The HEX file has no end record, so lines may be missing.
-    #[error("the HEX file has no end record: only a part of it is there")]
+    #[error("the HEX file has no end record, so it is incomplete")]
     HexTruncated,
 }
 
 /// A named address in flash or SRAM.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbol {
-    /// The name as the linker knows it, mangled if the language mangles names.
+    /// The linker's name of the symbol, mangled if the language mangles names.
     pub name: String,
     /// Byte address in flash, or 0x80_0000 plus the address in the data space.
     pub address: u64,
-    /// The size in bytes, 0 if the compiler does not give it.
+    /// The size in bytes, 0 if the compiler does not specify it.
     pub size: u64,
     /// True if the symbol is a function.
     pub is_function: bool,
 }
 
 impl Symbol {
-    /// The demangled name with its path, such as `core::console::Console::frame`.
+    /// Returns the demangled name with its path, such as `core::console::Console::frame`.
     #[must_use]
     pub fn path(&self) -> String {
         let name = format!("{:#}", rustc_demangle::demangle(&self.name));
@@ -112,7 +112,7 @@ impl Symbol {
 /// A firmware image, ready to load.
 #[derive(Debug, Clone)]
 pub struct Image {
-    /// Flash segments, as (byte address, bytes).
+    /// The segments in flash: byte address and bytes.
     pub(crate) segments: Vec<(u32, Vec<u8>)>,
     symbols: Vec<Symbol>,
     data_end: u16,
@@ -125,14 +125,14 @@ impl Image {
     /// See [`LoadError`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, LoadError> {
         let path = path.as_ref();
-        let read_error_of = |source| LoadError::Read {
+        let to_read_error = |source| LoadError::Read {
             path: path.to_owned(),
             source,
         };
         let mut bytes = Vec::new();
-        let file = std::fs::File::open(path).map_err(read_error_of)?;
+        let file = std::fs::File::open(path).map_err(to_read_error)?;
         let read_result = file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes);
-        if read_result.map_err(read_error_of)? as u64 > MAX_FILE_BYTES {
+        if read_result.map_err(to_read_error)? as u64 > MAX_FILE_BYTES {
             return Err(LoadError::TooLong);
         }
         #[cfg(feature = "hex")]
@@ -204,7 +204,7 @@ impl Image {
         })
     }
 
-    /// Returns an image that consists of these segments, all of which are inside flash.
+    /// Creates an image from segments that are inside flash.
     #[cfg(feature = "hex")]
     pub(crate) fn from_segments(segments: Vec<(u32, Vec<u8>)>) -> Self {
         Self {
@@ -214,7 +214,7 @@ impl Image {
         }
     }
 
-    /// The number of bytes of flash used: code, tables and initial values.
+    /// The number of flash bytes in use: code, tables and initial values.
     #[must_use]
     pub fn flash_used(&self) -> u32 {
         self.segments
@@ -223,7 +223,7 @@ impl Image {
             .sum()
     }
 
-    /// The number of bytes of SRAM used by static data (.data, .bss and .noinit).
+    /// The number of SRAM bytes that static data use (.data, .bss and .noinit).
     #[must_use]
     pub fn static_ram(&self) -> u16 {
         self.data_end - SRAM_START
@@ -241,32 +241,36 @@ impl Image {
         &self.symbols
     }
 
-    /// The symbol with exactly this name, as the linker knows it; `None` if there is no such symbol.
+    /// Finds the symbol with exactly this linker name; `None` if there is no such symbol.
     #[must_use]
     pub fn symbol(&self, name: &str) -> Option<&Symbol> {
         self.symbols.iter().find(|symbol| symbol.name == name)
     }
 
-    /// The only function whose path ends with `path`, such as `frame` or `Console::frame`. `None` if no function has
-    /// such a path (the compiler may have inlined it), or if several at different addresses have.
+    /// Finds the only function whose path ends with `path`, such as `frame` or `Console::frame`. `None` if no function
+    /// has such a path (the compiler may have inlined it), or if several functions at different addresses have.
     #[must_use]
     pub fn function(&self, path: &str) -> Option<&Symbol> {
-        self.unique_symbol(path, |symbol| symbol.is_function)
+        self.find_unique_symbol(path, |symbol| symbol.is_function)
     }
 
-    /// The data address of the only variable whose path ends with `path`, such as `pulses::LATE_EDGES`. `None` if no
-    /// variable has such a path, or if several at different addresses have.
+    /// Finds the data address of the only variable whose path ends with `path`, such as `pulses::LATE_EDGES`. `None` if
+    /// no variable has such a path, or if several variables at different addresses have.
     #[must_use]
     pub fn variable(&self, path: &str) -> Option<u16> {
         let is_in_data_space =
             |symbol: &Symbol| (DATA_SPACE..EEPROM_SPACE).contains(&symbol.address);
-        let symbol = self.unique_symbol(path, is_in_data_space)?;
+        let symbol = self.find_unique_symbol(path, is_in_data_space)?;
         Some((symbol.address - DATA_SPACE) as u16)
     }
 
-    /// The symbol of a kind whose path ends with `path`. `None` if no symbol matches, or if several match and have
-    /// different addresses.
-    fn unique_symbol(&self, path: &str, is_of_kind: impl Fn(&Symbol) -> bool) -> Option<&Symbol> {
+    /// Finds the only symbol of a kind whose path ends with `path`. `None` if no symbol matches, or if several symbols
+    /// at different addresses match.
+    fn find_unique_symbol(
+        &self,
+        path: &str,
+        is_of_kind: impl Fn(&Symbol) -> bool,
+    ) -> Option<&Symbol> {
         let is_match = |symbol: &&Symbol| is_of_kind(symbol) && symbol.matches_path(path);
         let mut matching_symbols = self.symbols.iter().filter(is_match);
         let first_match = matching_symbols.next()?;
@@ -275,7 +279,7 @@ impl Image {
             .then_some(first_match)
     }
 
-    /// The contents of flash from address 0 to the last byte used; 0xff where the image has no data.
+    /// Returns the contents of flash from address 0 to the last used byte; 0xff where the image has no data.
     #[must_use]
     pub fn flash(&self) -> Vec<u8> {
         let mut flash = vec![0xff; self.code_end() as usize];
@@ -286,8 +290,8 @@ impl Image {
         flash
     }
 
-    /// Writes bytes to the start of a range of flash and removes everything else that the image has in the range.
-    /// This exchanges the data of a compiled program without compiling it again.
+    /// Writes bytes to the start of a range in flash and removes all other data in the range. This exchanges the data
+    /// of a compiled program without compiling it again.
     ///
     /// # Errors
     /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.
@@ -315,13 +319,13 @@ impl Image {
         Ok(())
     }
 
-    /// The address of the first byte of flash used; 0 if the image is empty.
+    /// The address of the first used byte in flash; 0 if the image is empty.
     pub(crate) fn code_start(&self) -> u32 {
         let starts = self.segments.iter().map(|(address, _)| *address);
         starts.min().unwrap_or(0)
     }
 
-    /// The address after the last byte of flash used; 0 if the image is empty.
+    /// The address after the last used byte in flash; 0 if the image is empty.
     pub(crate) fn code_end(&self) -> u32 {
         let ends = self
             .segments

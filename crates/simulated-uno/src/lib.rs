@@ -1,13 +1,13 @@
 //! An Arduino UNO for tests: an ATmega328P at 16 MHz, simulated by libsimavr, with an oscilloscope on its pins and a
 //! sender on its serial line.
 //!
-//! Firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show
-//! its stack, and cannot run faster than real time. In the simulation, time is a number of CPU cycles that
-//! passes as fast as the host can compute, and the same firmware with the same input gives the same edges to the
-//! cycle. Only [`Port`] runs in real time, for programs that expect a board on USB.
+//! Firmware cannot run on the machine that compiles it. A board on the desk has no cycle counter, does not show its
+//! stack, and cannot run faster than real time. The simulation counts time in CPU cycles and runs as fast as the host
+//! can compute. The same firmware with the same input always gives the same edges, to the cycle. Only [`Port`] runs in
+//! real time, for programs that expect a board on USB.
 //!
-//! Not suitable for chips other than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI or the
-//! analogue comparator, or for measurements of currents and noise. README.md has the reasons.
+//! The package is not suitable for chips other than the ATmega328P, for firmware that depends on hardware PWM, SPI, TWI
+//! or the analogue comparator, or for measurements of currents and noise. README.md has the reasons.
 //!
 //! ```
 //! use simulated_uno::{Fidelity, Pin, Uno, avr_gcc};
@@ -25,12 +25,12 @@
 //! ```
 //!
 //! README.md has more examples, and lists every correction of simavr with its section of the data sheet.
-//! [`Uno::load`] loads a compiled firmware from its file.
+//! [`Uno::load`] loads a compiled firmware from a file.
 //!
-//! Several [`Uno`]s may run at once on as many threads: the only state that libsimavr keeps outside an instance is
-//! the logger, which is set once.
+//! Several [`Uno`]s may run at the same time on several threads: the only state that libsimavr keeps outside an
+//! instance is the logger, which is set once.
 
-#![allow(unsafe_code)] // for calls into C; the docs of `Uno` justify them
+#![allow(unsafe_code)] // for calls of C functions; the docs of `Uno` justify them
 
 mod adc;
 #[cfg(feature = "avr-gcc")]
@@ -66,7 +66,7 @@ pub use port::{BackgroundPort, Port};
 #[cfg(target_os = "linux")]
 pub use radio::{Radio, RadioLink};
 pub use reset::{ResetCause, ResetEvent};
-pub use traces::{Call, Mark, SerialByte, VectorUse, vector_name};
+pub use traces::{Call, Mark, SerialByte, VectorStats, vector_name};
 pub use uno::{Fidelity, State, Uno};
 #[cfg(target_os = "linux")]
 pub use wire::Wire;

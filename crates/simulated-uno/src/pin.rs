@@ -15,7 +15,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 13).
     #[must_use]
     pub const fn d(n: u8) -> Self {
-        assert!(n <= 13, "a UNO has D0 to D13");
+        assert!(n <= 13, "the digital pins of a UNO are D0 to D13");
         Self(n)
     }
 
@@ -25,7 +25,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 5).
     #[must_use]
     pub const fn a(n: u8) -> Self {
-        assert!(n <= 5, "a UNO has A0 to A5");
+        assert!(n <= 5, "the analogue pins of a UNO are A0 to A5");
         Self(A0 + n)
     }
 
@@ -35,7 +35,7 @@ impl Pin {
     /// If the UNO has no such pin (`n` > 19).
     #[must_use]
     pub const fn arduino(n: u8) -> Self {
-        assert!(n <= 19, "a UNO's pins are 0 to 19");
+        assert!(n <= 19, "the pin numbers of a UNO are 0 to 19");
         Self(n)
     }
 
@@ -55,13 +55,13 @@ impl std::fmt::Display for Pin {
     }
 }
 
-/// A change of a pin's level. It is stamped with the last cycle of the instruction that stores to the port register,
-/// for every kind of store instruction and for rising and falling edges alike.
+/// A change of a pin's level.
 // `struct edge` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
 pub struct Edge {
-    /// Number of the cycle, counted from power-on; a cycle takes 62.5 ns.
+    /// The last cycle of the instruction that stores to the port register, counted from power-on, for every kind of
+    /// store instruction and both kinds of edges. A cycle takes 62.5 ns.
     pub cycle: u64,
     /// The pin that changed.
     pub pin: Pin,
@@ -78,7 +78,7 @@ pub struct Pulse {
     pub width: u64,
 }
 
-/// Returns the complete pulses of a pin: those whose rising and falling edges are both among `edges`.
+/// Returns the complete pulses of a pin, whose rising and falling edges are both in `edges`.
 #[must_use]
 pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     let mut rise_cycle = None;
@@ -96,13 +96,13 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
     pulses
 }
 
-/// Returns the largest number of pins that were high at once.
+/// Returns the largest number of pins that were high at the same time.
 #[must_use]
 pub fn most_pins_high(edges: &[Edge]) -> u32 {
     let mut levels = 0u32;
     let mut largest_count = 0;
     let mut edges = edges.to_vec();
-    // At equal cycles, falling edges come first, so that consecutive pulses do not overlap.
+    // In the same cycle, falling edges precede rising edges, so that consecutive pulses do not overlap.
     edges.sort_by_key(|edge| (edge.cycle, edge.is_rising));
     for edge in edges {
         let bit = 1u32 << edge.pin.number();

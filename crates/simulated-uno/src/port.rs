@@ -1,14 +1,14 @@
-//! A simulated UNO that other programs can use like a board on USB: at a serial port, in real time.
+//! A serial port with a simulated UNO, which other programs can use in real time like a board on USB.
 //!
 //! avrdude, a terminal program or a host tool expects a chip that runs in real time. Here the chip's time follows
 //! real time, and bytes go through a pseudo terminal such as /dev/pts/3. Opening the pseudo terminal resets the chip,
 //! as the DTR line of a USB cable does on a UNO.
 //!
-//! The baud rate that a program sets at the port is the baud rate of the line, 115200 until a program sets it. If it
-//! differs from the chip's baud rate, each side reads bytes that the other has not sent.
+//! The line has the baud rate that a program sets at the port, or 115200 until then. If this rate differs from the
+//! chip's baud rate, each side reads bytes that the other side has not sent.
 //!
-//! Two things differ from a cable. A second opening resets the chip only if all programs had closed the port. And
-//! toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
+//! The port differs from a cable in two ways. A second opening resets the chip only if all programs had closed the
+//! port. Toggling DTR while the port is open has no effect: programs that try it get `Inappropriate ioctl for device`.
 //!
 //! ```no_run
 //! use std::time::Duration;
@@ -35,13 +35,13 @@ use crate::{FREQUENCY, Radio, State, Uno};
 
 /// The time between two checks of the port, the same as in the UNO's USB chip.
 const TICK: Duration = Duration::from_millis(1);
-/// The longest simulated time that the chip catches up after this program was delayed. A longer time could let the
+/// The longest simulated time that the chip catches up after a delay of this program. A longer time could let the
 /// chip's watchdog expire before the program at the port has run.
 const MAX_CATCH_UP: Duration = Duration::from_millis(20);
-/// The largest number of bytes on their way to the chip. Further bytes wait in the pseudo terminal, as bytes wait in
-/// the driver of a USB port.
+/// The largest number of bytes on their way to the chip. Further bytes wait in the pseudo terminal, as in the driver of
+/// a USB port.
 const MAX_UNSENT_BYTES: usize = 128;
-/// The largest number of bytes kept for a program that does not read. Later bytes are lost.
+/// The largest number of bytes that are kept for a program that does not read. Later bytes are lost.
 const MAX_UNREAD_BYTES: usize = 1 << 16;
 
 /// A serial port of this machine with a simulated UNO behind it. The port exists until this value is dropped.
@@ -60,7 +60,7 @@ pub struct Port {
 }
 
 impl Port {
-    /// Returns a new port that no program has open.
+    /// Creates a port that no program has open.
     ///
     /// # Errors
     /// Fails if the system has no pseudo terminals left.
@@ -74,8 +74,8 @@ impl Port {
         })
     }
 
-    /// Puts a radio module between the port and the chip. Then opening the port does not reset the chip, and the baud
-    /// rate is that of the module.
+    /// Puts a radio module between the port and the chip. Opening the port then does not reset the chip, and the module
+    /// sets the baud rate.
     #[must_use]
     pub fn with_radio(mut self, radio: Radio) -> Self {
         self.radio = Some(radio);
@@ -97,8 +97,8 @@ impl Port {
     /// Runs `uno` in real time for `duration` of the wall clock, and passes bytes between `uno` and the program that
     /// has the port open. A chip that has halted or crashed does nothing until the next opening of the port resets it.
     ///
-    /// The caller should regularly take the edges ([`Uno::take_edges`]): those of four servos take 6400 more bytes of
-    /// memory every second. The bytes of the serial line are not kept.
+    /// The caller should regularly take the edges ([`Uno::take_edges`]): four servos produce 6400 bytes of edges per
+    /// second. The bytes of the serial line are not kept.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
@@ -112,7 +112,7 @@ impl Port {
     }
 
     /// Serves the port on its own thread until [`BackgroundPort::stop`]. Calls `watch` with the UNO every millisecond;
-    /// `watch` should take the UNO's edges and must not block.
+    /// `watch` should take the UNO's edges, and must not block.
     ///
     /// # Errors
     /// Fails if the system cannot start a thread.
@@ -141,7 +141,7 @@ impl Port {
         })
     }
 
-    /// Passes bytes both ways and lets the chip catch up with the wall clock; to be called every [`TICK`].
+    /// Passes bytes in both directions and lets the chip catch up with the wall clock. Must be called every [`TICK`].
     fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
         let port_state = self.pty.poll_state()?;
         self.is_open = port_state.is_open;
@@ -165,7 +165,7 @@ impl Port {
             None => uno.send(&bytes[..read_count]),
         }
         if *uno.state() == State::Alive {
-            uno.run_until_cycle(self.target_cycle(uno.cycle()));
+            uno.run_until_cycle(self.update_target_cycle(uno.cycle()));
         }
         uno.clear_received();
         let arrived_bytes = match &mut self.radio {
@@ -179,7 +179,7 @@ impl Port {
                     .collect()
             }
         };
-        // The program at the port may have closed it meanwhile, so check again.
+        // The program may have closed the port meanwhile, so check again.
         if self.is_open && self.pty.is_open()? {
             self.unread_bytes.extend(arrived_bytes);
             self.unread_bytes.truncate(MAX_UNREAD_BYTES);
@@ -189,13 +189,13 @@ impl Port {
         Ok(())
     }
 
-    /// Returns the cycle that the chip should have reached by now, at most [`MAX_CATCH_UP`] ahead. The rest of a longer
-    /// delay is skipped.
-    fn target_cycle(&mut self, cycle: u64) -> u64 {
+    /// Returns the cycle that the chip should have reached by now, at most [`MAX_CATCH_UP`] ahead. Skips the rest of a
+    /// longer delay.
+    fn update_target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
-        let due_cycle = anchor_cycle + cycles_in(now - anchor_time);
-        let max_cycle = cycle + cycles_in(MAX_CATCH_UP);
+        let due_cycle = anchor_cycle + to_cycles(now - anchor_time);
+        let max_cycle = cycle + to_cycles(MAX_CATCH_UP);
         if due_cycle > max_cycle {
             self.anchor = Some((now, max_cycle));
         }
@@ -203,12 +203,12 @@ impl Port {
     }
 }
 
-/// Returns the number of the chip's cycles in a duration.
-fn cycles_in(time: Duration) -> u64 {
+/// Converts a duration to the chip's cycles.
+fn to_cycles(time: Duration) -> u64 {
     (time.as_nanos() * u128::from(FREQUENCY) / 1_000_000_000) as u64
 }
 
-/// A port and its UNO, served by a thread of their own. If this value is dropped without [`BackgroundPort::stop`], the
+/// A port and its UNO, served by a separate thread. If this value is dropped without [`BackgroundPort::stop`], the
 /// thread continues until the program ends.
 #[derive(Debug)]
 pub struct BackgroundPort {

@@ -1,14 +1,14 @@
 //! A pseudo terminal: a serial port of this machine without a cable. Another program opens the port, and this program
-//! reads and writes at the other side.
+//! reads and writes at the other end.
 //!
 //! A pseudo terminal differs from a serial port in three ways. It has no DTR line, so this module watches the port's
-//! file to detect that a program opens it. The baud rate that a program sets has no effect, but can be read. And
-//! bytes that a program leaves unread would wait for the next program, while the driver of a real port discards
-//! them; so this module discards unread bytes.
+//! file to detect that a program opens it. The baud rate that a program sets has no effect, but can be read. Bytes that
+//! a program leaves unread would wait for the next program, while the driver of a real port discards them; this module
+//! therefore discards unread bytes.
 //!
 //! To discard unread bytes, this module opens the port itself for a moment. If another thread starts a program at
 //! that moment, the new process has a copy of all open files until it calls exec, and the port stays open as long as
-//! a copy exists. So this module waits until all copies are closed.
+//! a copy exists. This module therefore waits until all copies are closed.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -26,7 +26,7 @@ use rustix::termios::{OptionalActions, QueueSelector, tcflush, tcgetattr, tcseta
 
 /// The baud rate until a program sets another one.
 const DEFAULT_BAUD: u32 = 115_200;
-/// The longest time from the fork to the exec of a new process on a busy machine.
+/// The longest time between fork and exec of a new process on a busy machine.
 const MAX_START_TIME: Duration = Duration::from_secs(10);
 
 /// The port's state, and its changes since the last check.
@@ -49,7 +49,7 @@ pub(crate) struct Pty {
     path: PathBuf,
     /// True if the port was open at the last check.
     was_open: bool,
-    /// True if a program has closed the port but the port is still open. The system may report a new opening only
+    /// True if a program has closed the port but the port is still open. The system may report a new opening as late as
     /// at the next check.
     may_be_reopened: bool,
 }
@@ -66,7 +66,7 @@ impl Pty {
         rustix::io::ioctl_fionbio(&our_end, true)?;
         let name = ptsname(&our_end, Vec::new())?;
         let path = PathBuf::from(name.to_string_lossy().into_owned());
-        // The system reports that no program has the port open only after it was opened and closed once. The
+        // The system reports that no program has the port open only after the port was opened and closed once. The
         // settings persist after the closing.
         let other_end = open_other_end(&path, OFlags::RDWR)?;
         let mut settings = tcgetattr(&other_end)?;
@@ -75,9 +75,9 @@ impl Pty {
         tcsetattr(&other_end, OptionalActions::Now, &settings)?;
         drop(other_end);
         let our_end = File::from(our_end);
-        // No other program knows the port's name yet.
+        // No other program has received the port's name yet.
         if !wait_until(|| Ok(!is_open(&our_end)?))? {
-            let message = "a program that was started meanwhile keeps the new port open";
+            let message = "a program that was started at the same time keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, message));
         }
         let open_events = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
@@ -115,7 +115,7 @@ impl Pty {
         })?;
         let mut is_port_open = self.is_open()?;
         was_opened |= is_port_open && !was_open;
-        // Unread bytes are discarded only if all programs have closed the port, not if another still has it open.
+        // Unread bytes are discarded only if all programs have closed the port.
         if was_open && (was_opened || !is_port_open) {
             self.discard_unread()?;
             let is_port_open_after_discard = self.is_open()?;
@@ -153,15 +153,15 @@ impl Pty {
 
     /// Discards the bytes that the last program has not read, so that the next program does not get them.
     fn discard_unread(&self) -> io::Result<()> {
-        // The port cannot be opened while a program has exclusive use of it. Such a program has itself discarded
+        // While a program has exclusive use of the port, the port cannot be opened. Such a program has itself discarded
         // the bytes that it found.
         let Ok(other_end) = open_other_end(&self.path, OFlags::RDONLY) else {
             return self.read_events(|_anything| {});
         };
         tcflush(&other_end, QueueSelector::IFlush)?;
         drop(other_end);
-        // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from
-        // a program's. If the port is open at the end, a program has opened it.
+        // A port that was opened only for reading closes without CLOSE_WRITE, which distinguishes this opening from an
+        // opening by a program. If the port is open at the end, a program has opened it.
         let mut was_closed = false;
         wait_until(|| {
             self.read_events(|event| was_closed |= event.contains(ReadFlags::CLOSE_NOWRITE))?;
@@ -170,7 +170,7 @@ impl Pty {
         self.read_events(|_rest| {})
     }
 
-    /// The baud rate that the last program has set.
+    /// Returns the baud rate that the last program has set.
     ///
     /// # Errors
     /// Returns the system's error if the pseudo terminal fails.
@@ -230,7 +230,7 @@ fn open_other_end(path: &Path, access: OFlags) -> rustix::io::Result<OwnedFd> {
 
 const EIO: i32 = rustix::io::Errno::IO.raw_os_error();
 
-/// Converts the result of a transfer to a number of bytes, which is 0 if no transfer is possible at the moment.
+/// Converts the result of a transfer to a number of bytes; 0 if no transfer is possible at the moment.
 fn bytes_or_zero(transfer: io::Result<usize>) -> io::Result<usize> {
     match transfer {
         Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted) => {

@@ -1,10 +1,10 @@
 //! A radio module on the serial line, such as an HM-10 or an HC-05.
 //!
-//! The module replaces the cable between a host, such as a phone, and the chip. Bytes travel in packets of up to 20,
-//! in order, each packet delayed by 7.5 to 100 ms. A packet may be lost. The link may end in the middle of a line and
-//! resume seconds later; an HM-10 reports both to the chip among the received bytes, as `OK+LOST` and `OK+CONN`
-//! without a line end, and an HC-05 reports nothing. The module passes bytes on at its own baud rate, and it never
-//! resets the chip.
+//! The module replaces the cable between a host, such as a phone, and the chip. Bytes travel in order, in packets of up
+//! to 20 bytes, each delayed by 7.5 to 100 ms. A packet may be lost. The link may end in the middle of a line and
+//! resume seconds later. An HM-10 reports both events to the chip among the received bytes, as `OK+LOST` and `OK+CONN`
+//! without a line end; an HC-05 reports nothing. The module passes bytes on at its own baud rate, and never resets the
+//! chip.
 //!
 //! ```no_run
 //! # use simulated_uno::{Fidelity, Radio, RadioLink, Uno};
@@ -25,11 +25,11 @@ use crate::{CYCLES_PER_MS, Uno};
 
 /// The largest number of bytes in a packet.
 const MAX_PACKET_BYTES: usize = 20;
-/// The time that a packet travels, ms.
+/// The travel time of a packet, ms.
 const DELAY_MS: std::ops::Range<f64> = 7.5..100.0;
-/// The longest time for which the module collects the chip's bytes for a packet, ms.
+/// The longest time for which the module collects bytes from the chip for a packet, ms.
 const MAX_GATHERING_MS: u64 = 20;
-/// The time from the end of a link to the next link, ms.
+/// The time between two links, ms.
 const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 
 /// The properties of a radio module and of its link to a phone.
@@ -37,7 +37,7 @@ const OUTAGE_MS: std::ops::Range<u64> = 200..5000;
 pub struct RadioLink {
     /// The baud rate of the module's serial line.
     pub baud: f64,
-    /// The share of packets that are lost, 0 to 1.
+    /// The fraction of packets that are lost, 0 to 1.
     pub packet_loss: f64,
     /// The mean duration of a link, ms; 0 if the link never ends.
     pub mean_link_ms: u64,
@@ -98,7 +98,7 @@ impl PacketQueue {
         bytes
     }
 
-    /// Ends the transmission: returns a random number of bytes of the next packet, which still arrive. All other bytes
+    /// Ends the transmission. Returns a random number of bytes of the next packet, which still arrive; all other bytes
     /// are lost.
     fn take_remainder(&mut self, random: &mut fastrand::Rng) -> Vec<u8> {
         let packets = std::mem::take(&mut self.packets);
@@ -115,9 +115,9 @@ pub struct Radio {
     random: fastrand::Rng,
     to_uno: PacketQueue,
     to_phone: PacketQueue,
-    /// The chip's bytes that wait until a packet is full, and the cycle from which they have waited.
+    /// The chip's bytes that wait until a packet is full, and the cycle since which they have waited.
     gathered: (Vec<u8>, u64),
-    /// The cycle at which the link ends or, while there is no link, resumes; `None` if that never happens.
+    /// The cycle at which the link ends or, while there is no link, resumes; `None` for never.
     next_link_change: Option<u64>,
     is_linked: bool,
     /// True if the phone has moved out of range for good.
@@ -125,7 +125,7 @@ pub struct Radio {
 }
 
 impl Radio {
-    /// Returns a module with a link to a phone.
+    /// Creates a module with a link to a phone.
     #[must_use]
     pub fn new(link: RadioLink) -> Self {
         let mut radio = Self {
@@ -167,8 +167,8 @@ impl Radio {
         self.next_link_change = self.is_linked.then_some(now);
     }
 
-    /// Takes the bytes that the UNO has transmitted, sends the bytes from the phone that have arrived to the UNO, and
-    /// returns the bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
+    /// Takes the bytes that the UNO has transmitted, sends the arrived bytes from the phone to the UNO, and returns the
+    /// bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.link.baud);
         let sent_bytes: Vec<u8> = uno
@@ -182,7 +182,7 @@ impl Radio {
         to_phone
     }
 
-    /// Returns the bytes as the module reads them at its own baud rate, if the chip sends `sent_bytes` at `chip_baud`.
+    /// Returns the bytes that the module reads at its own baud rate if the chip sends `sent_bytes` at `chip_baud`.
     #[must_use]
     pub fn received_bytes(&self, sent_bytes: &[u8], chip_baud: f64) -> Vec<u8> {
         let ratio = chip_baud / self.link.baud;
@@ -192,8 +192,8 @@ impl Radio {
             .collect()
     }
 
-    /// Takes the bytes that the module has received from the chip, and returns the bytes that have
-    /// arrived by now at the chip and at the phone.
+    /// Takes the bytes that the module has received from the chip, and returns the bytes that have arrived by now at
+    /// the chip and at the phone.
     pub fn pass(&mut self, received: &[u8], now: u64) -> [Vec<u8>; 2] {
         if self.next_link_change.is_some_and(|change| change <= now) {
             return self.toggle_link(now);

@@ -45,7 +45,7 @@ impl Uno {
         }
     }
 
-    /// Switches the power off and on again at once, at the supply's current voltage. Only the EEPROM survives; the
+    /// Switches the power off and on again at once, at the supply's current voltage. Only the EEPROM survives, and the
     /// byte of an operation in progress is torn (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 contain noise.
     pub fn power_cycle(&mut self) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; as in `reset`.
@@ -55,8 +55,8 @@ impl Uno {
 
     /// Switches the simulated effects of a boot loader on or off; off by default. A boot loader such as the UNO's
     /// runs before the firmware at each start. It clears MCUSR, so that the firmware cannot read the cause of the
-    /// reset, and switches the watchdog off. The simulated boot loader takes no time; the real one waits a second
-    /// after an external reset. If no cycle has passed yet, the setting also applies to the current start. With
+    /// reset, and switches the watchdog off. The simulated boot loader takes no time; a real one waits a second after
+    /// an external reset. If no cycle has passed yet, the setting also applies to the current start. With
     /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
     pub fn set_boot_loader(&mut self, is_present: bool) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a flag, and
@@ -64,8 +64,8 @@ impl Uno {
         unsafe { ffi::uno_set_boot_loader(self.raw, is_present) }
     }
 
-    /// Sets the seed of the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0 to r31. Each power-on
-    /// continues the sequence.
+    /// Sets the seed of the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0 to r31. Each further
+    /// power-on continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_noise_seed(self.raw, seed) }

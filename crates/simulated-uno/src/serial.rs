@@ -7,8 +7,8 @@ impl Uno {
     /// The sender's default baud rate; [`Uno::set_baud`] changes it.
     pub const DEFAULT_BAUD: f64 = 115_200.0;
 
-    /// Runs until the UNO has sent a complete line, for at most `max_cycles`. Returns false if the UNO has sent no
-    /// complete line by then or the firmware has stopped.
+    /// Runs until the UNO has sent a complete line, for at most `max_cycles`. Returns false if the UNO has not sent a
+    /// complete line by then, or if the firmware has stopped.
     pub fn run_until_line(&mut self, max_cycles: u64) -> bool {
         self.run_to(self.cycle() + max_cycles, true)
     }
@@ -16,18 +16,18 @@ impl Uno {
     /// Queues bytes for the serial line. They are sent back to back at the baud rate, even if the firmware does not
     /// keep up.
     pub fn send(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies the bytes of the
+        // slice.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
-    /// Sends a line with its line end `\n`, and returns the next complete line that the UNO sends, without its line
+    /// Sends a line with the line end `\n`, and returns the next complete line that the UNO sends, without its line
     /// end. `None` if the UNO sends no complete line within a second of the chip's time, or if the firmware has
     /// stopped.
     ///
-    /// Removes all bytes that the UNO has transmitted before and during the call, as [`Uno::take_transmitted`] does.
-    /// The rest of a line that the UNO has already begun counts as the answer. With a firmware that sends lines on its
-    /// own, use [`Uno::send`] and [`Uno::run_until_line`].
+    /// Removes all bytes that the UNO transmits before and during the call, as [`Uno::take_transmitted`] does. The rest
+    /// of a line that the UNO has already begun counts as the answer. For a firmware that sends lines on its own, use
+    /// [`Uno::send`] and [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
         self.send(line.as_bytes());
@@ -41,33 +41,31 @@ impl Uno {
         Some(text.trim_end_matches(['\r', '\n']).to_owned())
     }
 
-    /// Queues bytes as [`Uno::send`] does, but with the line low in place of each stop bit, as after noise or a
-    /// missed start bit. Each byte arrives with a framing error, FE0 in UCSR0A.
+    /// Queues bytes as [`Uno::send`] does, but with the line low during each stop bit, as after noise or a missed start
+    /// bit. Each byte arrives with a framing error, FE0 in UCSR0A.
     pub fn send_with_framing_error(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
+        // SAFETY: as in `send`.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), true) }
     }
 
     /// Saturates the serial line: sends `bytes` repeatedly whenever the queue is empty. An empty slice ends the
     /// flood.
     pub fn flood(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies `len` bytes from
-        // a slice that has them.
-        unsafe { ffi::uno_flood(self.raw, bytes.as_ptr(), bytes.len()) }
+        // SAFETY: as in `send`.
+        unsafe { ffi::uno_set_flood(self.raw, bytes.as_ptr(), bytes.len()) }
     }
 
     /// Changes the sender's baud rate, from the next byte on.
     ///
     /// # Panics
-    /// If the rate is not within 1 to 10 million.
+    /// If the rate is not between 1 and 10 million.
     pub fn set_baud(&mut self, baud: f64) {
         assert!(
             (1.0..=1e7).contains(&baud),
-            "a sender has 1 to 10 million baud, not {baud}"
+            "the baud rate must be between 1 and 10 million, but is {baud}"
         );
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; with such a rate a bit's cycles
-        // are a number that C can convert.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; for a rate in this range, the cycles
+        // per bit can be converted in C.
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
@@ -78,7 +76,7 @@ impl Uno {
         FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
     }
 
-    /// The number of queued bytes that have not arrived at the UNO yet.
+    /// The number of queued bytes that have not yet arrived at the UNO.
     #[must_use]
     pub fn bytes_unsent(&self) -> usize {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
@@ -111,8 +109,8 @@ impl Uno {
         self.take_items(ffi::uno_transmitted)
     }
 
-    /// All bytes that have arrived at the UNO, including those lost by an overrun, each with the cycle at which it
-    /// was complete. A byte with a framing error is 0xff.
+    /// All bytes that have arrived at the UNO, including bytes lost by an overrun, each with the cycle at which it was
+    /// complete. A byte with a framing error is 0xff.
     #[must_use]
     pub fn received_by_uno(&self) -> Vec<SerialByte> {
         self.copy_items(ffi::uno_received)

@@ -1,7 +1,7 @@
 //! The supply voltage of the chip, for both VCC and AVCC.
 //!
 //! The voltage of a weak supply drops while servos move. A firmware can measure the drop only with the ADC,
-//! and below the brown-out level it does not run at all.
+//! and does not run below the brown-out level.
 
 use crate::Uno;
 use crate::ffi;
@@ -32,14 +32,14 @@ impl Uno {
     /// With [`Fidelity::Stock`](crate::Fidelity) the ADC measures `mv` at once, and nothing is ever reset.
     ///
     /// # Panics
-    /// If the voltage is not within 0 to 10 000 mV.
+    /// If the voltage is not between 0 and 10 000 mV.
     pub fn ramp_supply_mv(&mut self, mv: f64, cycles: u64) {
         assert!(
             (0.0..=10_000.0).contains(&mv),
-            "a supply has 0 to 10 000 mV, not {mv}"
+            "the supply voltage must be between 0 and 10 000 mV, but is {mv} mV"
         );
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps numbers, and C can
-        // convert such a voltage.
+        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps numbers, and a
+        // voltage in this range can be converted in C.
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
 

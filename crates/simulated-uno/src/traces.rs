@@ -1,9 +1,9 @@
-//! Records of a run other than edges: serial bytes, marks, calls, interrupts.
+//! Records of a run other than edges: serial bytes, marks, calls and interrupts.
 
 /// A byte on the serial line.
 ///
-/// For a byte that the UNO sent, the cycle is the end of its stop bit with [`crate::Fidelity::DataSheet`], and the
-/// store to UDR0 with [`crate::Fidelity::Stock`], which simulates no frames.
+/// For a byte from the UNO, `cycle` is the end of the stop bit with [`crate::Fidelity::DataSheet`], and the store to
+/// UDR0 with [`crate::Fidelity::Stock`], which simulates no frames.
 // `struct serial_byte` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -14,7 +14,7 @@ pub struct SerialByte {
     pub byte: u8,
 }
 
-/// A store to GPIOR0, with which a firmware marks an event in the record at the cost of one cycle.
+/// A store to GPIOR0, with which a firmware marks an event at the cost of one cycle.
 // `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -52,18 +52,18 @@ impl Call {
     }
 }
 
-/// Statistics of one interrupt: the number of times that it was served, and the cycles of its handler.
+/// Statistics of one interrupt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct VectorUse {
-    /// The vector number, counted from 0 (reset), while the data sheet's table counts from 1.
+pub struct VectorStats {
+    /// The vector number, counted from 0 (reset); the data sheet's table counts from 1.
     pub vector: u8,
     /// The number of times that the interrupt was served.
     pub entries: u64,
-    /// The sum of the cycles in the interrupt's handler.
+    /// The total number of cycles in the interrupt's handler.
     pub cycles: u64,
 }
 
-/// Returns the data sheet's name of an interrupt vector, `?` if the chip has no such vector.
+/// Returns the data sheet's name for an interrupt vector, or `?` if the chip has no such vector.
 #[must_use]
 pub fn vector_name(vector: u8) -> &'static str {
     const NAMES: &str = "RESET INT0 INT1 PCINT0 PCINT1 PCINT2 WDT TIMER2_COMPA TIMER2_COMPB TIMER2_OVF \

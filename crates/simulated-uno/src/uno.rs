@@ -1,4 +1,4 @@
-//! The simulated board: loads a program, runs it, sends bytes to it and records what it does.
+//! The simulated board: loads a program, runs it, sends bytes to it and records its outputs.
 
 use std::ffi::CStr;
 use std::path::Path;
@@ -6,18 +6,18 @@ use std::sync::Once;
 
 use crate::ffi::{self, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
-use crate::traces::{Call, Mark, VectorUse};
+use crate::traces::{Call, Mark, VectorStats};
 use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
 
 /// The model of the chip: stock simavr, or simavr with corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Fidelity {
-    /// Stock simavr 1.6: entry into an interrupt takes no time, received bytes are never lost, the two bytes of a
-    /// 16-bit register do not share a TEMP byte.
+    /// Stock simavr 1.6: entering an interrupt takes no time, received bytes are never lost, and the 16-bit registers
+    /// have no TEMP byte.
     Stock,
     /// simavr corrected to match the ATmega328P's data sheet: interrupt entry in 4 cycles (8 from sleep), a two-byte
     /// receive buffer with overrun, 10-bit frames, Timer1's TEMP byte, interrupt flags that are cleared one by one;
-    /// EEPROM, ADC, watchdog, resets and brown-out with their times and limits.
+    /// EEPROM, ADC, watchdog, resets and brown-out with the times and limits of the data sheet.
     #[default]
     DataSheet,
 }
@@ -42,23 +42,24 @@ pub enum State {
 
 /// A simulated Arduino UNO with a firmware in its flash.
 ///
-/// The argument for all `unsafe` of this package: the pointer `raw` comes from the shim's constructor and is freed only
-/// in `drop`, and nothing outside this struct keeps a copy. So `raw` is valid wherever there is a `self`. Functions of
-/// the shim that take a `const` pointer only read. They may be called with `&self`, since no other thread can have a
-/// reference to the same `Uno` ([`Uno`] is not `Sync`). Functions that change something are called with `&mut self`.
+/// The argument for all `unsafe` code in this package: the pointer `raw` comes from the shim's constructor and is freed
+/// only in `drop`, and nothing outside this struct keeps a copy. Therefore `raw` is valid wherever there is a `self`.
+/// Functions of the shim that take a `const` pointer only read. They may be called with `&self`, because no other
+/// thread can have a reference to the same `Uno` ([`Uno`] is not `Sync`). Functions that change something are called
+/// with `&mut self`.
 pub struct Uno {
     pub(crate) raw: *mut RawUno,
     image: Image,
     pub(crate) state: State,
 }
 
-// SAFETY: an instance owns everything that its pointer reaches. The only mutable state that instances of libsimavr
-// share is the logger, which is set once and finds the instance through the avr_t in its argument.
+// SAFETY: an instance owns everything that its pointer reaches. The only mutable state that all instances of libsimavr
+// have in common is the logger, which is set once and finds the instance through the avr_t in its argument.
 unsafe impl Send for Uno {}
 
 impl Uno {
-    /// Returns a board with the program of this file in flash, at the moment of power-on. The file is read by
-    /// [`Image::read`].
+    /// Returns a board with the program from a file in flash, at the moment of power-on. [`Image::read`] reads the
+    /// file.
     ///
     /// # Errors
     /// See [`LoadError`].
@@ -72,7 +73,7 @@ impl Uno {
     pub fn with_image(image: Image, fidelity: Fidelity) -> Self {
         static LOGGER: Once = Once::new();
         let recorded_pins = 0xf_fffc;
-        // SAFETY: the shim's constructor aborts rather than return null; each
+        // SAFETY: the shim's constructor aborts instead of returning null; each
         // segment is inside flash, checked by `Image` and again by the shim.
         let raw = unsafe {
             LOGGER.call_once(|| ffi::uno_set_logger());
@@ -120,8 +121,8 @@ impl Uno {
         &self.state
     }
 
-    /// Runs until the cycle `end_cycle`, or a few hundred cycles longer if an instruction re-arms a timer just before
-    /// `end_cycle`. Several short runs give the same result as one long run.
+    /// Runs until the cycle `end_cycle`, or up to a few hundred cycles longer if an instruction re-arms a timer just
+    /// before `end_cycle`. Several short runs have the same result as one long run.
     pub fn run_until_cycle(&mut self, end_cycle: u64) -> &State {
         self.run_to(end_cycle, false);
         &self.state
@@ -158,19 +159,19 @@ impl Uno {
     }
 
     /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
-    /// true if a line has ended the run.
+    /// true if a line ended the run.
     pub(crate) fn run_to(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
         // and every value that it returns is one of `StopReason`.
         let stop_reason = unsafe {
-            ffi::uno_stop_at_line(self.raw, stop_at_line);
+            ffi::uno_set_stop_at_line(self.raw, stop_at_line);
             ffi::uno_run(self.raw, end_cycle)
         };
         match stop_reason {
-            ffi::StopReason::Time => {}
-            ffi::StopReason::Line => return true,
+            ffi::StopReason::CycleReached => {}
+            ffi::StopReason::LineSent => return true,
             ffi::StopReason::Halted => self.state = State::Halted,
-            ffi::StopReason::Off => self.state = State::Off,
+            ffi::StopReason::PowerCut => self.state = State::Off,
             ffi::StopReason::Crashed => {
                 // SAFETY: `raw` is valid, see `Uno`. The message is inside the instance and
                 // ends with a NUL, and nothing changes it while it is copied.
@@ -235,15 +236,15 @@ impl Uno {
 
     /// The number of cycles since power-on in which the CPU slept.
     #[must_use]
-    pub fn asleep_cycles(&self) -> u64 {
+    pub fn sleep_cycles(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
-        unsafe { ffi::uno_asleep_cycles(self.raw) }
+        unsafe { ffi::uno_sleep_cycles(self.raw) }
     }
 
     /// The number of cycles since power-on in which the CPU did not sleep.
     #[must_use]
     pub fn awake_cycles(&self) -> u64 {
-        self.cycle() - self.asleep_cycles()
+        self.cycle() - self.sleep_cycles()
     }
 
     /// The number of resets by the watchdog so far. [`Uno::reset_events`] lists all resets.
@@ -253,14 +254,14 @@ impl Uno {
         unsafe { ffi::uno_watchdog_resets(self.raw) }
     }
 
-    /// The largest size of the stack since power-on, bytes. At power-on, SRAM contains noise; a byte counts as used
-    /// once it differs from that noise.
+    /// The largest size of the stack since power-on, bytes. At power-on, SRAM contains noise; a byte that differs from
+    /// the noise counts as used.
     #[must_use]
     pub fn stack_used(&self) -> u16 {
         SRAM_END - self.lowest_stack_address()
     }
 
-    /// The smallest free space between the stack and static data since power-on, bytes.
+    /// The smallest gap between the stack and static data since power-on, bytes.
     #[must_use]
     pub fn stack_spare(&self) -> u16 {
         self.lowest_stack_address() - self.image.data_end()
@@ -293,20 +294,20 @@ impl Uno {
 
     /// Statistics of every interrupt that has been served at least once.
     #[must_use]
-    pub fn interrupts(&self) -> Vec<VectorUse> {
-        // SAFETY: `raw` is valid, see `Uno`. It is an array of `VECTOR_COUNT` items inside the
-        // instance, and nothing runs while they are borrowed.
+    pub fn interrupts(&self) -> Vec<VectorStats> {
+        // SAFETY: `raw` is valid, see `Uno`. The shim returns an array of `VECTOR_COUNT` items inside
+        // the instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTOR_COUNT) };
         let served_vectors = vectors
             .iter()
             .enumerate()
-            .filter(|(_, raw_use)| raw_use.entries > 0);
+            .filter(|(_, raw_stats)| raw_stats.entries > 0);
         served_vectors
-            .map(|(vector, raw_use)| VectorUse {
+            .map(|(vector, raw_stats)| VectorStats {
                 vector: vector as u8,
-                entries: raw_use.entries,
-                cycles: raw_use.cycles,
+                entries: raw_stats.entries,
+                cycles: raw_stats.cycles,
             })
             .collect()
     }
@@ -319,9 +320,9 @@ impl Uno {
 
     /// Copies the items of one of the shim's lists.
     pub(crate) fn copy_items<Item: Copy>(&self, list_getter: ListGetter) -> Vec<Item> {
-        // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with the type that
-        // the shim keeps in it, whose size is compared; `count` items of it are filled in,
-        // and nothing runs while they are copied.
+        // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with its item type,
+        // whose size is compared; the first `count` items are initialised, and nothing runs
+        // while they are copied.
         unsafe {
             let list = &*list_getter(self.raw);
             assert_eq!(list.item_size, size_of::<Item>());
@@ -342,7 +343,7 @@ impl Uno {
     /// Empties one of the shim's lists.
     pub(crate) fn clear_items(&mut self, list_getter: ListGetter) {
         // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
-        // the shim writes after its `count`, so that 0 empties it.
+        // the shim appends at `count`, so 0 empties the list.
         unsafe { (*list_getter(self.raw)).count = 0 }
     }
 }

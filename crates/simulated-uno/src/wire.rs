@@ -1,4 +1,4 @@
-//! A wire with two senders, such as the UNO's D0 where a radio module shares it with USB.
+//! A wire with two senders, such as the UNO's D0 when both a radio module and USB are connected to it.
 //!
 //! The wire is high while no sender pulls it low. If both send at once, a bit is high only if both bits are high, and
 //! the receiver reads bytes that neither has sent, some without a stop bit. Pass the bytes that the receiver reads to
@@ -8,9 +8,9 @@ use std::collections::VecDeque;
 
 use crate::FREQUENCY;
 
-/// The number of bits of a byte on the wire: a start bit, eight data bits and a stop bit.
+/// The number of bits per byte on the wire: a start bit, eight data bits and a stop bit.
 const FRAME_BITS: f64 = 10.0;
-/// The time from the start of a byte to the middle of its stop bit, at which a receiver has read the byte; in bits.
+/// The time from the start of a byte to the middle of its stop bit, when a receiver has read the byte; bits.
 const STOP_BIT_MIDDLE: f64 = 9.5;
 /// The number of bytes of each sender that are searched for edges: more than the fastest sender sends while the slowest
 /// receiver reads one byte.
@@ -27,7 +27,7 @@ struct Frame {
 }
 
 impl Frame {
-    /// Returns the cycle at which the stop bit ends.
+    /// Computes the cycle at which the stop bit ends.
     fn end_cycle(&self) -> f64 {
         self.start_cycle + FRAME_BITS * self.bit_cycles
     }
@@ -47,12 +47,12 @@ pub struct Wire {
     bit_cycles: [f64; 2],
     /// The bytes of each sender that may still be read, in order.
     frames: [VecDeque<Frame>; 2],
-    /// The cycle from which the receiver waits for the next start bit.
+    /// The cycle from which on the receiver waits for the next start bit.
     idle_from: f64,
 }
 
 impl Wire {
-    /// Returns an idle wire for two senders with these baud rates.
+    /// Creates an idle wire for two senders with these baud rates.
     #[must_use]
     pub fn new(rates: [f64; 2]) -> Self {
         Self {
@@ -62,7 +62,7 @@ impl Wire {
         }
     }
 
-    /// Queues bytes of a sender, 0 or 1, which sends them back to back from the cycle `now` on.
+    /// Queues bytes of a sender, 0 or 1, which sends them back to back, starting at the cycle `now`.
     pub fn write(&mut self, sender: usize, bytes: &[u8], now: u64) {
         let bit_cycles = self.bit_cycles[sender];
         for byte in bytes {
@@ -76,8 +76,8 @@ impl Wire {
         }
     }
 
-    /// Returns the bytes that a receiver of this baud rate has read since the last call, until the cycle `now`;
-    /// `None` for a byte without a stop bit.
+    /// Returns the bytes that a receiver with this baud rate has read between the last call and the cycle `now`; `None`
+    /// for a byte without a stop bit.
     pub fn receive(&mut self, now: u64, baud: f64) -> Vec<Option<u8>> {
         let bit_cycles = FREQUENCY as f64 / baud;
         let mut received_bytes = Vec::new();
@@ -105,8 +105,7 @@ impl Wire {
         received_bytes
     }
 
-    /// Returns the next cycle at which the wire changes from high to low; `None` if the senders have no further
-    /// bytes.
+    /// Finds the next cycle at which the wire changes from high to low; `None` if the senders have no further bytes.
     fn next_falling_edge(&self) -> Option<f64> {
         let edges = self.pending_frames().flat_map(|frame| {
             (0..9).map(|index| {
@@ -217,10 +216,10 @@ mod tests {
     }
 
     #[test]
-    fn a_zero_byte_shorter_than_one_bit_of_the_receiver_is_read_as_0xff() {
+    fn a_zero_byte_within_one_bit_of_the_receiver_is_read_as_0xff() {
         let mut wire = Wire::new([115_200.0; 2]);
-        // Twelve bits of the sender last as long as one bit of the receiver. So the sender's whole byte lies within
-        // the receiver's start bit.
+        // Twelve bits of the sender take as long as one bit of the receiver, so the sender's whole byte lies within the
+        // receiver's start bit.
         wire.write(0, &[0x00], 0);
         assert_eq!(wire.receive(1_000_000, 9_600.0), [Some(0xff)]);
     }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 use simulated_uno::avr_gcc;
 use simulated_uno::{BackgroundPort, CYCLES_PER_MS, FREQUENCY, Fidelity, Image, Pin, Port, Uno};
@@ -54,7 +54,7 @@ fn serve_board() -> BackgroundPort {
 }
 
 fn stop_board(board: BackgroundPort) -> Uno {
-    let uno = LIMIT.within("the end of the port's thread", || board.stop());
+    let uno = TIME_LIMIT.run("the end of the port's thread", || board.stop());
     uno.expect("the port had no error")
 }
 
@@ -74,7 +74,7 @@ fn read_text(port: &File, count: usize) -> String {
 fn read_bytes(port: &File, count: usize) -> Vec<u8> {
     let mut port = port.try_clone().expect("the handle can be cloned");
     let description = format!("{count} bytes from the chip");
-    LIMIT.within(&description, move || {
+    TIME_LIMIT.run(&description, move || {
         let mut bytes = vec![0; count];
         port.read_exact(&mut bytes).expect("the port can be read");
         bytes
@@ -84,7 +84,7 @@ fn read_bytes(port: &File, count: usize) -> Vec<u8> {
 /// Serves the port until the chip has run for `ms`.
 fn serve(port: &mut Port, uno: &mut Uno, ms: u64) {
     let end_cycle = uno.cycle() + ms * CYCLES_PER_MS;
-    LIMIT.expect("the chip's time to pass", || {
+    TIME_LIMIT.wait_for("the chip's time to pass", || {
         let step = Duration::from_millis(5);
         port.serve(uno, step).expect("the port has no error");
         uno.cycle() >= end_cycle
@@ -109,7 +109,7 @@ fn bytes_pass_unchanged_in_both_directions() {
 }
 
 #[test]
-fn at_a_baud_rate_other_than_the_chips_different_bytes_are_read() {
+fn a_wrong_baud_rate_changes_the_bytes_in_both_directions() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
@@ -128,7 +128,7 @@ fn at_a_baud_rate_other_than_the_chips_different_bytes_are_read() {
 }
 
 #[test]
-fn every_opening_resets_the_chip_however_short_the_pause_before_it() {
+fn every_opening_resets_the_chip_even_after_a_short_pause() {
     let board = serve_board();
     for _ in 0..5 {
         let port = open(board.path());
@@ -144,7 +144,7 @@ fn every_opening_resets_the_chip_however_short_the_pause_before_it() {
 }
 
 #[test]
-fn a_second_program_does_not_reset_the_chip() {
+fn opening_an_open_port_does_not_reset_the_chip() {
     let board = serve_board();
     let mut port = open(board.path());
     assert_eq!(read_text(&port, 2), "<r");
@@ -168,7 +168,7 @@ fn output_while_the_port_is_closed_is_lost() {
     assert_eq!(
         read_text(&program_port, 2),
         "<r",
-        "only the output of the reset is left"
+        "only the output after the reset is read"
     );
     program_port
         .write_all(b"a")
@@ -203,28 +203,28 @@ fn unread_output_is_dropped_before_the_next_program_opens_the_port() {
     assert_eq!(
         read_text(&second_port, 2),
         "<r",
-        "the echo of abc, bcd, is not left"
+        "the echo bcd of abc is dropped"
     );
 }
 
 #[test]
-fn the_chip_keeps_time_with_the_wall_clock() {
+fn the_chip_is_never_ahead_of_the_wall_clock() {
     let mut uno = echo_uno();
     let mut port = Port::new().expect("a pseudo terminal is free");
     let start = Instant::now();
     serve(&mut port, &mut uno, 100);
     let wall_seconds = start.elapsed().as_secs_f64();
     let chip_seconds = uno.cycle() as f64 / FREQUENCY as f64;
-    // The chip is never ahead of the wall clock by more than one time slice. On a loaded machine it may lag by any
-    // amount, so the test checks only the lead.
+    // The chip is ahead of the wall clock by at most one time slice. On a busy computer, the chip may lag by any
+    // amount.
     assert!(
         chip_seconds <= wall_seconds + 0.01,
-        "{chip_seconds} s in {wall_seconds} s"
+        "chip {chip_seconds} s, wall clock {wall_seconds} s"
     );
 }
 
 #[test]
-fn a_reset_makes_the_pins_low_and_keeps_time_and_memory() {
+fn a_reset_clears_the_pins_but_not_the_time_and_memory() {
     let mut uno = echo_uno();
     uno.run_ms(1);
     assert!(uno.is_high(Pin::d(9)));

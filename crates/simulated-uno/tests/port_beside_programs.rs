@@ -1,11 +1,11 @@
-//! Test of a simulated UNO behind a serial port, in a program that constantly starts other programs. Each new
-//! process has a copy of every open file between `fork` and `exec`, but such a copy must not keep the port open.
+//! Test of a simulated UNO behind a serial port, in a program that constantly starts other programs. Between `fork` and
+//! `exec`, each new process has a copy of every open file; such a copy must not keep the port open.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::avr_gcc;
 use simulated_uno::{Fidelity, Port, Uno};
 
@@ -25,15 +25,15 @@ const HELLO_PROGRAM: &str = r#"
 /// Shell script that opens the port in its argument, reads two bytes and closes it.
 const READER_SCRIPT: &str = r#"exec 3<>"$0"; head -c 2 <&3"#;
 
-/// The smallest number of openings, and the smallest number of other programs started during them.
+/// Minimum number of openings, and minimum number of other programs that start during these openings.
 const MIN_OPENINGS: usize = 150;
 
 static STARTED_COUNT: AtomicUsize = AtomicUsize::new(0);
-static IS_OVER: AtomicBool = AtomicBool::new(false);
+static HAS_ENDED: AtomicBool = AtomicBool::new(false);
 
 fn start_programs() {
-    while !IS_OVER.load(Ordering::Relaxed) {
-        let output = LIMIT.output(&mut Command::new("true"), b"");
+    while !HAS_ENDED.load(Ordering::Relaxed) {
+        let output = TIME_LIMIT.run_command(&mut Command::new("true"), b"");
         assert!(output.expect("`true` runs").status.success());
         STARTED_COUNT.fetch_add(1, Ordering::Relaxed);
     }
@@ -47,27 +47,29 @@ fn every_opening_by_another_program_resets_the_chip_once() {
     let board = port
         .in_background(uno, |_| {})
         .expect("a thread can be started");
-    let mut openings = 0;
-    while openings < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
+    let mut opening_count = 0;
+    while opening_count < MIN_OPENINGS || STARTED_COUNT.load(Ordering::Relaxed) < MIN_OPENINGS {
         let are_all_running = starters.iter().all(|starter| !starter.is_finished());
-        assert!(are_all_running, "the threads still start programs");
-        openings += 1;
+        assert!(are_all_running, "a thread has stopped starting programs");
+        opening_count += 1;
         let mut reader = Command::new("bash");
         reader.args(["-c", READER_SCRIPT]).arg(board.path());
-        let output = LIMIT.output(&mut reader, b"").expect("the script ends");
+        let output = TIME_LIMIT
+            .run_command(&mut reader, b"")
+            .expect("the script ends");
         let output_text = String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output_text, "<r", "opening {openings}");
+        assert_eq!(output_text, "<r", "opening {opening_count}");
     }
-    IS_OVER.store(true, Ordering::Relaxed);
+    HAS_ENDED.store(true, Ordering::Relaxed);
     for starter in starters {
-        let result = LIMIT.within("the end of the other programs", || starter.join());
+        let result = TIME_LIMIT.run("the end of the other programs", || starter.join());
         result.expect("the thread does not panic");
     }
-    let uno = LIMIT.within("the end of the port's thread", || board.stop());
+    let uno = TIME_LIMIT.run("the end of the port's thread", || board.stop());
     let reset_count = uno.expect("the port had no error").reset_events().len();
     assert_eq!(
         reset_count,
-        1 + openings,
+        1 + opening_count,
         "power-on and one for each opening"
     );
 }

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::avr_gcc;
 
 /// Program that sends `ready` at its start and answers every line with `got` and the line's first letter.
@@ -39,7 +39,9 @@ const PULSES_PROGRAM: &str = "
 fn run_program(file: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_simulated-uno"));
     command.arg(file).args(arguments);
-    LIMIT.output(&mut command, b"").expect("simulated-uno runs")
+    TIME_LIMIT
+        .run_command(&mut command, b"")
+        .expect("simulated-uno runs")
 }
 
 /// Compiles a source and returns the paths of its ELF and Intel HEX files.
@@ -52,7 +54,9 @@ fn compile(folder: &Path, source: &str) -> [std::path::PathBuf; 2] {
         .args(["-O", "ihex", "-R", ".eeprom"])
         .arg(&elf)
         .arg(&hex);
-    let output = LIMIT.output(&mut objcopy, b"").expect("avr-objcopy runs");
+    let output = TIME_LIMIT
+        .run_command(&mut objcopy, b"")
+        .expect("avr-objcopy runs");
     assert!(output.status.success(), "{output:?}");
     [elf, hex]
 }
@@ -64,19 +68,19 @@ fn run_source(source: &str, arguments: &[&str]) -> Output {
     run_program(&hex, arguments)
 }
 
-fn text_of(bytes: &[u8]) -> String {
+fn to_text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).expect("the output is UTF-8")
 }
 
 #[test]
-fn a_hex_file_and_its_elf_give_the_same_pulses() {
+fn hex_and_elf_files_of_a_program_give_the_same_pulses() {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let [elf, hex] = compile(folder.path(), PULSES_PROGRAM);
     // Intel HEX does not contain the size of the static data, so the report omits the memory.
     for (file, reports_memory) in [(elf, true), (hex, false)] {
         let output = run_program(&file, &["--ms", "100"]);
         assert!(output.status.success(), "{output:?}");
-        let output_text = text_of(&output.stdout);
+        let output_text = to_text(&output.stdout);
         let row: Vec<&str> = output_text
             .lines()
             .find(|line| line.starts_with("D9"))
@@ -96,16 +100,17 @@ fn a_hex_file_and_its_elf_give_the_same_pulses() {
         let period: f64 = row[4].parse().expect("the period is a number");
         assert!((4000.0..4001.0).contains(&period), "{output_text}");
         assert!(
-            output_text.contains("awake 100.0 %") && output_text.contains("It runs on."),
+            output_text.contains("awake 100.0 %")
+                && output_text.contains("The program is still running."),
             "{output_text}"
         );
     }
 }
 
 #[test]
-fn every_pulse_is_listed_on_request() {
+fn the_option_pulses_lists_every_pulse() {
     let output = run_source(PULSES_PROGRAM, &["--ms", "10", "--pulses"]);
-    let output_text = text_of(&output.stdout);
+    let output_text = to_text(&output.stdout);
     let rows = output_text.lines().filter(|line| line.starts_with("D9"));
     let widths: Vec<&str> = rows
         .filter_map(|row| row.split_whitespace().nth(2))
@@ -114,12 +119,12 @@ fn every_pulse_is_listed_on_request() {
 }
 
 #[test]
-fn lines_are_sent_at_their_times_and_answers_are_printed_with_their_times() {
+fn sent_lines_and_answers_are_printed_with_their_times() {
     for extra_arguments in [&["--stock"][..], &[]] {
         let mut arguments = vec!["--ms", "60", "--say", "40:stop", "--say", "20:walk"];
         arguments.extend(extra_arguments);
         let output = run_source(ECHO_PROGRAM, &arguments);
-        let output_text = text_of(&output.stdout);
+        let output_text = to_text(&output.stdout);
         let lines: Vec<(f64, &str)> = output_text
             .lines()
             .filter_map(|line| line.split_once(" ms  "))
@@ -135,47 +140,47 @@ fn lines_are_sent_at_their_times_and_answers_are_printed_with_their_times() {
             assert!((ms..ms + 2.0).contains(&line.0), "{output_text}");
         }
         assert!(
-            output_text.contains("No pin from D2 to A5 has moved."),
+            output_text.contains("No pin from D2 to A5 has changed."),
             "{output_text}"
         );
     }
 }
 
 #[test]
-fn a_bad_file_or_argument_is_reported_with_its_exit_code() {
+fn invalid_files_end_with_exit_code_1_and_invalid_arguments_with_2() {
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
-    let file = folder.path().join("half.hex");
+    let file = folder.path().join("incomplete.hex");
     fs::write(&file, ":02000000FFCF30\n").expect("the file can be written");
-    let cut_output = run_program(&file, &[]);
-    assert_eq!(cut_output.status.code(), Some(1));
-    let error = text_of(&cut_output.stderr);
+    let incomplete_output = run_program(&file, &[]);
+    assert_eq!(incomplete_output.status.code(), Some(1));
+    let error = to_text(&incomplete_output.stderr);
     assert!(
-        error.ends_with("no end record: only a part of it is there\n"),
+        error.ends_with("no end record, so it is incomplete\n"),
         "{error}"
     );
-    let missing_output = run_program(&folder.path().join("none.hex"), &[]);
+    let missing_output = run_program(&folder.path().join("missing.hex"), &[]);
     assert_eq!(missing_output.status.code(), Some(1));
-    assert!(text_of(&missing_output.stderr).contains("none.hex"));
-    let wrong_output = run_program(&file, &["--say", "walk"]);
-    assert_eq!(wrong_output.status.code(), Some(2));
-    assert!(text_of(&wrong_output.stderr).contains("as in 500:walk"));
+    assert!(to_text(&missing_output.stderr).contains("missing.hex"));
+    let usage_output = run_program(&file, &["--say", "walk"]);
+    assert_eq!(usage_output.status.code(), Some(2));
+    assert!(to_text(&usage_output.stderr).contains("such as 500:walk"));
 }
 
 #[test]
 fn a_crash_is_reported_and_ends_with_exit_code_1() {
     let output = run_source("int main(void) { *(volatile char *)0x0fff = 1; }", &[]);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let output_text = text_of(&output.stdout);
+    let output_text = to_text(&output.stdout);
     assert!(
-        output_text.contains("It has crashed at 0x"),
+        output_text.contains("The program crashed at 0x"),
         "{output_text}"
     );
 }
 
 #[test]
-fn control_characters_of_a_program_are_escaped() {
+fn control_characters_in_serial_text_are_escaped() {
     let source = ECHO_PROGRAM.replace("ready\\r\\n", "\\033[2Jblank\\n");
-    let output_text = text_of(&run_source(&source, &["--ms", "5"]).stdout);
+    let output_text = to_text(&run_source(&source, &["--ms", "5"]).stdout);
     assert!(output_text.contains("\\u{1b}[2Jblank"), "{output_text}");
     assert!(!output_text.contains('\u{1b}'), "{output_text}");
 }

@@ -1,43 +1,43 @@
-//! The comparison of the given gait with the gait that the search has found.
+//! Compares the given gait with the gait found by the search.
 
 use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
 use serde::Serialize;
 
 use crate::judge::{BuiltGait, Judge};
-use crate::variation::quantiles;
+use crate::variation::compute_quantiles;
 
-/// Speeds of the given gait and of the gait that was found, on the same random robots.
+/// The speeds of the given gait and of the tuned gait on the same random robots.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
     /// Unit of the speeds: mm/s, or deg/s for a turn.
     pub unit: &'static str,
-    /// Servo speed that neither gait exceeds, deg/s.
+    /// Largest servo speed of both gaits, deg/s.
     pub rate: f64,
-    /// The given gait, at the pace at which its fastest servo turns at `rate`.
-    pub gait: GaitFigures,
-    /// The gait that was found.
-    pub tuned: GaitFigures,
+    /// The given gait at the pace at which its fastest servo reaches `rate`.
+    pub gait: GaitPerformance,
+    /// The tuned gait, which the search has found.
+    pub tuned: GaitPerformance,
     /// Number of random robots on which both gaits were simulated.
     #[serde(rename = "robots")]
     pub robot_count: usize,
-    /// Number of robots on which the gait that was found is faster than the given gait.
+    /// Number of robots on which the tuned gait is faster than the given gait.
     #[serde(rename = "faster")]
     pub faster_count: usize,
-    /// Table for robot.toml that defines the gait that was found.
+    /// The tuned gait's table for robot.toml.
     pub fragment: String,
 }
 
-/// Speeds and margins of a gait.
+/// A gait's speeds and smallest margin.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct GaitFigures {
-    /// Name of the gait.
+pub struct GaitPerformance {
+    /// The gait's name.
     pub name: String,
-    /// Time of a cycle, s.
+    /// Cycle time, s.
     pub period: f64,
     /// Speed of the fastest servo, deg/s.
     pub rate: f64,
-    /// Name and value of the gait's smallest margin; the value is the sine of an angle.
+    /// Name and value of the smallest margin; the value is the sine of an angle.
     pub margin: (&'static str, f64),
     /// Speed predicted by the contact model, with ideal servos, mm/s or deg/s.
     pub predicted: f64,
@@ -48,17 +48,17 @@ pub struct GaitFigures {
 }
 
 impl Comparison {
-    /// Simulates both gaits on the judge's robots, at paces at which their fastest servos turn at `rate` (deg/s).
+    /// Simulates both gaits on the judge's robots, at paces at which their fastest servos reach `rate` (deg/s).
     pub(crate) fn simulate(
         judge: &Judge,
         rate: f64,
         gait: &CheckedGait,
-        found_gait: &BuiltGait,
+        tuned_gait: &BuiltGait,
     ) -> Self {
-        // At another pace the gait covers the same distance, so only its period changes.
+        // At another pace the gait covers the same distance, so only the period changes.
         let period_factor = gait.audit().peak_speed.speed / rate;
-        let (given, given_speeds) = GaitFigures::simulate(judge, gait, period_factor);
-        let (tuned, tuned_speeds) = GaitFigures::simulate(judge, found_gait.gait(), 1.0);
+        let (given, given_speeds) = GaitPerformance::simulate(judge, gait, period_factor);
+        let (tuned, tuned_speeds) = GaitPerformance::simulate(judge, tuned_gait.gait(), 1.0);
         let faster_count = tuned_speeds
             .iter()
             .zip(&given_speeds)
@@ -71,45 +71,39 @@ impl Comparison {
             tuned,
             robot_count: tuned_speeds.len(),
             faster_count,
-            fragment: found_gait.table().to_owned(),
+            fragment: tuned_gait.table().to_owned(),
         }
     }
 
-    /// True if the speed that 95 % of the robots exceed is higher with the gait that was found, and if that gait is
-    /// faster on more than half of the robots.
+    /// True if the tuned gait has a higher 5th percentile of the speed and is faster on more than half of the robots.
     pub fn is_better(&self) -> bool {
         self.tuned.speeds[0] > self.gait.speeds[0] && 2 * self.faster_count > self.robot_count
     }
 
-    /// Gain in the speed that 95 % of the robots exceed, as a share of that speed of the given gait.
+    /// Gain in the 5th percentile of the speed, as a fraction of the given gait's value.
     pub fn gain(&self) -> f64 {
         self.tuned.speeds[0] / self.gait.speeds[0] - 1.0
     }
 }
 
-impl GaitFigures {
-    /// Simulates a gait whose period is multiplied by `period_factor`; also returns its speed on each robot.
+impl GaitPerformance {
+    /// Simulates a gait whose period is multiplied by `period_factor`; also returns the speed on each robot.
     fn simulate(judge: &Judge, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * period_factor;
         let audit = gait.audit();
-        let margins = [audit.type2, audit.type1, audit.leg];
-        let min_margin = margins.into_iter().fold(audit.leg, |smallest, margin| {
-            if margin.value < smallest.value {
-                margin
-            } else {
-                smallest
-            }
-        });
-        let speeds = judge.speeds(gait, period);
-        let figures = Self {
+        let margins = [audit.leg, audit.type2, audit.type1].into_iter();
+        let min_margin = margins.min_by(|a, b| a.value.total_cmp(&b.value));
+        let min_margin = min_margin.unwrap_or(audit.leg);
+        let speeds = judge.compute_speeds(gait, period);
+        let performance = Self {
             name: gait.name().to_owned(),
             period,
             rate: audit.peak_speed.speed / period_factor,
             margin: (Check::name(min_margin.check), min_margin.value),
             predicted: judge.goal().progress(&judge.simulate_ideal_cycle(gait)) / period,
-            sg90: judge.speed_on_robot(gait, period),
-            speeds: quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
+            sg90: judge.compute_nominal_speed(gait, period),
+            speeds: compute_quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
         };
-        (figures, speeds)
+        (performance, speeds)
     }
 }

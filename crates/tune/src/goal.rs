@@ -4,9 +4,9 @@ use lizard_robot::servo::LEG_NAMES;
 use lizard_robot::{CheckedGait, Ground, Travel};
 use thiserror::Error;
 
-/// Smallest distance in a cycle that is not regarded as zero.
+/// Smallest distance per cycle that counts as a movement.
 const MIN_DISTANCE_MM: f64 = 1.0;
-/// Smallest turn in a cycle that is not regarded as zero.
+/// Smallest turn per cycle that counts as a movement.
 const MIN_TURN_DEG: f64 = 0.5;
 
 fn is_left(servo: usize) -> bool {
@@ -17,21 +17,21 @@ fn is_front(servo: usize) -> bool {
     LEG_NAMES[servo].ends_with('F')
 }
 
-/// The error for a gait that has no goal, with the gait's name.
+/// The error of a gait without a goal, with the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GoalError {
-    /// Two feet pull against the other two, so the movement depends on unmeasurable differences between the pads.
+    /// Two feet pull against the other two, so the movement depends on unknown differences between the pads.
     #[error(
-        "the direction of the gait `{0}` is undecided, since two feet pull against two; tune another gait"
+        "the direction of the gait `{0}` is undecided, since two feet pull against the other two; tune another gait"
     )]
     Undecided(String),
     /// The gait stands, or returns the robot to its start in each cycle.
-    #[error("the gait `{0}` goes nowhere")]
+    #[error("the gait `{0}` does not move the robot; tune another gait")]
     Nowhere(String),
     /// The gait walks along a curve.
     #[error(
-        "the gait `{0}` goes ahead and turns; tune a straight gait or a turn on the spot, and make \
-         an arc of it with `like` and `gain`"
+        "the gait `{0}` walks along a curve; tune a straight gait or a turn on the spot, and derive an arc from the \
+         result with `like` and `gain`"
     )]
     Arc(String),
 }
@@ -46,11 +46,11 @@ pub enum Goal {
 }
 
 impl Goal {
-    /// Derives the goal of a gait from its movement on rigid legs.
+    /// Derives a gait's goal from its movement on rigid legs.
     ///
     /// # Errors
-    /// Fails for a gait that stands, walks along a curve, or whose movement depends on unmeasurable differences
-    /// between the pads.
+    /// Fails if the gait stands or walks along a curve, or if its movement depends on unknown differences between the
+    /// pads.
     pub fn from_gait(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
         let gait_name = || gait.name().to_owned();
         let movement = gait.predict(&ground.with_rigid_drive());
@@ -65,7 +65,7 @@ impl Goal {
         }
     }
 
-    /// The component of a movement towards this goal, mm or deg.
+    /// The movement's component towards this goal, mm or deg.
     pub fn progress(self, movement: &Travel) -> f64 {
         match self {
             Self::Ahead(sign) => sign * movement.forward,
@@ -73,8 +73,8 @@ impl Goal {
         }
     }
 
-    /// True if a movement has almost no component except the one towards this goal.
-    pub fn is_direction_of(self, movement: &Travel) -> bool {
+    /// True if the movement has almost no other component than that towards this goal.
+    pub fn matches_direction(self, movement: &Travel) -> bool {
         match self {
             Self::Ahead(_) => {
                 movement.turn.abs() < MIN_TURN_DEG && movement.left.abs() < MIN_DISTANCE_MM
@@ -83,7 +83,7 @@ impl Goal {
         }
     }
 
-    /// Sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if it moves forward.
+    /// Sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if the leg moves forward.
     pub fn stroke_sign(self, servo: usize) -> f64 {
         match self {
             Self::Ahead(sign) => sign,
@@ -122,33 +122,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_goal_of_a_gait_is_the_direction_of_its_movement() {
+    fn from_gait_returns_the_direction_of_movement() {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
-        let goal_of = |name: &str| {
+        let find_goal = |name: &str| {
             let gait = robot.gait(name).expect("paper.toml has the gait");
             Goal::from_gait(gait, robot.ground()).map_err(|error| error.to_string())
         };
-        assert_eq!(goal_of("walk"), Ok(Goal::Ahead(1.0)));
-        assert_eq!(goal_of("back"), Ok(Goal::Ahead(-1.0)));
-        assert_eq!(goal_of("left"), Ok(Goal::Turn(1.0)));
-        assert_eq!(goal_of("right"), Ok(Goal::Turn(-1.0)));
+        assert_eq!(find_goal("walk"), Ok(Goal::Ahead(1.0)));
+        assert_eq!(find_goal("back"), Ok(Goal::Ahead(-1.0)));
+        assert_eq!(find_goal("left"), Ok(Goal::Turn(1.0)));
+        assert_eq!(find_goal("right"), Ok(Goal::Turn(-1.0)));
         for (name, reason) in [
-            ("stand", "goes nowhere"),
-            ("arc-left", "goes ahead and turns"),
+            ("stand", "does not move the robot"),
+            ("arc-left", "walks along a curve"),
             ("look", "is undecided"),
         ] {
-            assert!(
-                goal_of(name)
-                    .expect_err("the gait has no goal")
-                    .contains(reason),
-                "{name}"
-            );
+            let error = find_goal(name).expect_err("the gait has no goal");
+            assert!(error.contains(reason), "{name}: {error}");
         }
     }
 
     #[test]
-    fn in_a_turn_left_and_right_legs_push_in_opposite_directions() {
+    fn left_and_right_legs_push_in_opposite_directions_in_a_turn() {
         let signs = [0, 1, 2, 3].map(|servo| Goal::Turn(1.0).stroke_sign(servo));
         assert_eq!(
             signs,

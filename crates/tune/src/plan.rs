@@ -1,16 +1,16 @@
-//! The parameters of the search, which are numbers from 0 to 1, and the gaits that they describe.
+//! Converts search parameters, which are numbers from 0 to 1, to gaits.
 //!
-//! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*, Science 150, 1965): each leg
-//! repeats the movement of the other leg of its pair half a cycle later, so the body walks straight. The pairs of a
-//! straight gait are the hind legs and the front legs. The pairs of a turn on the spot are diagonally opposite legs,
-//! so the body stays in its place. The remaining parameters of a wave gait are its duty factor, the lag of the front
-//! foot behind the hind foot of one side, and an amplitude for each pair of legs.
+//! A straight gait is symmetrical in Hildebrand's sense (*Symmetrical gaits of horses*, Science 150, 1965): the two
+//! legs of a pair make the same movement half a cycle apart, so the body walks straight. The pairs of a straight gait
+//! are the hind legs and the front legs. The pairs of a turn on the spot are diagonally opposite legs, so the body
+//! stays in place. The remaining parameters of a wave gait are the duty factor, the lag of the front foot behind the
+//! hind foot of one side, and an amplitude for each pair of legs.
 
 use lizard_robot::Bars;
 
 use crate::goal::Goal;
 
-/// The kinds of gait that the search tries, and their parameters.
+/// A kind of gait in the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GaitKind {
     /// `waveform = "wave"`. Parameters: duty factor, lag of the front feet, amplitude, balance of the two pairs.
@@ -23,15 +23,12 @@ impl GaitKind {
     /// All kinds, in the order of the search.
     pub const ALL: [Self; 2] = [Self::Wave, Self::Held];
 
-    /// Returns the parameter sets with which the search starts. The feet swing one after another, with the largest
-    /// amplitude. A wave gait starts with both sequences of animals, lateral and diagonal.
+    /// Returns the start parameter sets of the search. The feet swing one at a time, with the largest amplitude. A wave
+    /// gait starts with both footfall sequences of animals, lateral and diagonal.
     pub fn start_parameters(self) -> Vec<Vec<f64>> {
-        let share_of_range = |duty: f64| (duty - DUTY_RANGE.0) / (DUTY_RANGE.1 - DUTY_RANGE.0);
+        let duty = (0.75 - DUTY_RANGE.0) / (DUTY_RANGE.1 - DUTY_RANGE.0);
         match self {
-            Self::Wave => vec![
-                vec![share_of_range(0.75), 0.25, 1.0, 0.5],
-                vec![share_of_range(0.75), 0.75, 1.0, 0.5],
-            ],
+            Self::Wave => vec![vec![duty, 0.25, 1.0, 0.5], vec![duty, 0.75, 1.0, 0.5]],
             Self::Held => vec![vec![0.0, 1.0, 0.5]],
         }
     }
@@ -39,11 +36,11 @@ impl GaitKind {
 
 /// Smallest amplitude of the search, deg.
 const MIN_AMPLITUDE: f64 = 5.0;
-/// Range of duty factors. Below one half, at most two of the four feet are in stance, which is not a majority.
+/// Range of duty factors. Below one half, at most two of the four feet are in stance, so there is no majority.
 const DUTY_RANGE: (f64, f64) = (0.5, 0.95);
-/// Largest reduction of one pair's amplitude, as a share of the amplitude of the other pair.
+/// Largest reduction of one pair's amplitude, as a fraction of the other pair's amplitude.
 const MAX_PAIR_REDUCTION: f64 = 0.5;
-/// The longest cycle that robot.toml accepts, s.
+/// Longest cycle that robot.toml allows, s.
 pub const MAX_PERIOD_S: f64 = 60.0;
 
 /// The limits of the search: the goal and the largest amplitude.
@@ -55,69 +52,64 @@ pub struct SearchSpace {
     pub max_amplitude: f64,
 }
 
-/// Plans the gait for parameters from 0 to 1, rounded as in robot.toml. Its period is [`MAX_PERIOD_S`], which the
-/// caller replaces. Parameters are limited to their range; a missing parameter counts as 0.
+/// Plans the gait for parameters from 0 to 1, with values rounded as in robot.toml and the period [`MAX_PERIOD_S`],
+/// which the caller replaces. Parameters are clamped to their range; a missing parameter counts as 0.
 pub fn plan_gait(kind: GaitKind, space: SearchSpace, name: &str, parameters: &[f64]) -> Bars {
     let SearchSpace {
         goal,
         max_amplitude,
     } = space;
-    let parameter_at = |i: usize| {
-        parameters
-            .get(i)
-            .copied()
-            .unwrap_or_default()
-            .clamp(0.0, 1.0)
+    let parameter = |i: usize| {
+        let parameter = parameters.get(i).copied().unwrap_or_default();
+        parameter.clamp(0.0, 1.0)
     };
-    let value_between = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter_at(i);
+    let scale = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter(i);
     let (duty, start, amplitude_index) = match kind {
         GaitKind::Wave => {
-            let lag = round_to(parameter_at(1), 2) % 1.0;
+            let lag = round_to_decimals(parameter(1), 2) % 1.0;
             // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and the
             // front legs.
             let [lf, rf] = match goal {
                 Goal::Ahead(_) => [lag, (lag + 0.5) % 1.0],
                 Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
             };
-            // In a turn, the pairs are LH and RF, and LF and RH; so RH takes the value `rf`.
+            // In a turn, the pairs are LH and RF, and LF and RH; therefore RH takes the value `rf`.
             let starts = match goal {
                 Goal::Ahead(_) => [lf, rf, 0.5, 0.0],
                 Goal::Turn(_) => [lf, 0.5, rf, 0.0],
             };
-            let starts = starts.map(|start| round_to(start, 2));
-            (round_to(value_between(0, DUTY_RANGE), 2), starts, 2)
+            let starts = starts.map(|start| round_to_decimals(start, 2));
+            (round_to_decimals(scale(0, DUTY_RANGE), 2), starts, 2)
         }
         GaitKind::Held => (
             DUTY_RANGE.0,
-            swing_ranks(parameter_at(0)).map(|rank| rank as f64 / 4.0),
+            find_swing_ranks(parameter(0)).map(|rank| rank as f64 / 4.0),
             1,
         ),
     };
-    let balance = MAX_PAIR_REDUCTION * (2.0 * parameter_at(amplitude_index + 1) - 1.0);
-    let pair_gains = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)].map(|gain| round_to(gain, 2));
-    let gain_of = |servo: usize| goal.stroke_sign(servo) * pair_gains[goal.pair_index(servo)];
+    let balance = MAX_PAIR_REDUCTION * (2.0 * parameter(amplitude_index + 1) - 1.0);
+    let pair_gains = [1.0 + balance.min(0.0), 1.0 - balance.max(0.0)];
+    let pair_gains = pair_gains.map(|gain| round_to_decimals(gain, 2));
+    let amplitude = scale(amplitude_index, (MIN_AMPLITUDE, max_amplitude));
     Bars {
         name: name.to_string(),
         held: kind == GaitKind::Held,
         period: MAX_PERIOD_S,
         duty,
-        amplitude: round_to(
-            value_between(amplitude_index, (MIN_AMPLITUDE, max_amplitude)),
-            1,
-        ),
+        amplitude: round_to_decimals(amplitude, 1),
         start,
-        gain: std::array::from_fn(gain_of),
+        gain: std::array::from_fn(|i| goal.stroke_sign(i) * pair_gains[goal.pair_index(i)]),
     }
 }
 
-fn round_to(value: f64, decimals: i32) -> f64 {
+fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     (value * scale).round() / scale
 }
 
-/// Selects one of the 24 orders of four legs by `position`, 0 to 1. Returns the rank of each leg in that order, 0 to
-/// 3, by servo index.
-fn swing_ranks(position: f64) -> [usize; 4] {
+/// Selects one of the 24 orders of four legs by `position`, 0 to 1. Returns each leg's rank in this order, 0 to 3, in
+/// servo order.
+fn find_swing_ranks(position: f64) -> [usize; 4] {
     let mut remaining_legs = vec![3, 0, 2, 1];
     let mut order_index = ((position * 24.0) as usize).min(23);
     let mut ranks = [0; 4];
@@ -132,7 +124,7 @@ fn swing_ranks(position: f64) -> [usize; 4] {
 mod tests {
     use super::*;
 
-    fn space_of(goal: Goal) -> SearchSpace {
+    fn search_space(goal: Goal) -> SearchSpace {
         SearchSpace {
             goal,
             max_amplitude: 45.0,
@@ -140,12 +132,12 @@ mod tests {
     }
 
     #[test]
-    fn each_of_the_24_swing_orders_has_its_own_parameter_value() {
+    fn each_of_the_24_swing_orders_has_its_own_parameter_range() {
         let mut orders: Vec<[usize; 4]> = (0..24)
-            .map(|n| swing_ranks((f64::from(n) + 0.5) / 24.0))
+            .map(|n| find_swing_ranks((f64::from(n) + 0.5) / 24.0))
             .collect();
         assert_eq!(orders[0], [1, 3, 2, 0]);
-        assert_eq!(swing_ranks(1.0), orders[23]);
+        assert_eq!(find_swing_ranks(1.0), orders[23]);
         orders.sort_unstable();
         orders.dedup();
         assert_eq!(orders.len(), 24);
@@ -156,13 +148,13 @@ mod tests {
     }
 
     #[test]
-    fn a_planned_gait_is_written_in_the_format_of_robot_toml() {
-        let table_of = |kind, goal, name: &str, period, parameters: &[f64]| {
-            let bars = plan_gait(kind, space_of(goal), name, parameters);
+    fn a_planned_gait_has_the_format_of_robot_toml() {
+        let format_table = |kind, goal, name: &str, period, parameters: &[f64]| {
+            let bars = plan_gait(kind, search_space(goal), name, parameters);
             Bars { period, ..bars }.to_toml()
         };
         assert_eq!(
-            table_of(
+            format_table(
                 GaitKind::Wave,
                 Goal::Ahead(1.0),
                 "x",
@@ -173,7 +165,7 @@ mod tests {
              start = { LF = 0.25, RF = 0.75, RH = 0.5, LH = 0.0 }\n"
         );
         assert_eq!(
-            table_of(GaitKind::Held, Goal::Turn(1.0), "y", 1.0, &[0.0, 0.5, 1.0]),
+            format_table(GaitKind::Held, Goal::Turn(1.0), "y", 1.0, &[0.0, 0.5, 1.0]),
             "[gait.y]\nperiod = 1.0\nwaveform = \"held\"\namplitude = 25.0\n\
              order = [\"LH\", \"LF\", \"RH\", \"RF\"]\ngain = { LF = -0.5, RF = 1.0, RH = 0.5, LH = -1.0 }\n"
         );
@@ -185,7 +177,12 @@ mod tests {
             (Goal::Ahead(1.0), [1, 0, 3, 2]),
             (Goal::Turn(-1.0), [2, 3, 0, 1]),
         ] {
-            let bars = plan_gait(GaitKind::Wave, space_of(goal), "x", &[0.1, 0.83, 0.5, 0.7]);
+            let bars = plan_gait(
+                GaitKind::Wave,
+                search_space(goal),
+                "x",
+                &[0.1, 0.83, 0.5, 0.7],
+            );
             for (leg, partner) in partners.into_iter().enumerate() {
                 let start_distance = (bars.start[leg] - bars.start[partner]).abs();
                 assert!(

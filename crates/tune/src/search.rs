@@ -1,27 +1,26 @@
 //! Differential evolution (R. Storn, K. Price, *Journal of Global Optimization* 11, 1997), with steps towards one of
 //! the best members (J. Zhang, A. Sanderson, *IEEE Transactions on Evolutionary Computation* 13, 2009). The method
-//! needs no gradient, copes with refused trials, and is short.
+//! needs no gradient, handles rejected trials, and is short.
 //!
-//! The search does not compute scores: its caller takes the trials of a round, scores them in any order, and
-//! returns the scores. Random numbers come from one seed in a fixed order, so the same seed finds the same gait on
-//! every machine.
+//! The search does not compute scores: the caller scores the trials of a round, in any order, and returns the scores.
+//! Random numbers come from one seed in a fixed order, so the same seed finds the same gait on every machine.
 
 use fastrand::Rng;
 
-/// Number of members of the population.
+/// Number of members in the population.
 const MEMBER_COUNT: usize = 20;
-/// Number of best members that count as leaders. Each trial moves towards a random leader, so that the search does not
+/// Number of best members that are leaders. Each trial moves towards a random leader, so that the search does not
 /// end at the first local maximum.
 const LEADER_COUNT: usize = 5;
-/// Probability with which a trial changes a parameter of its member.
+/// Probability that a trial changes a parameter of its member.
 const CHANGE_PROBABILITY: f64 = 0.9;
-/// Range of the factor on the steps of a trial; each trial draws its factor uniformly.
+/// Range of a trial's step factor, which is drawn uniformly.
 const STEP_RANGE: (f64, f64) = (0.4, 0.9);
 
-/// Returns the number of trials of a [`Search`] with this number of rounds, including the first population, which
-/// is scored before the first round.
-pub const fn trial_count(rounds: usize) -> usize {
-    MEMBER_COUNT * (rounds + 1)
+/// Returns the number of trials in a [`Search`] with `round_count` rounds. It includes the initial population, which is
+/// scored before the first round.
+pub const fn trial_count(round_count: usize) -> usize {
+    MEMBER_COUNT * (round_count + 1)
 }
 
 /// A member of the population.
@@ -29,11 +28,11 @@ pub const fn trial_count(rounds: usize) -> usize {
 struct Member {
     /// Parameters, each 0 to 1.
     parameters: Vec<f64>,
-    /// Score; `None` if the parameters were refused.
+    /// Score; `None` if the parameters were rejected.
     score: Option<f64>,
 }
 
-/// A search for the parameters (each 0 to 1) with the greatest score.
+/// A search for the parameters (each 0 to 1) with the highest score.
 #[derive(Debug, Clone)]
 pub struct Search {
     rng: Rng,
@@ -42,7 +41,7 @@ pub struct Search {
 }
 
 impl Search {
-    /// Starts a search with these parameter sets, and with random sets that complete the population.
+    /// Starts a search with the given parameter sets and with random sets that complete the population.
     pub fn new(start_parameters: &[Vec<f64>], seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
         let parameter_count = start_parameters.first().map_or(0, Vec::len);
@@ -57,13 +56,13 @@ impl Search {
         }
     }
 
-    /// The parameter sets of this round, to be scored.
+    /// The parameter sets to score in this round.
     pub fn trials(&self) -> &[Vec<f64>] {
         &self.trials
     }
 
     /// Accepts the scores of this round's trials, in the order of [`Search::trials`], and creates the trials of the
-    /// next round. A trial counts as refused if its score is `None` or missing.
+    /// next round. A trial is rejected if its score is `None` or missing.
     pub fn accept_scores(&mut self, scores: impl IntoIterator<Item = Option<f64>>) {
         let scores = scores.into_iter().chain(std::iter::repeat(None));
         let trials = std::mem::take(&mut self.trials).into_iter().zip(scores);
@@ -72,37 +71,39 @@ impl Search {
             self.members = scored_members.collect();
         } else {
             for (member, trial) in self.members.iter_mut().zip(scored_members) {
-                if score_of(&trial) >= score_of(member) {
+                if trial.score_or_minimum() >= member.score_or_minimum() {
                     *member = trial;
                 }
             }
         }
-        let rng = &mut self.rng;
-        let trial_of = |index| create_trial(&self.members, index, rng);
-        self.trials = (0..self.members.len()).map(trial_of).collect();
+        self.trials = (0..self.members.len())
+            .map(|index| create_trial(&self.members, index, &mut self.rng))
+            .collect();
     }
 
-    /// The scores and parameters of the current members, the best first.
+    /// Returns the scores and parameters of the current members, the best first.
     pub fn ranked_results(&self) -> Vec<(f64, Vec<f64>)> {
         let members = self.members.iter();
-        let scored = members.filter_map(|member| Some((member.score?, member.parameters.clone())));
-        let mut scored: Vec<_> = scored.collect();
-        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
-        scored
+        let results = members.filter_map(|member| Some((member.score?, member.parameters.clone())));
+        let mut results: Vec<_> = results.collect();
+        results.sort_by(|a, b| b.0.total_cmp(&a.0));
+        results
     }
 }
 
-fn score_of(member: &Member) -> f64 {
-    member.score.unwrap_or(f64::NEG_INFINITY)
+impl Member {
+    fn score_or_minimum(&self) -> f64 {
+        self.score.unwrap_or(f64::NEG_INFINITY)
+    }
 }
 
-/// Creates a trial from the member with this index: a step towards one of the best members plus a step along the
+/// Creates a trial from the member with the given index: a step towards one of the best members plus a step along the
 /// difference of two other members, crossed with the member itself. A parameter that would leave the range 0 to 1 moves
 /// halfway to the bound instead.
 fn create_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
     let own_parameters = &members[index].parameters;
     let mut ranked_members: Vec<&Member> = members.iter().collect();
-    ranked_members.sort_by(|a, b| score_of(b).total_cmp(&score_of(a)));
+    ranked_members.sort_by(|a, b| b.score_or_minimum().total_cmp(&a.score_or_minimum()));
     let leader = ranked_members[rng.usize(..LEADER_COUNT)];
     let mut others: Vec<usize> = (0..members.len()).filter(|i| *i != index).collect();
     rng.shuffle(&mut others);
@@ -129,35 +130,31 @@ fn create_trial(members: &[Member], index: usize, rng: &mut Rng) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49). Refuses parameters with x + y up to
+    /// Computes a score with a narrow curved ridge and its maximum at (0.7, 0.49). Rejects parameters with x + y <=
     /// 0.5.
-    fn ridge_score(parameters: &[f64]) -> Option<f64> {
+    fn score_on_ridge(parameters: &[f64]) -> Option<f64> {
         let (x, y) = (parameters[0], parameters[1]);
         let error = 40.0 * (y - x * x).powi(2) + (x - 0.7).powi(2);
         (x + y > 0.5).then_some(-error)
     }
 
     fn run_search(
-        start: &[Vec<f64>],
-        rounds: usize,
+        start_parameters: &[Vec<f64>],
+        round_count: usize,
         seed: u64,
-        score_of_parameters: impl Fn(&[f64]) -> Option<f64>,
+        score: impl Fn(&[f64]) -> Option<f64>,
     ) -> Vec<(f64, Vec<f64>)> {
-        let mut search = Search::new(start, seed);
-        for _ in 0..=rounds {
+        let mut search = Search::new(start_parameters, seed);
+        for _ in 0..=round_count {
             let trials = search.trials().to_vec();
-            search.accept_scores(
-                trials
-                    .iter()
-                    .map(|parameters| score_of_parameters(parameters)),
-            );
+            search.accept_scores(trials.iter().map(|parameters| score(parameters)));
         }
         search.ranked_results()
     }
 
     #[test]
-    fn the_search_climbs_a_curved_ridge() {
-        let results = run_search(&[vec![0.1, 0.9]], 60, 1, ridge_score);
+    fn the_search_finds_the_maximum_of_a_curved_ridge() {
+        let results = run_search(&[vec![0.1, 0.9]], 60, 1, score_on_ridge);
         let best = &results[0].1;
         let error = (best[0] - 0.7).hypot(best[1] - 0.49);
         assert!(error < 1e-3, "{best:?}");
@@ -166,34 +163,30 @@ mod tests {
 
     #[test]
     fn the_same_seed_finds_the_same_parameters() {
-        let best_of_seed = |seed| {
-            run_search(&[vec![0.1, 0.9]], 5, seed, ridge_score)[0]
-                .1
-                .clone()
-        };
-        assert_eq!(best_of_seed(7), best_of_seed(7));
-        assert_ne!(best_of_seed(7), best_of_seed(8));
+        let find_results = |seed| run_search(&[vec![0.1, 0.9]], 5, seed, score_on_ridge);
+        assert_eq!(find_results(7), find_results(7));
+        assert_ne!(find_results(7)[0].1, find_results(8)[0].1);
     }
 
     #[test]
-    fn refused_trials_are_not_among_the_results() {
+    fn rejected_trials_are_not_among_the_results() {
         assert_eq!(run_search(&[vec![0.5; 3]], 2, 1, |_| None), []);
         let mut search = Search::new(&[vec![0.5; 3]], 1);
         search.accept_scores([Some(1.0)]);
         assert_eq!(
             search.ranked_results(),
             [(1.0, vec![0.5; 3])],
-            "the trials without a score count as refused"
+            "the trials without a score are rejected"
         );
     }
 
     #[test]
     fn a_search_has_the_predicted_number_of_trials() {
-        let calls = std::cell::Cell::new(0);
+        let scored_count = std::cell::Cell::new(0);
         run_search(&[vec![0.5; 2]], 3, 1, |_| {
-            calls.set(calls.get() + 1);
+            scored_count.set(scored_count.get() + 1);
             Some(0.0)
         });
-        assert_eq!(calls.get(), trial_count(3));
+        assert_eq!(scored_count.get(), trial_count(3));
     }
 }

@@ -1,34 +1,34 @@
-//! The positions of all joints, for pictures of the robot.
+//! The positions of all joints, for drawings of the robot.
 
 use lizard_contact::FORWARD_TURN_SIGN;
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_robot::{LegPlace, Robot};
+use lizard_robot::{LegPoints, Robot};
 
 /// The positions of a robot's joints, mm, in the chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// Shafts of the servos.
+    /// Servo shafts.
     pub shafts: [Vector; 4],
-    /// Tips of the cranks of the head and tail five-bars.
+    /// Crank tips of the head and tail five-bars.
     pub crank_tips: [Vector; 4],
     /// Tips of the arms that carry the sliders.
     pub arm_tips: [Vector; 4],
-    /// End points of head and tail, the joints between their two couplers.
+    /// End points of head and tail: the joints between their two couplers.
     pub ends: [Vector; 2],
     /// The legs, which may lag behind their servos.
-    pub legs: [LegPlace; 4],
+    pub legs: [LegPoints; 4],
 }
 
 impl Shape {
-    /// Computes the joints at servo angles (deg, chassis frame), with legs at these sweeps from neutral (deg, foot
-    /// forward positive), all in servo order; `None` if the loop of a five-bar or slider does not close.
-    pub fn of(robot: &Robot, angles: [f64; 4], leg_sweeps: [f64; 4]) -> Option<Self> {
+    /// Computes the joints from servo angles (deg, chassis frame) and the legs' sweeps from neutral (deg, foot forward
+    /// positive), all in servo order; returns `None` if the loop of a five-bar or slider does not close.
+    pub fn from_angles(robot: &Robot, angles: [f64; 4], leg_sweeps: [f64; 4]) -> Option<Self> {
         let solution = robot.lizard().solve(&angles.into()).ok()?;
-        Some(Self::at_solution(robot, &solution, leg_sweeps))
+        Some(Self::from_solution(robot, &solution, leg_sweeps))
     }
 
-    /// Computes the joints of a solved pose, with legs at these sweeps from neutral (deg, foot forward positive).
-    pub fn at_solution(robot: &Robot, solution: &Solution, leg_sweeps: [f64; 4]) -> Self {
+    /// Computes the joints from a solved pose and the legs' sweeps from neutral (deg, foot forward positive).
+    pub fn from_solution(robot: &Robot, solution: &Solution, leg_sweeps: [f64; 4]) -> Self {
         let shafts = robot.lizard().shafts();
         let crank_tips = solution.crank_tips();
         let angles: [f64; 4] = solution.pose.into();
@@ -46,7 +46,7 @@ impl Shape {
             ends: End::ALL.map(|end| solution.point(end)),
             legs: std::array::from_fn(|i| {
                 let leg_angle = robot.servos()[i].neutral + FORWARD_TURN_SIGN[i] * leg_sweeps[i];
-                robot.legs()[i].place_at(angles[i], leg_angle)
+                robot.legs()[i].points_at(angles[i], leg_angle)
             }),
         }
     }
@@ -61,7 +61,7 @@ mod tests {
     }
 
     fn neutral_shape(robot: &Robot, leg_sweeps: [f64; 4]) -> Shape {
-        Shape::of(robot, robot.neutral_pose().into(), leg_sweeps)
+        Shape::from_angles(robot, robot.neutral_pose().into(), leg_sweeps)
             .expect("every loop closes at neutral")
     }
 
@@ -84,8 +84,7 @@ mod tests {
     #[test]
     fn a_leg_that_lags_behind_its_servo_stretches_its_strut() {
         let robot = paper_robot();
-        let strut_length_of =
-            |leg: LegPlace| (leg.strut_anchors[1] - leg.strut_anchors[0]).length();
+        let strut_length = |leg: LegPoints| (leg.strut_anchors[1] - leg.strut_anchors[0]).length();
         let [rigid_shape, lagging_shape] =
             [[0.0; 4], [6.0; 4]].map(|leg_sweeps| neutral_shape(&robot, leg_sweeps));
         for i in 0..4 {
@@ -95,9 +94,9 @@ mod tests {
                 rigid_leg.strut_anchors[0], lagging_leg.strut_anchors[0],
                 "the servo does not move"
             );
-            assert!((strut_length_of(rigid_leg) - robot.legs()[i].strut_length).abs() < 1e-9);
+            assert!((strut_length(rigid_leg) - robot.legs()[i].strut_length).abs() < 1e-9);
             assert!(
-                (strut_length_of(lagging_leg) - strut_length_of(rigid_leg)).abs() > 1.5,
+                (strut_length(lagging_leg) - strut_length(rigid_leg)).abs() > 1.5,
                 "{lagging_leg:?}"
             );
             assert!(lagging_leg.foot.y > rigid_leg.foot.y + 4.0);
@@ -105,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn at_neutral_each_foot_is_directly_beside_its_hip() {
+    fn each_foot_is_directly_beside_its_hip_at_neutral() {
         let robot = paper_robot();
         let feet = neutral_shape(&robot, [0.0; 4]).legs.map(|leg| leg.foot);
         for (foot, (x, y)) in

@@ -15,22 +15,22 @@ pub struct Tally {
     pub frame_count: u64,
     /// Length of the body's path over the floor, mm.
     pub path_length: f64,
-    /// Distance that each foot slid over the floor, mm.
+    /// Slip distance of each foot on the floor, mm.
     pub slips: [f64; 4],
     /// Largest absolute lag of a leg behind its servo, deg.
     pub max_lag: f64,
-    /// Name and value of the smallest margin; `None` before the first frame whose loops close.
+    /// Check and value of the smallest margin; `None` before the first frame whose loops close.
     pub min_margin: Option<(Check, f64)>,
     /// Smallest and largest slider travel from nominal, mm; `None` before the first frame whose loops close.
     pub stroke_range: Option<[f64; 2]>,
-    /// Highest speed of a servo, deg/s.
+    /// Largest absolute servo speed, deg/s.
     pub max_rate: f64,
-    /// Largest difference between a servo's angle and that of its pulse, deg.
+    /// Largest absolute servo error, deg.
     pub max_error: f64,
 }
 
 impl Tally {
-    /// Creates an empty tally that starts at this place.
+    /// Creates an empty tally of frames that start at `start`.
     pub fn new(start: Place) -> Self {
         Self {
             start,
@@ -52,12 +52,12 @@ impl Tally {
         self.path_length += (end.forward - start.forward).hypot(end.left - start.left);
         self.end = end;
         self.frame_count += 1;
-        let largest_of = |values: [f64; 4], largest: f64| {
-            values.into_iter().map(f64::abs).fold(largest, f64::max)
+        let max_abs = |previous: f64, values: [f64; 4]| {
+            values.into_iter().map(f64::abs).fold(previous, f64::max)
         };
-        self.max_lag = largest_of(state.lags, self.max_lag);
-        self.max_rate = largest_of(state.rates, self.max_rate);
-        self.max_error = largest_of(state.errors, self.max_error);
+        self.max_lag = max_abs(self.max_lag, state.lags);
+        self.max_rate = max_abs(self.max_rate, state.rates);
+        self.max_error = max_abs(self.max_error, state.errors);
         for (sum, slip) in self.slips.iter_mut().zip(state.slips) {
             *sum += slip;
         }
@@ -77,13 +77,13 @@ impl Tally {
         }
     }
 
-    /// The movement of the body, in its frame at the start.
+    /// The body's movement, in the body's frame at the start.
     pub fn travel(&self) -> Travel {
         self.end.travel_from(self.start)
     }
 
     /// Duration of the frames, s.
-    pub fn seconds(&self) -> f64 {
+    pub fn duration_s(&self) -> f64 {
         self.frame_count as f64 * FRAME_S
     }
 }

@@ -1,4 +1,4 @@
-//! Simulation of a robot on a floor, frame by frame, from its servo pulses.
+//! Simulates a robot on a floor, frame by frame, from its servo pulses.
 
 use lizard_contact::{FORWARD_TURN_SIGN, Ground, Place, Walker};
 use lizard_kinematics::wrap;
@@ -15,42 +15,42 @@ use crate::tally::Tally;
 pub struct Twin {
     robot: Robot,
     servo_model: ServoModel,
-    /// Actual sweeps of the servos from neutral, deg, counter-clockwise positive.
+    /// Actual servo sweeps from neutral, deg, counter-clockwise positive.
     sweeps: [f64; 4],
     walker: Walker,
     frame_count: u64,
 }
 
 impl Twin {
-    /// Creates a twin that stands at neutral without pulses, with legs that do not lag.
-    pub fn new(robot: &Robot, model: ServoModel) -> Self {
+    /// Creates a twin that stands at neutral without pulses; its legs do not lag.
+    pub fn new(robot: &Robot, servo_model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
-            servo_model: model,
+            servo_model,
             sweeps: [0.0; 4],
             walker: Walker::new(*robot.ground(), [0.0; 4]),
             frame_count: 0,
         }
     }
 
-    /// Simulates a frame of 20 ms with pulses of these widths, us. `None` is no pulse: the servo does not turn, because
-    /// its gears hold it.
-    pub fn push(&mut self, pulses: [Option<f64>; 4]) -> State {
+    /// Simulates a frame of 20 ms with the given pulse widths, us. A servo with `None` has no pulse and does not turn,
+    /// because its gears hold it.
+    pub fn simulate_pulses(&mut self, widths_us: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
-        let targets = std::array::from_fn(|i| pulses[i].map(|width| servos[i].sweep(width)));
-        self.simulate_frame(targets)
+        let targets = std::array::from_fn(|i| widths_us[i].map(|width| servos[i].sweep(width)));
+        self.simulate_targets(targets)
     }
 
-    /// Simulates a frame of 20 ms with the pulses for these servo angles: deg, chassis frame.
-    pub fn push_angles(&mut self, angles: [f64; 4]) -> State {
+    /// Simulates a frame of 20 ms with the pulses for the given servo angles, deg, chassis frame.
+    pub fn simulate_angles(&mut self, angles: [f64; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| Some(wrap(angles[i] - servos[i].neutral)));
-        self.simulate_frame(targets)
+        self.simulate_targets(targets)
     }
 
-    /// Simulates a frame in which the servos turn towards these sweeps from neutral, deg, counter-clockwise positive;
-    /// `None` for a servo without a pulse.
-    fn simulate_frame(&mut self, targets: [Option<f64>; 4]) -> State {
+    /// Simulates a frame in which the servos turn towards target sweeps from neutral, deg, counter-clockwise positive;
+    /// a servo with `None` has no pulse.
+    fn simulate_targets(&mut self, targets: [Option<f64>; 4]) -> State {
         let previous_sweeps = self.sweeps;
         let servos = self.robot.servos();
         let targets: [Option<f64>; 4] = std::array::from_fn(|i| {
@@ -70,7 +70,7 @@ impl Twin {
                 for i in 0..4 {
                     let Some(target) = targets[i] else { continue };
                     self.sweeps[i] = match self.servo_model {
-                        ServoModel::Unloaded(model) => model.sweep_after_frame(
+                        ServoModel::Unloaded(servo) => servo.compute_end_sweep(
                             previous_sweeps[i],
                             target,
                             servos[i].us_per_degree,
@@ -102,20 +102,20 @@ impl Twin {
                 .positions(self.walker.leg_sweeps())
                 .map(|foot| place.to_floor(foot)),
             slips: slip.slid_distances,
-            loads: slip.loads.map(|share| share * mean_load),
+            loads: slip.loads.map(|fraction| fraction * mean_load),
             margins: solution.map(|solution| solution.margins),
             strokes: solution.map(|solution| [solution.left.s, solution.right.s]),
         }
     }
 
-    /// The robot of this twin.
+    /// The simulated robot.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The current positions of the joints, chassis frame; `None` if the loop of a five-bar or slider does not close.
+    /// Computes the current joint positions, chassis frame; `None` if the loop of a five-bar or slider does not close.
     pub fn shape(&self) -> Option<Shape> {
-        Shape::of(&self.robot, self.angles(), self.leg_sweeps())
+        Shape::from_angles(&self.robot, self.angles(), self.leg_sweeps())
     }
 
     /// The current servo angles, deg, chassis frame.
@@ -123,23 +123,23 @@ impl Twin {
         std::array::from_fn(|i| self.robot.servos()[i].neutral + self.sweeps[i])
     }
 
-    /// The current sweeps of the legs, deg, foot forward positive. A leg may lag behind its servo.
+    /// The current leg sweeps, deg, foot forward positive. A leg may lag behind its servo.
     pub fn leg_sweeps(&self) -> [f64; 4] {
         self.walker.leg_sweeps()
     }
 
-    /// The current model of the floor, the pads and the drive of the legs.
+    /// The current model of floor, pads and leg drive.
     pub fn ground(&self) -> &Ground {
         self.walker.ground()
     }
 
-    /// Changes the floor, the pads and the drive of the legs from the next frame on.
+    /// Changes the floor, the pads and the leg drive from the next frame on.
     pub fn set_ground(&mut self, ground: Ground) {
         self.walker.set_ground(ground);
     }
 
-    /// Simulates two cycles of a gait at full speed from neutral, with the current ground and servos, and returns the
-    /// tally of the second cycle. This twin itself does not move.
+    /// Simulates two cycles of a gait at its nominal rate from neutral, with the current ground and servos, and returns
+    /// the tally of the second cycle. This twin does not move.
     pub fn simulate_cycle(&self, gait: &CheckedGait) -> Tally {
         let mut twin = Self::new(&self.robot, self.servo_model);
         twin.set_ground(*self.ground());
@@ -147,20 +147,20 @@ impl Twin {
         for _ in 0..2 {
             tally = Tally::new(twin.walker.place());
             for (_, phase) in gait.frames() {
-                tally.add(&twin.push_angles(gait.table_angles(phase)));
+                tally.add(&twin.simulate_angles(gait.table_angles(phase)));
             }
         }
         tally
     }
 
-    /// The model of the servos.
+    /// The servo model.
     pub fn servo_model(&self) -> ServoModel {
         self.servo_model
     }
 
-    /// Changes the model of the servos from the next frame on.
-    pub fn set_servo_model(&mut self, model: ServoModel) {
-        self.servo_model = model;
+    /// Changes the servo model from the next frame on.
+    pub fn set_servo_model(&mut self, servo_model: ServoModel) {
+        self.servo_model = servo_model;
     }
 
     /// Moves the robot to another place on the floor.
@@ -168,7 +168,7 @@ impl Twin {
         self.walker.set_place(place);
     }
 
-    /// The sweeps that the legs would have without lag, deg, foot forward positive.
+    /// The leg sweeps without lag, deg, foot forward positive.
     fn unlagged_leg_sweeps(&self) -> [f64; 4] {
         std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * self.sweeps[i])
     }

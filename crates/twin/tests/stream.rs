@@ -1,4 +1,4 @@
-//! Tests of the twin: a gait's frames, simulated one by one, move the robot as predicted for the gait.
+//! Tests of the twin. The frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
 use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
 use lizard_twin::{ServoModel, Tally, Twin, UnloadedServo};
@@ -7,8 +7,8 @@ fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
 }
 
-/// Computes the pulse widths of a gait at a phase, us, from the firmware's table.
-fn pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
+/// Computes a gait's pulse widths at a phase, us, from the firmware's table.
+fn compute_pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Option<f64>; 4] {
     let angles = gait.table_angles(phase);
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
@@ -25,25 +25,25 @@ fn simulate_last_of_four_cycles(
     twin.set_ground(*ground);
     let mut tally = Tally::new(Place::START);
     for _ in 0..4 {
-        let start = twin.push(pulse_widths(
+        let start = twin.simulate_pulses(compute_pulse_widths(
             robot,
             gait,
             gait.frames().next().expect("a gait has a frame").1,
         ));
         tally = Tally::new(start.place);
         for (_, phase) in gait.frames().skip(1) {
-            tally.add(&twin.push(pulse_widths(robot, gait, phase)));
+            tally.add(&twin.simulate_pulses(compute_pulse_widths(robot, gait, phase)));
         }
     }
     tally
 }
 
 #[test]
-fn with_ideal_servos_the_robot_moves_as_predicted_for_the_gait() {
+fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
     let robot = paper_robot();
     let ground_with_springs = Ground {
         drive: Drive {
-            kind: DriveKind::Strut(robot.strut_with(0.5, 0.4)),
+            kind: DriveKind::Strut(robot.strut_with_spring(0.5, 0.4)),
             play: 0.0,
         },
         ..*robot.ground()
@@ -56,42 +56,38 @@ fn with_ideal_servos_the_robot_moves_as_predicted_for_the_gait() {
             let name = gait.name();
             assert!(
                 (travel.forward - expected.forward).abs() < 0.35,
-                "{name} {travel:?} {expected:?}"
+                "{name}: expected {expected:?}, got {travel:?}"
             );
             assert!(
                 (travel.turn - expected.turn).abs() < 0.2,
-                "{name} {travel:?} {expected:?}"
+                "{name}: expected {expected:?}, got {travel:?}"
             );
-            assert!((tally.seconds() - gait.period()).abs() < 0.011, "{name}");
+            assert!((tally.duration_s() - gait.period()).abs() < 0.011, "{name}");
         }
     }
 }
 
 #[test]
-fn a_dead_band_shortens_the_walk_by_its_share_of_the_stroke() {
+fn a_dead_band_shortens_the_walk_by_its_fraction_of_the_stroke() {
     let robot = paper_robot();
-    let walk_forward_with = |model| {
+    let [ideal_forward, sg90_forward] = [ServoModel::Ideal, ServoModel::SG90].map(|model| {
         simulate_last_of_four_cycles(&robot, "walk", model, robot.ground())
             .travel()
             .forward
-    };
-    let (ideal_forward, sg90_forward) = (
-        walk_forward_with(ServoModel::Ideal),
-        walk_forward_with(ServoModel::SG90),
-    );
+    });
     // The dead band takes 1 of 40 degrees when a leg reverses.
     assert!(
         (sg90_forward / ideal_forward - 39.0 / 40.0).abs() < 0.01,
-        "{sg90_forward} {ideal_forward}"
+        "{sg90_forward} mm with SG-90 servos, {ideal_forward} mm with ideal servos"
     );
 }
 
 #[test]
-fn servos_that_are_too_slow_for_a_gait_shorten_its_stride() {
+fn servos_that_are_too_slow_for_a_gait_shorten_the_stride() {
     let robot = paper_robot();
     let slow_model = ServoModel::Unloaded(UnloadedServo {
-        rate: 120.0,
-        dead_band: 0.0,
+        max_rate_deg_per_s: 120.0,
+        dead_band_us: 0.0,
     });
     let tally = simulate_last_of_four_cycles(&robot, "walk", slow_model, robot.ground());
     assert!(
@@ -102,30 +98,30 @@ fn servos_that_are_too_slow_for_a_gait_shorten_its_stride() {
 }
 
 #[test]
-fn three_feet_do_not_slip_while_one_swings() {
+fn three_feet_do_not_slip_while_the_fourth_swings() {
     let robot = paper_robot();
     let crawl = robot.gait("crawl").expect("paper.toml has the gait");
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
     for (seconds, phase) in crawl.frames() {
-        let state = twin.push(pulse_widths(&robot, crawl, phase));
+        let state = twin.simulate_pulses(compute_pulse_widths(&robot, crawl, phase));
         // In the middle of the second fifth of the cycle, only the left hind leg swings.
         if (0.24..0.36).contains(&seconds) {
             let is_still = state.slips.map(|distance| distance < 0.01);
-            assert_eq!(is_still, [true, true, true, false], "at {seconds}");
+            assert_eq!(is_still, [true, true, true, false], "at {seconds} s");
         }
     }
 }
 
 #[test]
-fn a_robot_without_pulses_stays_where_it_is() {
+fn a_robot_without_pulses_does_not_move() {
     let robot = paper_robot();
     let walk = robot.gait("walk").expect("the robot has the gait");
     let mut twin = Twin::new(&robot, ServoModel::SG90);
     for (_, phase) in walk.frames().take(20) {
-        twin.push(pulse_widths(&robot, walk, phase));
+        twin.simulate_pulses(compute_pulse_widths(&robot, walk, phase));
     }
-    let state_before = (twin.angles(), twin.push([None; 4]).place);
-    let state_after = twin.push([None; 4]);
+    let state_before = (twin.angles(), twin.simulate_pulses([None; 4]).place);
+    let state_after = twin.simulate_pulses([None; 4]);
     assert_eq!((state_after.angles, state_after.place), state_before);
     assert_eq!(
         (state_after.has_pulse, state_after.slips, state_after.frame),
@@ -134,39 +130,42 @@ fn a_robot_without_pulses_stays_where_it_is() {
 }
 
 #[test]
-fn target_angles_move_the_robot_like_their_pulses() {
+fn simulate_angles_moves_the_robot_like_the_equivalent_pulses() {
     let robot =
         Robot::parse(include_str!("../../../robots/unequal.toml")).expect("unequal.toml is valid");
     let walk = robot.gait("walk").expect("the robot has the gait");
     let mut twins = [0, 1].map(|_| Twin::new(&robot, ServoModel::SG90));
     for (_, phase) in walk.frames() {
-        let pulse_state = twins[0].push(pulse_widths(&robot, walk, phase));
-        let angle_state = twins[1].push_angles(walk.table_angles(phase));
+        let pulse_state = twins[0].simulate_pulses(compute_pulse_widths(&robot, walk, phase));
+        let angle_state = twins[1].simulate_angles(walk.table_angles(phase));
         for i in 0..4 {
             assert!((pulse_state.angles[i] - angle_state.angles[i]).abs() < 1e-9);
         }
         let forward_positions = [pulse_state.place, angle_state.place].map(|place| place.forward);
         assert!(
             (forward_positions[0] - forward_positions[1]).abs() < 1e-6,
-            "{forward_positions:?}"
+            "forward positions {forward_positions:?} mm"
         );
     }
 }
 
 #[test]
-fn a_simulated_cycle_matches_the_sum_of_its_frames() {
+fn simulate_cycle_matches_the_sum_of_its_frames() {
     let robot = paper_robot();
     for name in ["walk", "trot", "left"] {
         let gait = robot.gait(name).expect("paper.toml has the gait");
-        let framed_travel =
+        let frame_travel =
             simulate_last_of_four_cycles(&robot, name, ServoModel::SG90, robot.ground()).travel();
         let twin = Twin::new(&robot, ServoModel::SG90);
         let cycle_travel = twin.simulate_cycle(gait).travel();
-        let error = (cycle_travel.forward - framed_travel.forward).abs();
-        assert!(error < 0.3, "{name} {cycle_travel:?} {framed_travel:?}");
+        let message = format!("{name}: frames {frame_travel:?}, cycle {cycle_travel:?}");
         assert!(
-            (cycle_travel.turn - framed_travel.turn).abs() < 0.2,
-            "{name}"
+            (cycle_travel.forward - frame_travel.forward).abs() < 0.3,
+            "{message}"
+        );
+        assert!(
+            (cycle_travel.turn - frame_travel.turn).abs() < 0.2,
+            "{message}"
         );
         assert_eq!(
             twin.angles(),
@@ -177,9 +176,9 @@ fn a_simulated_cycle_matches_the_sum_of_its_frames() {
 }
 
 #[test]
-fn a_pulse_beyond_a_servos_travel_is_clamped_to_its_end() {
+fn a_pulse_beyond_a_servos_travel_moves_the_servo_to_the_end_of_the_travel() {
     let robot = paper_robot();
     let mut twin = Twin::new(&robot, ServoModel::Ideal);
-    let state = twin.push([Some(9000.0), None, None, None]);
+    let state = twin.simulate_pulses([Some(9000.0), None, None, None]);
     assert_eq!(state.angles[0], robot.servos()[0].neutral + 90.0);
 }

@@ -1,46 +1,46 @@
-//! The serial line to a board.
+//! The serial connection to a board.
 
 use std::time::Duration;
 
-/// A connection to a board. Times are those of the board: a simulated one may run slower or faster than this machine.
+/// A connection to a board. All times are board time: a simulated board may run slower or faster than this machine.
 pub trait Board {
-    /// Resets the chip, which starts its boot loader, and sets the baud rate of the line.
+    /// Resets the chip, which starts the boot loader, and sets the baud rate.
     ///
     /// # Errors
-    /// Fails if the connection is gone.
+    /// Fails if the connection is lost.
     fn reset(&mut self, baud: u32) -> impl Future<Output = Result<(), BoardError>>;
 
     /// Sends bytes.
     ///
     /// # Errors
-    /// Fails if the bytes cannot be sent, or the connection is gone.
+    /// Fails if the bytes cannot be sent, or the connection is lost.
     fn write(&mut self, bytes: &[u8]) -> impl Future<Output = Result<(), BoardError>>;
 
-    /// Fills `bytes`, and reads no more, because further bytes may be for another reader. Returns the number of bytes
-    /// that have arrived within the time limit.
+    /// Reads until `bytes` is full or the time limit has passed; returns the number of bytes read. Never reads further
+    /// bytes, since they may be for another reader.
     ///
     /// # Errors
-    /// Fails if the connection is gone.
+    /// Fails if the connection is lost.
     fn read(
         &mut self,
         bytes: &mut [u8],
         time_limit: Duration,
     ) -> impl Future<Output = Result<usize, BoardError>>;
 
-    /// Discards all bytes received within the next `duration`.
+    /// Discards all bytes that arrive within the next `duration`.
     ///
     /// # Errors
-    /// Fails if the connection is gone.
+    /// Fails if the connection is lost.
     fn discard(&mut self, duration: Duration) -> impl Future<Output = Result<(), BoardError>>;
 }
 
-/// The reason why a connection failed.
+/// The error of a failed connection.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// Bytes could not be sent in time.
-    #[error("the board takes no bytes")]
+    #[error("the board accepts no bytes")]
     Busy,
-    /// The port has vanished.
+    /// The port has disappeared.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
     /// Any other error.

@@ -1,17 +1,17 @@
-//! The chips of boards, identified by their signatures. An image for one type of chip runs on no other type.
+//! Board chips, identified by their signatures. An image built for one chip type does not run on another.
 
 use std::fmt;
 
-/// The signature of a chip, as its boot loader reports it (data sheets, "Signature Bytes").
+/// A chip's signature, as the boot loader reports it (data sheets, "Signature Bytes").
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Chip(pub [u8; 3]);
 
 impl Chip {
-    /// The chip of a UNO.
+    /// The ATmega328P of an Arduino UNO.
     pub const ATMEGA328P: Self = Self([0x1e, 0x95, 0x0f]);
 
-    /// The chip's name; `None` for a chip that boards like a UNO do not have.
-    fn name(self) -> Option<&'static str> {
+    /// The chip type with its article; `None` if the signature is not in the list.
+    fn description(self) -> Option<&'static str> {
         Some(match self.0 {
             [0x1e, 0x95, 0x0f] => "an ATmega328P",
             [0x1e, 0x95, 0x14] => "an ATmega328, not an ATmega328P",
@@ -28,7 +28,7 @@ impl Chip {
 impl fmt::Display for Chip {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [a, b, c] = self.0;
-        let name = self.name().unwrap_or("unknown");
-        write!(f, "{name} (signature {a:02X} {b:02X} {c:02X})")
+        let description = self.description().unwrap_or("of an unknown type");
+        write!(f, "{description} (signature {a:02X} {b:02X} {c:02X})")
     }
 }

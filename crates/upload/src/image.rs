@@ -1,32 +1,32 @@
-//! An image for the flash of a UNO: code and robot section, or a robot section alone.
+//! An image for a UNO's flash: code and robot section, or a robot section alone.
 //!
-//! Flash is written in pages. The boot loader in the last 512 bytes of flash writes all other pages but
-//! cannot write itself, so an image ends before it.
+//! Flash is written in pages. The boot loader in the last 512 bytes of flash cannot write itself, so an image ends
+//! before the boot loader.
 
 use std::ops::Range;
 
 use ihex::Record;
 use lizard_core::numbers::section::START_ADDRESS;
 
-/// Number of bytes of a page, which the chip writes at once (ATmega328P data sheet, table 27-7: 64 words).
+/// Number of bytes in a page, which the chip writes as a whole (ATmega328P data sheet, table 27-7: 64 words).
 pub const PAGE_BYTES: usize = 128;
 /// The address of a UNO's boot loader.
 pub const BOOT_ADDRESS: usize = 0x7e00;
-/// The address of a Nano's boot section (the fuses of Arduino's boards.txt: 2 KB). The chip
-/// starts there, even if the boot loader is shorter.
+/// The address of a Nano's boot section, which has 2 KB according to the fuses in Arduino's boards.txt. The chip starts
+/// there, even if the boot loader is shorter.
 pub const NANO_BOOT_ADDRESS: usize = 0x7800;
-/// The value of an erased byte of flash.
+/// The value of an erased flash byte.
 pub const BLANK: u8 = 0xff;
 
-/// Number of data bytes in a line of Intel HEX, as avr-objcopy writes it.
+/// Number of data bytes in an Intel HEX line, as avr-objcopy writes it.
 const LINE_BYTES: usize = 16;
 
 /// The firmware with its robot, or a robot alone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
-    /// Address of the first byte, which is also the first of a page.
+    /// Address of the first byte, which begins a page.
     start_address: usize,
-    /// The bytes from that address on.
+    /// The bytes from the start address on.
     bytes: Vec<u8>,
 }
 
@@ -38,7 +38,7 @@ const _: () = assert!(
     "the robot's section starts at a page"
 );
 
-/// A page of flash that an image fills completely or in part.
+/// A flash page that an image fills completely or in part.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Page {
     /// The address of the page's first byte.
@@ -47,17 +47,17 @@ pub struct Page {
     pub bytes: [u8; PAGE_BYTES],
 }
 
-/// The reason why bytes are not a valid image.
+/// The error of bytes that are not a valid image.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// There is no code at address 0, where the chip starts.
-    #[error("there is no code at address 0, where the chip starts")]
+    #[error("no code at address 0, where the chip starts")]
     NoStart,
     /// The robot's section is empty.
-    #[error("there is no robot")]
+    #[error("the robot's section is empty")]
     NoRobot,
     /// The image reaches into the boot loader.
-    #[error("the firmware has {0} bytes; {BOOT_ADDRESS} fit before the boot loader")]
+    #[error("the firmware has {0} bytes, but at most {BOOT_ADDRESS} fit before the boot loader")]
     TooLong(usize),
     /// A line is not Intel HEX.
     #[error("line {line} is not Intel HEX: {reason}")]
@@ -68,10 +68,10 @@ pub enum ImageError {
         reason: ihex::ReaderError,
     },
     /// The end record is missing, so other lines may be missing, too.
-    #[error("the HEX file has no end: only a part of it is there")]
+    #[error("the HEX file is incomplete: its end record is missing")]
     NoEnd,
     /// Two lines give different values to the same address.
-    #[error("line {line} gives another value to address {address:#06x}")]
+    #[error("line {line} gives address {address:#06x} a second, different value")]
     Conflict {
         /// The line's number, counted from 1.
         line: usize,
@@ -80,8 +80,8 @@ pub enum ImageError {
     },
     /// A line has data at or beyond the boot loader, which cannot write itself.
     #[error(
-        "line {line} is for address {address:#06x}; the boot loader, which is never written, \
-         begins at {BOOT_ADDRESS:#06x}"
+        "line {line}: address {address:#06x} must be below {BOOT_ADDRESS:#06x}, where the boot \
+         loader begins"
     )]
     InBootLoader {
         /// The line's number, counted from 1.
@@ -92,10 +92,10 @@ pub enum ImageError {
 }
 
 impl Image {
-    /// An image of these bytes, from address 0 on.
+    /// Creates an image of `bytes` that starts at address 0.
     ///
     /// # Errors
-    /// Fails if there are no bytes, or too many.
+    /// Fails if `bytes` is empty or too long.
     pub fn new(bytes: Vec<u8>) -> Result<Self, ImageError> {
         match bytes.len() {
             0 => Err(ImageError::NoStart),
@@ -107,10 +107,10 @@ impl Image {
         }
     }
 
-    /// The image of a robot: the firmware's code, in Intel HEX, followed by the robot's section.
+    /// Creates the image of the firmware's code, in Intel HEX, followed by the robot's section.
     ///
     /// # Errors
-    /// Fails if the code is not an image that ends before the section, or if the section is too long.
+    /// Fails if `code` is not an image that ends before the section, or if the section is too long.
     pub fn firmware(code: &str, section: &[u8]) -> Result<Self, ImageError> {
         let mut bytes = Self::from_hex(code)?.bytes;
         if bytes.len() > ROBOT_ADDRESS {
@@ -121,10 +121,10 @@ impl Image {
         Self::new(bytes)
     }
 
-    /// A robot's section without code.
+    /// Creates the image of a robot's section without code.
     ///
     /// # Errors
-    /// Fails if the section has no bytes, or too many.
+    /// Fails if the section is empty or too long.
     pub fn robot_alone(section: Vec<u8>) -> Result<Self, ImageError> {
         match ROBOT_ADDRESS + section.len() {
             ROBOT_ADDRESS => Err(ImageError::NoRobot),
@@ -141,11 +141,11 @@ impl Image {
         self.start_address == ROBOT_ADDRESS
     }
 
-    /// Reads Intel HEX.
+    /// Parses Intel HEX.
     ///
     /// # Errors
-    /// Fails if the text is not complete Intel HEX, contradicts itself, has no code at address 0,
-    /// or reaches into the boot loader.
+    /// Fails if the text is not complete Intel HEX, contradicts itself, has no code at address 0, or reaches into the
+    /// boot loader.
     pub fn from_hex(text: &str) -> Result<Self, ImageError> {
         let mut flash = vec![None; BOOT_ADDRESS];
         let mut base_address = 0;
@@ -160,7 +160,7 @@ impl Image {
             match record {
                 Record::Data { offset, value } => {
                     let start = base_address + usize::from(offset);
-                    put_record(&mut flash, start, &value, line)?;
+                    copy_record(&mut flash, start, &value, line)?;
                 }
                 Record::EndOfFile => has_ended = true,
                 Record::ExtendedLinearAddress(upper) => base_address = usize::from(upper) << 16,
@@ -180,7 +180,7 @@ impl Image {
         Self::new(bytes.map(|byte| byte.unwrap_or(BLANK)).collect())
     }
 
-    /// The image as Intel HEX.
+    /// Formats the image as Intel HEX.
     ///
     /// # Panics
     /// Never: all addresses have 16 bits, and lines are short.
@@ -197,41 +197,38 @@ impl Image {
         text.expect("the lines are short and one end record follows them")
     }
 
-    /// The image's bytes as flash holds them, from first to last.
+    /// The image's bytes in the order of their addresses.
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// The address after the last byte.
-    pub fn end(&self) -> usize {
+    pub fn end_address(&self) -> usize {
         self.start_address + self.bytes.len()
     }
 
-    /// The image's pages in the order of their addresses.
+    /// Splits the image into pages, in the order of their addresses.
     pub fn pages(&self) -> Vec<Page> {
-        let page_of = |(index, chunk): (usize, &[u8])| {
+        let chunks = self.bytes.chunks(PAGE_BYTES).enumerate();
+        let pages = chunks.map(|(index, chunk)| {
             let mut bytes = [BLANK; PAGE_BYTES];
             bytes[..chunk.len()].copy_from_slice(chunk);
             let address = self.start_address + index * PAGE_BYTES;
             Page { address, bytes }
-        };
-        self.bytes
-            .chunks(PAGE_BYTES)
-            .enumerate()
-            .map(page_of)
-            .collect()
+        });
+        pages.collect()
     }
 }
 
 impl Page {
-    /// The addresses of the page in flash.
+    /// The page's addresses in flash.
     pub fn range(&self) -> Range<usize> {
         self.address..self.address + PAGE_BYTES
     }
 }
 
-/// Puts the bytes of a line's record into `flash`, from address `start` on.
-fn put_record(
+/// Copies the bytes of a line's record into `flash`, from address `start` on.
+fn copy_record(
     flash: &mut [Option<u8>],
     start: usize,
     bytes: &[u8],
@@ -262,14 +259,14 @@ mod tests {
 :0400100001020304E2\n\
 :00000001FF\n";
 
-    fn error_message(text: &str) -> String {
+    fn parse_error(text: &str) -> String {
         Image::from_hex(text)
             .expect_err("the text is not an image")
             .to_string()
     }
 
     #[test]
-    fn an_image_from_hex_starts_at_address_0_and_is_blank_in_the_gaps() {
+    fn an_image_from_hex_starts_at_address_0_and_is_blank_in_gaps() {
         let image = Image::from_hex(HEX).expect("the text is an image");
         assert_eq!(image.bytes().len(), 20);
         assert_eq!(image.bytes()[..3], [0x0c, 0x94, 0x34]);
@@ -282,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn an_image_written_as_hex_and_read_back_is_the_same() {
+    fn from_hex_reverses_to_hex() {
         let bytes: Vec<u8> = (0..1000).map(|index| (index * 7) as u8).collect();
         let image = Image::new(bytes).expect("the image fits");
         let text = image.to_hex();
@@ -308,7 +305,7 @@ mod tests {
         let robot = Image::robot_alone(vec![5; 130]).expect("the image fits");
         let addresses: Vec<usize> = robot.pages().iter().map(|page| page.address).collect();
         assert_eq!(addresses, [0x6e00, 0x6e80]);
-        assert_eq!(robot.end(), 0x6e82);
+        assert_eq!(robot.end_address(), 0x6e82);
         assert!(robot.is_robot_alone());
         assert!(robot.to_hex().starts_with(":106E0000"));
         assert_eq!(Image::robot_alone(Vec::new()), Err(ImageError::NoRobot));
@@ -317,20 +314,20 @@ mod tests {
     }
 
     #[test]
-    fn an_image_that_does_not_fit_is_refused_with_its_size() {
+    fn the_error_for_an_image_that_does_not_fit_has_its_size() {
         let error = Image::new(vec![0; 32_257]).expect_err("the image is too long");
         assert_eq!(
             error.to_string(),
-            "the firmware has 32257 bytes; 32256 fit before the boot loader"
+            "the firmware has 32257 bytes, but at most 32256 fit before the boot loader"
         );
         assert!(Image::new(vec![0; 32_256]).is_ok());
         assert_eq!(Image::new(Vec::new()), Err(ImageError::NoStart));
     }
 
     #[test]
-    fn an_invalid_line_of_a_hex_file_is_refused_with_its_number() {
+    fn the_error_for_an_invalid_hex_line_has_its_number() {
         let error_with_second_line =
-            |line: &str| error_message(&HEX.replacen(":0400100001020304E2", line, 1));
+            |line: &str| parse_error(&HEX.replacen(":0400100001020304E2", line, 1));
         assert!(
             error_with_second_line(":0400100001020304E3")
                 .starts_with("line 2 is not Intel HEX: invalid check")
@@ -340,31 +337,29 @@ mod tests {
         );
         assert_eq!(
             error_with_second_line(":010004009566\n"),
-            "line 2 gives another value to address 0x0004"
+            "line 2 gives address 0x0004 a second, different value"
         );
         assert_eq!(
             error_with_second_line(":027DFF0001027F"),
-            "line 2 is for address 0x7e00; the boot loader, which is never written, begins at \
-             0x7e00"
+            "line 2: address 0x7e00 must be below 0x7e00, where the boot loader begins"
         );
-        // A file for a larger chip has data beyond the first 64 KiB.
+        // A file for a larger chip may have data beyond the first 64 KiB.
         assert_eq!(
             error_with_second_line(":020000040001F9\n:0100000005FA"),
-            "line 3 is for address 0x10000; the boot loader, which is never written, begins at \
-             0x7e00"
+            "line 3: address 0x10000 must be below 0x7e00, where the boot loader begins"
         );
     }
 
     #[test]
-    fn a_hex_file_without_its_end_or_without_code_at_address_0_is_refused() {
+    fn a_hex_file_needs_an_end_record_and_code_at_address_0() {
         let hex_without_end = HEX.lines().take(2).collect::<Vec<_>>().join("\n");
         assert_eq!(
-            error_message(&hex_without_end),
-            "the HEX file has no end: only a part of it is there"
+            parse_error(&hex_without_end),
+            "the HEX file is incomplete: its end record is missing"
         );
         assert_eq!(
-            error_message(":0100100005EA\n:00000001FF"),
-            "there is no code at address 0, where the chip starts"
+            parse_error(":0100100005EA\n:00000001FF"),
+            "no code at address 0, where the chip starts"
         );
     }
 }

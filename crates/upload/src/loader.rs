@@ -1,15 +1,14 @@
-//! The protocol of the boot loaders of UNO and Nano: STK500, version 1.
+//! The protocol of the boot loaders on UNO and Nano: STK500, version 1.
 //!
-//! After a reset by its button or by the DTR line of its USB serial converter, the chip starts in the boot loader. It
-//! blinks, then listens for about a second, and starts the program in flash if no command arrives. One or a few bytes
-//! that it does not understand make it start that program at once; then only another reset starts the boot loader
-//! again. Commands and answers have no checksums, so written pages must be read back.
+//! After a reset by its button or by the DTR line of its USB serial converter, the chip starts in the boot loader. The
+//! boot loader blinks, then listens for about a second, and starts the program in flash if no command arrives. One or a
+//! few invalid bytes make it start the program at once; then only another reset starts the boot loader again. Commands
+//! and answers have no checksums, so written pages must be read back.
 //!
-//! There are two such boot loaders. Only the baud rate at which a board answers shows which one it has: see
-//! [`LoaderKind`].
+//! There are two kinds of boot loader ([`LoaderKind`]). Only the baud rate at which a board answers shows its kind.
 //!
-//! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4, the UNO's loader, and
-//! ATmegaBOOT_168.c, the Nano's until 2018, for the timing and for the commands that they do not support.
+//! Sources: Atmel application note AVR061 for the commands; optiboot.c, version 4.4 (UNO), and ATmegaBOOT_168.c (Nano
+//! until 2018) for the timing and for unsupported commands.
 
 use std::time::Duration;
 
@@ -28,20 +27,20 @@ const READ_PAGE: u8 = 0x74;
 const READ_SIGNATURE: u8 = 0x75;
 /// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
-/// Largest number of calls, which are requests to synchronise, after one reset.
+/// Largest number of calls (requests to synchronise) after one reset.
 const MAX_CALLS: usize = 5;
 /// Largest number of stray bytes before the answer to a call: about as many as the line carries in [`CALL_TIME`].
 const MAX_STRAY_BYTES: usize = 1300;
 
-/// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and
-/// half a command makes it give up.
+/// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and a
+/// partial command makes it start the program.
 const BLINK_TIME: Duration = Duration::from_millis(400);
 /// Time limit for each byte of the answer to a call.
 const CALL_TIME: Duration = Duration::from_millis(110);
 /// Time after the first answer in which late answers to earlier calls are discarded.
 const DRAIN_TIME: Duration = Duration::from_millis(40);
-/// Time limit for the answer to any other command. Writing a page takes about 20 ms, but a busy machine may deliver the
-/// answer a second later.
+/// Time limit for the answer to any other command. Writing a page takes about 20 ms, but on a busy machine the answer
+/// may arrive a second later.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
 
 /// A kind of boot loader.
@@ -49,13 +48,13 @@ const ANSWER_TIME: Duration = Duration::from_secs(2);
 pub enum LoaderKind {
     /// The boot loader of UNOs, and of Nanos since 2018.
     Optiboot,
-    /// The boot loader of older Nanos and of many copies of them. It starts the program 1.5 s after the last byte,
-    /// even after the command to leave.
+    /// The boot loader of older Nanos and of many clones. It starts the program 1.5 s after the last byte, even after
+    /// the command to leave.
     AtmegaBoot,
 }
 
 impl LoaderKind {
-    /// The baud rate of the serial line.
+    /// The baud rate of the serial connection.
     pub fn baud(self) -> u32 {
         match self {
             Self::Optiboot => 115_200,
@@ -72,13 +71,13 @@ impl LoaderKind {
     }
 }
 
-/// The reason why a command failed.
+/// The error of a failed boot loader command.
 #[derive(Debug, thiserror::Error)]
 pub enum LoaderError {
-    /// No answer within the time limit, or only part of one.
+    /// No answer, or an incomplete one, within the time limit.
     #[error("the board does not answer")]
     Silent,
-    /// An answer of the wrong form.
+    /// An answer in the wrong format.
     #[error("the board's answers are garbled")]
     Garbled,
     /// The connection failed.
@@ -110,23 +109,23 @@ pub struct Loader<B> {
 }
 
 impl<B: Board> Loader<B> {
-    /// Creates a client; nothing is sent before [`Loader::call`].
+    /// Creates a client; sends nothing before [`Loader::reset_and_call`].
     pub fn new(board: B) -> Self {
         Self { board }
     }
 
-    /// Returns the connection; bytes that were not read stay in it.
+    /// Returns the connection, with all bytes that were not read.
     pub fn into_board(self) -> B {
         self.board
     }
 
-    /// Resets the board and calls a boot loader of this kind until it answers.
+    /// Resets the board and calls its boot loader until it answers.
     ///
     /// # Errors
     /// Returns [`LoaderError::Silent`] if no loader answers, and another [`LoaderError`] if the connection fails.
-    pub async fn call(&mut self, kind: LoaderKind) -> Result<(), LoaderError> {
+    pub async fn reset_and_call(&mut self, kind: LoaderKind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud()).await?;
-        // The last output of the program that ran before the reset also arrives in this time.
+        // The last output of the old program also arrives in this time.
         self.board.discard(BLINK_TIME).await?;
         for _ in 0..MAX_CALLS {
             self.board.write(&[GET_SYNC, CRC_EOP]).await?;
@@ -147,7 +146,7 @@ impl<B: Board> Loader<B> {
         Ok(signature)
     }
 
-    /// Reads a page of flash; `address` is that of its first byte.
+    /// Reads a page of flash that starts at `address`.
     ///
     /// # Errors
     /// See [`LoaderError`].
@@ -159,7 +158,7 @@ impl<B: Board> Loader<B> {
         Ok(page)
     }
 
-    /// Erases and writes a page of flash.
+    /// Erases and writes a page of flash that starts at `address`.
     ///
     /// # Errors
     /// See [`LoaderError`].
@@ -174,7 +173,7 @@ impl<B: Board> Loader<B> {
             .await
     }
 
-    /// Ends the boot loader, which then starts the program in flash.
+    /// Makes the boot loader start the program in flash.
     ///
     /// # Errors
     /// See [`LoaderError`].
@@ -182,7 +181,7 @@ impl<B: Board> Loader<B> {
         self.send_command(&[LEAVE], &mut []).await
     }
 
-    /// Sets the address of the next page. The protocol counts it in words of two bytes.
+    /// Sets the address of the next page. The protocol counts addresses in words of two bytes.
     async fn set_address(&mut self, address: usize) -> Result<(), LoaderError> {
         let [low, high] = ((address / 2) as u16).to_le_bytes();
         self.send_command(&[LOAD_ADDRESS, low, high], &mut []).await
@@ -203,7 +202,7 @@ impl<B: Board> Loader<B> {
         }
     }
 
-    /// Waits for [`IN_SYNC`] followed by [`OK`], after any stray bytes. Returns false if nothing arrives in time, or
+    /// Waits for [`IN_SYNC`] followed by [`OK`], after any stray bytes. Returns false if no byte arrives in time, or if
     /// too many stray bytes arrive.
     async fn wait_for_sync(&mut self) -> Result<bool, LoaderError> {
         let mut previous_byte = 0;

@@ -1,45 +1,45 @@
-//! The model of a board, and the part of flash that is free for an image.
+//! A board's model, and the flash that it leaves free for an image.
 //!
-//! An Arduino Nano has the UNO's chip and runs the UNO's firmware. But its boot section has 2 KB (Arduino's
-//! boards.txt: high fuse 0xDA), while that of a UNO has 512 bytes, and the chip starts at the first byte of that
-//! section. Code written into it would be started as if it were a boot loader, and only a programmer wired to the
-//! pins could repair that. Boot loaders do not report the fuses. An old Nano is recognised by its baud rate; a newer
-//! one answers like a UNO, and only its USB chip, if anything, distinguishes it.
+//! An Arduino Nano has the UNO's chip and runs the UNO's firmware. However, its boot section has 2 KB (high fuse 0xDA
+//! in Arduino's boards.txt) instead of 512 bytes, and the chip starts at the first byte of the boot section. Code
+//! written there would be started as a boot loader, and only a programmer wired to the pins could repair the board.
+//! Boot loaders do not report the fuses. An old Nano is recognised by its baud rate; a newer Nano answers like a UNO,
+//! and only its USB chip may distinguish it.
 
 use crate::image::{BOOT_ADDRESS, Image, NANO_BOOT_ADDRESS};
 use crate::loader::LoaderKind;
 
-/// A board's model, as named by the user.
+/// A board's model, chosen by the user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Model {
-    /// An Arduino UNO, or a copy of it
+    /// An Arduino UNO or a clone
     Uno,
-    /// An Arduino Nano, or a copy of it
+    /// An Arduino Nano or a clone
     Nano,
 }
 
 /// The facts known about a board before its boot loader is contacted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Target {
-    /// The model that the user has named.
+    /// The model that the user has chosen.
     pub model: Option<Model>,
-    /// True if the board has a USB chip that both UNOs and Nanos have.
+    /// True if the board's USB chip is used on both UNOs and Nanos.
     pub may_be_nano: bool,
 }
 
 /// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{} bytes of flash are needed, and a Nano has {NANO_BOOT_ADDRESS} before its boot section{}. \
+#[error("{} bytes of flash are needed, but a Nano has only {NANO_BOOT_ADDRESS} before its boot section{}. \
          Nothing was written", .end_address, if *.is_in_doubt {
-    "; this board may be one, because of its USB chip"
+    "; according to its USB chip, this board may be a Nano"
 } else {
     ". Gaits can be left out of robot.toml until it fits"
 })]
 pub struct ImageTooLong {
     /// The address after the image's last byte.
     end_address: usize,
-    /// True if the board may also be a UNO.
+    /// True if the board may also be a UNO, which has enough room.
     is_in_doubt: bool,
 }
 
@@ -51,7 +51,7 @@ impl ImageTooLong {
 }
 
 impl Target {
-    /// The boot loaders that the board may have, in the order in which they are tried.
+    /// The boot loaders that the board may have, in the order of the attempts.
     pub fn loaders(self) -> &'static [LoaderKind] {
         match self.model {
             Some(Model::Uno) => &[LoaderKind::Optiboot],
@@ -59,10 +59,10 @@ impl Target {
         }
     }
 
-    /// Checks that an image does not reach into the boot section of a board whose loader of this kind has answered.
+    /// Checks that an image does not reach into the boot section of the board, given the kind of its boot loader.
     ///
     /// # Errors
-    /// Fails if the board has too little room, or may have too little.
+    /// Fails if the board has too little room, or may have too little room.
     pub fn check_room(self, image: &Image, loader: LoaderKind) -> Result<(), ImageTooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == LoaderKind::AtmegaBoot;
         let is_in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
@@ -71,10 +71,10 @@ impl Target {
         } else {
             BOOT_ADDRESS
         };
-        let end = image.end();
-        if end > room {
+        let end_address = image.end_address();
+        if end_address > room {
             return Err(ImageTooLong {
-                end_address: end,
+                end_address,
                 is_in_doubt,
             });
         }

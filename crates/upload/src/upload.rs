@@ -1,16 +1,16 @@
 //! Writes an image to a board in an order in which an interruption is never dangerous.
 //!
-//! A cable may be pulled at any moment, and the chip then starts whatever is in flash; half a program may drive the
-//! servos anywhere. So, before code is changed, the page where the program starts is replaced by a loop that does
-//! nothing: pins then stay inputs, and servos get no pulses. Then the other pages are written and read back,
-//! and finally the first page is written.
+//! A cable may be pulled at any moment, and the chip then starts whatever is in flash; an incomplete program may move
+//! the servos anywhere. Therefore, before any code changes, an idle loop replaces the page where the program starts:
+//! pins then stay inputs, and servos get no pulses. Next, the other pages are written and read back. The first page is
+//! written last.
 //!
-//! A robot alone is written in the same way: the first page of its section is blanked first, and written last. The
-//! firmware then finds either a valid robot or none; without one it reports a fault and moves no servo. Since the
-//! code stays, it must be code that can read this robot: its version mark ([`lizard_core::numbers::mark`]) is checked
+//! A robot alone is written in the same way: the first page of its section is blanked first and written last. The
+//! firmware then finds a valid robot or none; without a robot, it reports a fault and moves no servo. Since the code
+//! stays, its version mark ([`lizard_core::numbers::mark`]) must show that it can read this robot; this is checked
 //! before anything is written.
 //!
-//! Pages that are already correct are not written: this saves time, and flash wears out (10 000 writes, ATmega328P
+//! Pages that are already correct are not written: this saves time and wear (flash endures 10 000 writes, ATmega328P
 //! data sheet, "Features").
 
 use std::fmt;
@@ -26,13 +26,13 @@ use crate::image::{BLANK, BOOT_ADDRESS, Image, PAGE_BYTES, Page};
 use crate::loader::{Loader, LoaderError, LoaderKind};
 use crate::target::{ImageTooLong, Target};
 
-/// Largest number of attempts, each after a reset. They alternate between the baud rates of the boot loaders until one
-/// answers.
+/// Largest number of attempts, each after a reset. The attempts alternate between the boot loaders' baud rates until a
+/// boot loader answers.
 const MAX_ATTEMPTS: usize = 4;
 /// Index of the page where a robot's section begins.
 const ROBOT_PAGE_INDEX: usize = START_ADDRESS as usize / PAGE_BYTES;
 
-/// The operation on pages that is in progress.
+/// The page operation in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// Reading the contents of flash.
@@ -48,11 +48,11 @@ pub enum Step {
 pub enum Event<'a> {
     /// The board's flash has been read; reported once.
     Found(FlashContents),
-    /// The step in progress, the number of pages that it has finished, and the number of all its pages.
+    /// The step in progress, and its numbers of finished pages and of all pages.
     Progress(Step, usize, usize),
     /// The board is reset for another attempt.
     Retry {
-        /// The reason for another attempt.
+        /// The error of the last attempt.
         error: &'a LoaderError,
         /// The boot loader that was called.
         called_kind: LoaderKind,
@@ -70,25 +70,25 @@ pub struct PageCounts {
     pub kept: usize,
 }
 
-/// The reason why a board does not hold the image.
+/// The error of a failed upload.
 #[derive(Debug, thiserror::Error)]
 pub enum UploadError {
     /// No boot loader answers.
     #[error(
         "no boot loader answers. Is it a UNO or a Nano? Does another program have this port open? Is something \
-         wired to D0 or D1? Where USB does not reset the board, press its reset button just after \
-         you have started the upload again"
+         wired to D0 or D1? If USB does not reset the board, start the upload again and press the reset button \
+         immediately afterwards"
     )]
     NoLoader,
-    /// The chip is not that of a UNO.
+    /// The chip is not an ATmega328P.
     #[error("the chip is {0}; the firmware is for {uno}. Nothing was written", uno = Chip::ATMEGA328P)]
     Chip(Chip),
-    /// The image is a robot alone, but the board has no code that reads one.
+    /// The image is a robot alone, but the board has no lizard firmware.
     #[error("{0}, and a robot alone moves nothing: write the firmware, too. Nothing was written")]
     NoLizard(FlashContents),
     /// The image is a robot alone, but the board's code reads another format.
     #[error(
-        "{contents}, whose robots are of format {}; this robot is of format {FORMAT}: write the \
+        "{contents}, which reads robots of format {}; this robot has format {FORMAT}: write the \
          firmware, too. Nothing was written",
         mark.format
     )]
@@ -104,7 +104,7 @@ pub enum UploadError {
     /// A byte of flash has the wrong value even after it was written twice.
     #[error(
         "the flash does not keep the byte at address {address:#06x}: written {written:#04x}, read \
-         {read:#04x}. The flash is worn out, or the supply too weak. {flash_state}"
+         {read:#04x}. The flash is worn out, or the supply is too weak. {flash_state}"
     )]
     ByteNotKept {
         /// The address of the byte.
@@ -113,7 +113,7 @@ pub enum UploadError {
         written: u8,
         /// The byte that was read back.
         read: u8,
-        /// The state of flash now.
+        /// The state of flash after the failure.
         flash_state: FlashState,
     },
     /// The connection failed.
@@ -121,7 +121,7 @@ pub enum UploadError {
     ConnectionFailed {
         /// The error of the boot loader.
         error: LoaderError,
-        /// The state of flash now.
+        /// The state of flash after the failure.
         flash_state: FlashState,
     },
 }
@@ -131,30 +131,30 @@ pub enum UploadError {
 pub enum FlashState {
     /// Flash holds its old contents.
     Unchanged,
-    /// Flash holds the loop that does nothing, and a part of the code.
-    HalfProgram,
+    /// Flash holds the idle loop and a part of the code.
+    IncompleteProgram,
     /// Flash holds the firmware and an incomplete robot, which the firmware rejects.
-    HalfRobot,
+    IncompleteRobot,
 }
 
 impl fmt::Display for FlashState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Unchanged => "Nothing was written: the board is unchanged",
-            Self::HalfRobot => {
-                "The board has half a robot now: its firmware says fault=robot and moves no \
-                 servo. Write it again"
+            Self::IncompleteRobot => {
+                "The board now has an incomplete robot: its firmware reports fault=robot and moves \
+                 no servo. Write the robot again"
             }
-            Self::HalfProgram => {
-                "The board has half a program now, and does nothing. Its boot loader is still \
-                 there: write it again"
+            Self::IncompleteProgram => {
+                "The board now has an incomplete program, which does nothing. Its boot loader is \
+                 intact: write the program again"
             }
         })
     }
 }
 
-/// Writes an image to a board, and starts it. Resets the board up to four times if it does not answer or if bytes
-/// are lost.
+/// Writes an image to a board, and starts the program. Resets the board up to four times if it does not answer or if
+/// bytes are lost.
 ///
 /// # Errors
 /// See [`UploadError`].
@@ -180,13 +180,13 @@ pub async fn upload<B: Board>(
         if !upload.has_answered {
             kind = loaders.next().unwrap_or(kind);
         }
-        let error = match upload.attempt(kind, &mut is_page_written).await {
+        let error = match upload.run_attempt(kind, &mut is_page_written).await {
             Ok(()) => break,
             Err(AttemptError::UploadFailed(error)) => return Err(error),
             Err(AttemptError::Loader(error)) => error,
         };
         if attempt == MAX_ATTEMPTS || !error.is_transient() {
-            return Err(upload.upload_error(error));
+            return Err(upload.to_upload_error(error));
         }
         let next_kind = match upload.has_answered {
             true => kind,
@@ -198,28 +198,25 @@ pub async fn upload<B: Board>(
             next_kind,
         });
     }
-    let page_count = image.pages().len();
-    let written = is_page_written
-        .into_iter()
-        .filter(|is_written| *is_written)
-        .count();
+    let written_pages = is_page_written.into_iter().filter(|is_written| *is_written);
+    let written = written_pages.count();
     Ok(PageCounts {
         written,
-        kept: page_count - written,
+        kept: image.pages().len() - written,
     })
 }
 
 /// Resets a board, calls its boot loader, starts the program in flash, and returns the kind of the boot loader.
 ///
 /// # Errors
-/// Fails if no boot loader answers, the chip is not that of a UNO, or the connection fails.
+/// Fails if no boot loader answers, the chip is not an ATmega328P, or the connection fails.
 pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, UploadError> {
     let connection_error = |error| UploadError::ConnectionFailed {
         error,
         flash_state: FlashState::Unchanged,
     };
     for &kind in Target::default().loaders() {
-        match loader.call(kind).await {
+        match loader.reset_and_call(kind).await {
             Ok(()) => {
                 let chip = Chip(loader.read_signature().await.map_err(connection_error)?);
                 let _ = loader.leave().await;
@@ -235,11 +232,11 @@ pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, Up
     Err(UploadError::NoLoader)
 }
 
-/// The reason why one attempt ended.
+/// The error of a failed attempt.
 enum AttemptError {
     /// The boot loader failed; another attempt may help.
     Loader(LoaderError),
-    /// The upload failed for good.
+    /// The upload failed, and another attempt cannot help.
     UploadFailed(UploadError),
 }
 
@@ -259,20 +256,20 @@ struct Upload<'a, B> {
     report: &'a mut dyn FnMut(Event<'_>),
     /// True if the loader has answered.
     has_answered: bool,
-    /// True if the board's contents were reported.
+    /// True if the board's contents have been reported.
     has_reported: bool,
     /// The state of flash if the upload fails now.
     flash_state: FlashState,
 }
 
 impl<B: Board> Upload<'_, B> {
-    /// Makes one attempt, from the reset to the start of the program. Marks the pages that it writes.
-    async fn attempt(
+    /// Makes one attempt, from the reset to the start of the program. Marks the written pages.
+    async fn run_attempt(
         &mut self,
         kind: LoaderKind,
         is_page_written: &mut [bool],
     ) -> Result<(), AttemptError> {
-        self.loader.call(kind).await?;
+        self.loader.reset_and_call(kind).await?;
         self.has_answered = true;
         let chip = Chip(self.loader.read_signature().await?);
         if chip != Chip::ATMEGA328P {
@@ -287,24 +284,24 @@ impl<B: Board> Upload<'_, B> {
             for page in &pages_to_write {
                 is_page_written[page.address / PAGE_BYTES] = true;
             }
-            // The first page is replaced meanwhile, so it is written, too.
+            // The first page is replaced during the upload, so it is always written.
             is_page_written[self.first_page().address / PAGE_BYTES] = true;
             self.write_pages(pages_to_write, &flash).await?;
         }
-        // An error does not matter: everything is written, and the program starts after a second in any case.
+        // An error can be ignored: everything is written, and the program starts after a second in any case.
         let _ = self.loader.leave().await;
         Ok(())
     }
 
-    /// The page without which the others have no effect: that of address 0, or the first page of
-    /// the robot's section.
+    /// The page without which the other pages have no effect: the page at address 0, or the first page of the robot's
+    /// section.
     fn first_page(&self) -> Page {
         let mut pages = self.image.pages();
         pages.swap_remove(0)
     }
 
-    /// Writes pages. Before the others, fills the image's first page with the loop that does nothing or, for a robot
-    /// alone, with blank bytes; writes this page last.
+    /// Writes pages, and the image's first page last. Before the other pages, fills the first page with the idle loop
+    /// or, for a robot alone, with blank bytes.
     async fn write_pages(
         &mut self,
         mut pages_to_write: Vec<Page>,
@@ -313,9 +310,9 @@ impl<B: Board> Upload<'_, B> {
         let first_page = self.first_page();
         let mut placeholder = [BLANK; PAGE_BYTES];
         if self.image.is_robot_alone() {
-            self.flash_state = FlashState::HalfRobot;
+            self.flash_state = FlashState::IncompleteRobot;
         } else {
-            self.flash_state = FlashState::HalfProgram;
+            self.flash_state = FlashState::IncompleteProgram;
             placeholder[..IDLE_JUMP.len()].copy_from_slice(&IDLE_JUMP);
         }
         pages_to_write.retain(|page| page.address != first_page.address);
@@ -334,11 +331,9 @@ impl<B: Board> Upload<'_, B> {
             self.read_pages(&mut flash, 0..1).await?;
             self.read_pages(&mut flash, ROBOT_PAGE_INDEX..ROBOT_PAGE_INDEX + 1)
                 .await?;
-            let end = self
-                .image
-                .end()
-                .max(robot_end_address(&flash, boot_address));
-            self.read_pages(&mut flash, ROBOT_PAGE_INDEX + 1..end.div_ceil(PAGE_BYTES))
+            let old_end = find_robot_end(&flash, boot_address);
+            let end_page = self.image.end_address().max(old_end).div_ceil(PAGE_BYTES);
+            self.read_pages(&mut flash, ROBOT_PAGE_INDEX + 1..end_page)
                 .await?;
         } else {
             self.read_pages(&mut flash, 0..boot_address / PAGE_BYTES)
@@ -355,7 +350,7 @@ impl<B: Board> Upload<'_, B> {
         Ok(flash)
     }
 
-    /// Checks that the code in flash can read the robot that is to be written after it.
+    /// Checks that the code in flash can read the new robot.
     fn check_code(&self, contents: &FlashContents) -> Result<(), AttemptError> {
         let contents = contents.clone();
         Err(AttemptError::UploadFailed(match contents.program {
@@ -365,23 +360,23 @@ impl<B: Board> Upload<'_, B> {
         }))
     }
 
-    /// Reads pages, by their indices, into `flash`, and reports the progress.
+    /// Reads the pages with the given indices into `flash`, and reports the progress.
     async fn read_pages(
         &mut self,
         flash: &mut [u8],
-        pages: Range<usize>,
+        page_indices: Range<usize>,
     ) -> Result<(), AttemptError> {
-        let page_count = pages.len();
-        for (index, page) in pages.enumerate() {
-            let address = page * PAGE_BYTES;
+        let page_count = page_indices.len();
+        for (done_count, page_index) in page_indices.enumerate() {
+            let address = page_index * PAGE_BYTES;
             let page_bytes = self.loader.read_page(address).await?;
             flash[address..address + PAGE_BYTES].copy_from_slice(&page_bytes);
-            (self.report)(Event::Progress(Step::Reading, index + 1, page_count));
+            (self.report)(Event::Progress(Step::Reading, done_count + 1, page_count));
         }
         Ok(())
     }
 
-    /// Writes pages and reads them back. A page that does not read back as written is written once more.
+    /// Writes pages and reads them back. Writes a page once more if it does not read back as written.
     async fn write_and_verify(&mut self, pages: &[Page]) -> Result<(), AttemptError> {
         for (index, page) in pages.iter().enumerate() {
             self.write_page(page.address, &page.bytes).await?;
@@ -393,7 +388,7 @@ impl<B: Board> Upload<'_, B> {
                 self.write_page(page.address, &page.bytes).await?;
                 read_back = self.loader.read_page(page.address).await?;
             }
-            if let Some(offset) = first_difference(&read_back, &page.bytes) {
+            if let Some(offset) = find_first_difference(&read_back, &page.bytes) {
                 return Err(AttemptError::UploadFailed(UploadError::ByteNotKept {
                     address: page.address + offset,
                     written: page.bytes[offset],
@@ -406,7 +401,7 @@ impl<B: Board> Upload<'_, B> {
         Ok(())
     }
 
-    /// Writes one page, at the address of its first byte.
+    /// Writes the page that starts at `address`.
     async fn write_page(
         &mut self,
         address: usize,
@@ -419,8 +414,8 @@ impl<B: Board> Upload<'_, B> {
         Ok(self.loader.write_page(address, bytes).await?)
     }
 
-    /// The error of the upload after the last attempt has failed.
-    fn upload_error(&self, error: LoaderError) -> UploadError {
+    /// Converts the error of the last attempt to the error of the upload.
+    fn to_upload_error(&self, error: LoaderError) -> UploadError {
         match error {
             LoaderError::Silent if !self.has_answered => UploadError::NoLoader,
             error => UploadError::ConnectionFailed {
@@ -431,9 +426,9 @@ impl<B: Board> Upload<'_, B> {
     }
 }
 
-/// Returns the end address of the robot in flash according to its header, or its start address if the header is not
-/// valid. Needs only the first page of the robot.
-fn robot_end_address(flash: &[u8], boot_address: usize) -> usize {
+/// Reads the end address of the robot in flash from its header; returns the start address if the header is invalid.
+/// Needs only the robot's first page.
+fn find_robot_end(flash: &[u8], boot_address: usize) -> usize {
     let start = usize::from(START_ADDRESS);
     let header: Header = Region::new(&flash[start..]).read(0);
     let end = start + usize::from(header.length);
@@ -444,8 +439,8 @@ fn robot_end_address(flash: &[u8], boot_address: usize) -> usize {
     }
 }
 
-/// Index of the first byte in which two pages differ; `None` if they are equal.
-fn first_difference(a: &[u8], b: &[u8]) -> Option<usize> {
+/// Returns the index of the first byte in which two pages differ; `None` if the pages are equal.
+fn find_first_difference(a: &[u8], b: &[u8]) -> Option<usize> {
     a.iter().zip(b).position(|(a, b)| a != b)
 }
 

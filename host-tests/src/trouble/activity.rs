@@ -1,15 +1,15 @@
-//! Activities of the robot, during which the trouble of a scenario begins.
+//! Activities of the robot, during which scenarios inject faults.
 
 use std::fmt;
 
-/// The robot's activity when trouble begins.
+/// The robot's activity when a fault is injected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Activity {
     /// The robot rests, or has just received `rest`.
     Resting,
     /// The servos start after a rest.
     Waking,
-    /// The robot holds a pose or stands.
+    /// The robot stands or holds a pose.
     Holding,
     /// The robot moves from one pose to another.
     Moving,
@@ -44,7 +44,7 @@ impl Activity {
 
     /// Returns the activity of the scenario with this number. In four of thirteen scenarios, a person drives the robot.
     #[must_use]
-    pub fn of_scenario(number: u64) -> Self {
+    pub fn for_scenario(number: u64) -> Self {
         let index = (number % 13) as usize;
         Self::ALL.get(index).copied().unwrap_or(Self::Driving)
     }

@@ -1,4 +1,4 @@
-//! Campaign of many scenarios, played and judged on several threads, and the summary of its results.
+//! Campaign of many scenarios, run and checked on several threads, and the summary of its results.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,28 +7,28 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread;
 
 use lizard_robot::Robot;
-use lizard_rules::{BrokenRule, Rule};
+use lizard_rules::{Rule, Violation};
 use simulated_uno::Image;
 
 use super::activity::Activity;
-use super::judge::broken_rules;
+use super::rule_checks::find_violations;
 use super::scenario::Scenario;
-use super::stage::play;
+use super::scenario_run::run_scenario;
 
-/// A scenario in which the firmware broke at least one rule.
+/// A scenario in which the firmware violated at least one rule.
 #[derive(Debug, Clone)]
 pub struct Failure {
     /// The scenario.
     pub scenario: Scenario,
-    /// The broken rules.
-    pub broken_rules: Vec<BrokenRule>,
+    /// The violations.
+    pub violations: Vec<Violation>,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.scenario)?;
-        for BrokenRule { rule, observation } in &self.broken_rules {
-            writeln!(f, "  does not hold: {}\n    {observation}", rule.sentence())?;
+        for Violation { rule, observation } in &self.violations {
+            writeln!(f, "  violated: {}\n    {observation}", rule.sentence())?;
         }
         Ok(())
     }
@@ -37,32 +37,35 @@ impl fmt::Display for Failure {
 /// The results of a campaign.
 #[derive(Debug, Default)]
 pub struct Summary {
-    /// For each activity, the number of scenarios played and the number of scenarios failed.
-    pub activities: BTreeMap<Activity, (u64, u64)>,
+    /// For each activity, the number of scenarios run and the number of scenarios failed.
+    pub counts_by_activity: BTreeMap<Activity, (u64, u64)>,
     /// The scenarios that failed, in the order of their numbers.
     pub failures: Vec<Failure>,
     /// The number of simulated cycles.
-    pub cycles: u64,
+    pub cycle_count: u64,
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (activity, (played, failed)) in &self.activities {
-            writeln!(f, "{activity:14} {played:6} scenarios, {failed} failed")?;
+        for (activity, (run_count, failed_count)) in &self.counts_by_activity {
+            writeln!(
+                f,
+                "{activity:14} {run_count:6} scenarios, {failed_count} failed"
+            )?;
         }
         for rule in Rule::ALL {
-            let breaks_rule = |failure: &&Failure| {
+            let violates_rule = |failure: &&Failure| {
                 failure
-                    .broken_rules
+                    .violations
                     .iter()
-                    .any(|broken| broken.rule == *rule)
+                    .any(|violation| violation.rule == *rule)
             };
-            let failures: Vec<&Failure> = self.failures.iter().filter(breaks_rule).collect();
+            let failures: Vec<&Failure> = self.failures.iter().filter(violates_rule).collect();
             if let Some(first) = failures.first() {
                 let (count, number) = (failures.len(), first.scenario.number);
                 writeln!(
                     f,
-                    "{count:6} times broken: {} (first in scenario {number})",
+                    "{count:6} violations: {} (first in scenario {number})",
                     rule.sentence()
                 )?;
             }
@@ -71,20 +74,20 @@ impl fmt::Display for Summary {
     }
 }
 
-/// Plays and judges one scenario. Returns its duration in cycles, and the failure if a rule is broken.
+/// Runs and checks one scenario. Returns its duration in cycles, and the failure if a rule is violated.
 #[must_use]
-pub fn judge(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
-    let record = play(image, robot, scenario);
-    let broken_rules = broken_rules(&record, robot, scenario);
-    let failure = (!broken_rules.is_empty()).then(|| Failure {
+pub fn run_and_check(image: &Image, robot: &Robot, scenario: &Scenario) -> (u64, Option<Failure>) {
+    let record = run_scenario(image, robot, scenario);
+    let violations = find_violations(&record, robot, scenario);
+    let failure = (!violations.is_empty()).then(|| Failure {
         scenario: scenario.clone(),
-        broken_rules,
+        violations,
     });
     (record.end_cycle, failure)
 }
 
-/// Plays and judges the scenarios `0..count` of a seed on `thread_count` threads. Calls `report_progress` after each
-/// scenario with the number of scenarios done, and the failure if the scenario failed.
+/// Runs and checks the scenarios `0..count` of a seed on `thread_count` threads. After each scenario, calls
+/// `report_progress` with the number of scenarios done, and the failure if the scenario failed.
 pub fn run_campaign(
     image: &Image,
     robot: &Robot,
@@ -105,17 +108,17 @@ pub fn run_campaign(
                         return;
                     }
                     let scenario = Scenario::generate(seed, number, robot);
-                    let (cycles, failure) = judge(image, robot, &scenario);
+                    let (cycle_count, failure) = run_and_check(image, robot, &scenario);
                     report_progress(
                         done_count.fetch_add(1, Ordering::Relaxed) + 1,
                         failure.as_ref(),
                     );
                     let mut summary = summary.lock().expect("no thread has panicked");
-                    let counts = summary.activities.entry(scenario.activity).or_default();
-                    let (played_count, failed_count) = counts;
-                    *played_count += 1;
+                    let counts = &mut summary.counts_by_activity;
+                    let (run_count, failed_count) = counts.entry(scenario.activity).or_default();
+                    *run_count += 1;
                     *failed_count += u64::from(failure.is_some());
-                    summary.cycles += cycles;
+                    summary.cycle_count += cycle_count;
                     summary.failures.extend(failure);
                 }
             });

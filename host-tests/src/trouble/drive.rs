@@ -1,5 +1,5 @@
-//! Simulation of a person who drives the robot by radio with the session logic of `lizard console`, while other people
-//! send lines by cable.
+//! Simulation of a person who drives the robot by radio while other people send lines by cable. The person's phone uses
+//! the session logic of `lizard console`.
 
 use std::time::{Duration, Instant};
 
@@ -7,7 +7,7 @@ use fastrand::Rng;
 use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
 use lizard_host::sim::tour;
-use lizard_robot::{Robot, command_of};
+use lizard_robot::{Robot, to_command};
 use simulated_uno::{Radio, RadioLink, Uno, Wire};
 
 use super::record::{MS, Record, Span};
@@ -17,10 +17,10 @@ use super::setup;
 const BYTES_PER_GARBLED_BYTE: u16 = 300;
 
 /// Index of the radio module among the two senders on the wire to the board.
-const RADIO: usize = 0;
+const RADIO_INDEX: usize = 0;
 
 /// Index of the cable among the two senders on the wire to the board.
-const CABLE: usize = 1;
+const CABLE_INDEX: usize = 1;
 
 /// A person with a phone, the radio link, the radio module, and the wire that the module and the cable share.
 pub struct Drive<'a> {
@@ -31,9 +31,9 @@ pub struct Drive<'a> {
     /// The instant of the chip's cycle 0.
     start: Instant,
     rng: Rng,
-    /// Text that the phone has received after the last complete line.
+    /// The text that the phone has received after the last complete line.
     partial_line: String,
-    /// The cycle until which the phone's screen is locked.
+    /// The cycle at which the phone's screen is unlocked again.
     locked_until_cycle: u64,
     /// True once the phone is out of range.
     has_left: bool,
@@ -47,7 +47,7 @@ impl<'a> Drive<'a> {
             robot,
             radio: Radio::new(link),
             wire: Wire::new([link.baud; 2]),
-            session: Session::new(start, true, false).driven_by_person(),
+            session: Session::new(start, true, false).with_deadman(),
             start,
             rng: Rng::with_seed(link.seed),
             partial_line: String::new(),
@@ -64,16 +64,16 @@ impl<'a> Drive<'a> {
 
     /// Sends bytes by the cable from the cycle `now` on.
     pub fn send_by_cable(&mut self, bytes: &[u8], now: u64) {
-        self.wire.write(CABLE, bytes, now);
+        self.wire.write(CABLE_INDEX, bytes, now);
     }
 
     /// Passes bytes on between board, cable, radio and phone. `bytes_from_uno` are the bytes that the board has sent
-    /// since the last call. Must be called every millisecond.
+    /// since the last call. Call this every millisecond.
     pub fn pass_bytes(&mut self, bytes_from_uno: &[u8], uno: &mut Uno, record: &mut Record) {
         let (now, chip_baud) = (uno.cycle(), uno.chip_baud());
         let received = self.radio.received_bytes(bytes_from_uno, chip_baud);
         let [to_uno, to_phone] = self.radio.pass(&received, now);
-        self.wire.write(RADIO, &to_uno, now);
+        self.wire.write(RADIO_INDEX, &to_uno, now);
         // The wire samples the bytes at the chip's baud rate, so the board receives them at this rate.
         uno.set_baud(chip_baud);
         for wire_byte in self.wire.receive(now, chip_baud) {
@@ -100,7 +100,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Lets the phone read the received lines, and the person act at random.
+    /// Lets the phone read the received lines, and the person act randomly.
     fn use_phone(&mut self, now: u64, record: &mut Record) {
         while let Some((line, rest)) = self.partial_line.split_once('\n') {
             self.session.receive(line.trim_end_matches('\r'));
@@ -122,7 +122,7 @@ impl<'a> Drive<'a> {
         }
         self.session.time_out_request(instant);
         self.session.take_events();
-        while let Some(line) = self.session.next_line(instant) {
+        while let Some(line) = self.session.take_next_line(instant) {
             self.radio.write(format!("{line}\n").as_bytes(), now);
             record.sent_lines.push((now, line));
         }
@@ -130,9 +130,9 @@ impl<'a> Drive<'a> {
 
     /// Returns a random line for the person to send.
     fn random_line(&mut self) -> String {
-        let gaits = tour::moving_gaits(self.robot);
+        let gaits = tour::list_moving_gaits(self.robot);
         let gait = self.rng.choice(&gaits).unwrap_or(&"stand");
-        let gait = command_of(gait);
+        let gait = to_command(gait);
         match self.rng.u8(..24) {
             0 | 1 => setup::random_pose(&mut self.rng, self.robot),
             2 | 3 => format!("speed {}", self.rng.u8(10..=100)),

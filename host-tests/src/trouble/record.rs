@@ -1,5 +1,5 @@
 //! Record of a scenario: the outputs that are visible from outside (pulses, lines, the LED, resets, writes to the
-//! EEPROM), and the trouble that the board was given.
+//! EEPROM), and the injected faults.
 
 use lizard_core::console::word::Effect;
 use lizard_host::sim::lines::Line;
@@ -74,8 +74,8 @@ pub struct ReceivedLine {
 }
 
 impl ReceivedLine {
-    /// True if the line tells the robot to move, to stop or to rest.
-    fn is_order(&self) -> bool {
+    /// True if the line commands the robot to move, to stop or to rest.
+    fn is_motion_command(&self) -> bool {
         let affects_motion = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
         affects_motion && self.text != super::scenario::REFUSED_POSE
     }
@@ -90,9 +90,9 @@ pub struct Record {
     pub pulses: Vec<(u64, Pulse)>,
     /// The lines that the board printed.
     pub printed_lines: Vec<Line>,
-    /// The lines that were sent with a wait for their answers, in order.
+    /// The lines that were sent with a wait for their answers, in chronological order.
     pub exchanges: Vec<Exchange>,
-    /// The lines that arrived at the board, with or without waiting for an answer.
+    /// The lines that arrived at the board, sent with or without a wait for an answer.
     pub received_lines: Vec<ReceivedLine>,
     /// The lines that were sent by cable or radio, each with its cycle.
     pub sent_lines: Vec<(u64, String)>,
@@ -103,9 +103,9 @@ pub struct Record {
     pub radio_spans: Vec<Span>,
     /// The cycles at which bytes arrived at the board.
     pub byte_cycles: Vec<u64>,
-    /// Every start of the program.
+    /// All starts of the program.
     pub starts: Vec<ResetEvent>,
-    /// Every write of the EEPROM.
+    /// All writes to the EEPROM.
     pub eeprom_writes: Vec<EepromOperation>,
     /// The supply voltages in mV, each with the cycle from which it applied.
     pub supply_mv: Vec<(u64, f64)>,
@@ -144,19 +144,19 @@ impl Record {
         }
     }
 
-    /// True if the main loop was stalled or interrupts were blocked within `start..end`.
+    /// True if the main loop was stalled or interrupts were blocked in `start..end`.
     #[must_use]
-    pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
-        let mut disturbances = self.stalls.iter().chain(&self.interrupt_blocks);
-        disturbances.any(|span| span.overlaps(start, end))
+    pub fn is_stalled_or_blocked(&self, start: u64, end: u64) -> bool {
+        let mut spans = self.stalls.iter().chain(&self.interrupt_blocks);
+        spans.any(|span| span.overlaps(start, end))
     }
 
-    /// Returns the lines that tell the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
+    /// Returns the lines that command the robot to move, to stop or to rest, each with its outcome: `Some(true)` if the
     /// board carried out the line, `Some(false)` if it refused the line, `None` if the outcome is unknown.
-    pub fn orders(&self) -> impl Iterator<Item = (&ReceivedLine, Option<bool>)> {
+    pub fn motion_commands(&self) -> impl Iterator<Item = (&ReceivedLine, Option<bool>)> {
         self.received_lines
             .iter()
-            .filter(|received| received.is_order())
+            .filter(|received| received.is_motion_command())
             .map(|received| {
                 let matches_line = |exchange: &&Exchange| {
                     exchange.line == received.text && exchange.sent_cycle <= received.cycle
@@ -192,14 +192,14 @@ impl Record {
         if next_lines.clone().any(|line| is_ok(&line.text)) {
             return Some(true);
         }
-        // After these errors, the board refuses every order.
+        // After these errors, the board refuses every motion command.
         let is_refusal = |text: &str| text.starts_with("err 7 ") || text.starts_with("err 8 ");
         let is_refused =
-            !self.is_troubled(start, end) && next_lines.clone().any(|line| is_refusal(&line.text));
+            !self.is_disturbed(start, end) && next_lines.clone().any(|line| is_refusal(&line.text));
         is_refused.then_some(false)
     }
 
-    /// True if a `save` that arrived at this cycle was answered by `ok`.
+    /// True if the answer to a `save` that arrived at this cycle was `ok`.
     #[must_use]
     pub fn is_saved(&self, cycle: u64) -> bool {
         let is_accepted_save = |exchange: &Exchange| {
@@ -209,8 +209,8 @@ impl Record {
         self.exchanges.iter().any(is_accepted_save)
     }
 
-    /// True if the board has found the line's baud rate by this cycle: it has answered a line since the person began to
-    /// drive by radio, and since the last reset at which it forgot the rate.
+    /// True if the board has found the sender's baud rate by this cycle. The board has then answered a line since the
+    /// person began to drive by radio, and since the last reset that made the board forget the rate.
     #[must_use]
     pub fn has_found_rate(&self, cycle: u64) -> bool {
         let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
@@ -224,12 +224,12 @@ impl Record {
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))
     }
 
-    /// True if there was a reset, a power cut or a disturbance within `start..end`.
+    /// True if there was a reset, a power cut, a stall or a block of interrupts in `start..end`.
     #[must_use]
-    pub fn is_troubled(&self, start: u64, end: u64) -> bool {
+    pub fn is_disturbed(&self, start: u64, end: u64) -> bool {
         let span = start..end;
         self.starts.iter().any(|reset| span.contains(&reset.cycle))
             || self.cut_cycles.iter().any(|cut| span.contains(cut))
-            || self.is_disturbed(start, end)
+            || self.is_stalled_or_blocked(start, end)
     }
 }

@@ -1,7 +1,6 @@
-//! Random scenarios: an activity, trouble that begins at a random cycle of the activity, and commands that finally
-//! check the robot.
+//! Random scenarios: an activity, a fault at a random cycle of the activity, and final commands that check the robot.
 
-mod troubles;
+mod faults;
 
 use std::fmt;
 
@@ -9,7 +8,7 @@ use fastrand::Rng;
 use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
 use lizard_host::sim::tour;
-use lizard_robot::{Robot, command_of};
+use lizard_robot::{Robot, to_command};
 use simulated_uno::RadioLink;
 
 use super::activity::Activity;
@@ -27,7 +26,7 @@ pub struct Scenario {
     pub seed: u64,
     /// The scenario's number among the scenarios of the seed.
     pub number: u64,
-    /// The robot's activity when trouble begins.
+    /// The robot's activity when the fault is injected.
     pub activity: Activity,
     /// True if a boot loader clears MCUSR, the chip's record of a reset's cause.
     pub has_boot_loader: bool,
@@ -55,10 +54,10 @@ impl Scenario {
     #[must_use]
     pub fn generate(seed: u64, number: u64, robot: &Robot) -> Self {
         let mut rng = Rng::with_seed(seed.wrapping_mul(1_000_003).wrapping_add(number));
-        let activity = Activity::of_scenario(number);
+        let activity = Activity::for_scenario(number);
         let mut script = Script::new(&mut rng, robot);
         script.start_activity(activity);
-        script.add_trouble(activity);
+        script.add_fault(activity);
         script.end_drive();
         script.add_final_checks();
         let steps = script.steps;
@@ -120,12 +119,12 @@ impl<'a> Script<'a> {
     }
 
     fn random_gait(&mut self) -> String {
-        let gaits = tour::moving_gaits(self.robot);
+        let gaits = tour::list_moving_gaits(self.robot);
         let name = self.rng.choice(&gaits);
-        name.map_or("stand".into(), |name| command_of(name))
+        name.map_or("stand".into(), |name| to_command(name))
     }
 
-    /// Starts an activity and waits until a random cycle of the activity.
+    /// Starts an activity and waits until a random cycle during the activity.
     fn start_activity(&mut self, activity: Activity) {
         let is_at_power_on = activity == Activity::Starting && self.rng.u8(0..3) == 0;
         if !is_at_power_on {
@@ -181,7 +180,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Starts a write of the EEPROM by `rest` or `save`, in some cases while a gait runs.
+    /// Starts an EEPROM write with `rest` or `save`, in some cases while a gait runs.
     fn start_saving(&mut self) {
         match self.rng.u8(0..3) {
             0 => {
@@ -203,7 +202,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(250);
     }
 
-    /// Restarts the program, unless the scenario is still at power-on, and waits for a part of the start.
+    /// Restarts the program, unless the scenario is still at power-on, and waits for part of the start.
     fn start_program(&mut self, is_power_on: bool) {
         if !is_power_on {
             match self.rng.u8(0..4) {
@@ -251,7 +250,7 @@ impl<'a> Script<'a> {
         self.wait_up_to(120);
     }
 
-    /// Starts the routine. In three of four cases, presses the button for which the routine waits. Then presses random
+    /// Starts the routine. In three of four cases, presses the button that the routine waits for. Then presses random
     /// inputs.
     fn start_patrol(&mut self) {
         self.say(PATROL);
@@ -284,8 +283,8 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Lets a person start to drive by radio. A quarter of these scenarios begin with noise, as from a radio module
-    /// without a phone.
+    /// Lets a person start to drive by radio. In a quarter of these scenarios, noise comes first, as from a radio
+    /// module without a phone.
     fn start_drive(&mut self) {
         if self.rng.u8(0..4) == 0 {
             self.add_noise();
@@ -337,7 +336,7 @@ impl<'a> Script<'a> {
         }
     }
 
-    /// Adds noise on the serial line for a random time, and then a reset, as when a computer opens the port.
+    /// Adds noise on the serial line for a random time, then a reset, as when a computer opens the port.
     fn add_noise(&mut self) {
         let cycles = self.rng.u64(MS..3_000 * MS);
         self.steps.push(Step::Noise(cycles));
@@ -346,8 +345,8 @@ impl<'a> Script<'a> {
         self.wait(600);
     }
 
-    /// Waits and asks for the status. Then sends a line that is refused, `walk`, `rest` and `stand`, and asks for the
-    /// status after each of them.
+    /// Waits and asks for the status. Then sends an invalid line, `walk`, `rest` and `stand`, and asks for the status
+    /// after each of them.
     fn add_final_checks(&mut self) {
         // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.
         let wait_ms = if self.rng.u8(0..4) == 0 {
@@ -379,7 +378,7 @@ impl<'a> Script<'a> {
         {
             self.wait(1_300);
         }
-        self.steps.push(Step::Order("walk".into()));
+        self.steps.push(Step::SayOrStand("walk".into()));
         self.wait(700);
         self.say("status");
         self.say("rest");

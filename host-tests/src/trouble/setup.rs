@@ -1,5 +1,5 @@
-//! Random commands, and the random settings of a scenario before its trouble begins. The settings are saved or unsaved
-//! trims, scales and directions of servos, the gait after power-on, the `deadman` time, or a servo's travel.
+//! Random commands, and the random settings of a scenario before its fault. The settings are saved or unsaved trims,
+//! scales and directions of servos, the gait after power-on, the `deadman` time, or a servo's travel.
 
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
@@ -38,7 +38,7 @@ fn limit_command(servo: usize, degrees: f64, robot: &Robot) -> String {
     format!("limit {} {low:.2} {high:.2}", servo + 1)
 }
 
-/// A servo scale that is larger than any in robot.toml, us per degree, as the console takes it.
+/// A servo scale that is larger than any in robot.toml, us per degree, as text for the console.
 pub const LARGE_SCALE: &str = "17.77";
 
 /// Returns a random command that makes the main loop apply the servos' settings again.
@@ -56,7 +56,7 @@ pub fn random_adjustment(rng: &mut Rng) -> String {
     }
 }
 
-/// Returns the steps that change settings of a random kind; in about half of the cases, no steps.
+/// Returns steps that change random settings; in about half of the cases, no steps.
 pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
     let wait = |ms: u64| Step::Wait(ms * MS);
     match rng.u8(0..16) {
@@ -74,7 +74,7 @@ pub fn random_settings(rng: &mut Rng, robot: &Robot) -> Vec<Step> {
         // The saved travel is narrower than the travel in use.
         7 => {
             let servo = rng.usize(0..4);
-            // The gaits need 23 degrees of travel. Beyond 23.9 degrees the margin of a leg is too small.
+            // The gaits need 23 degrees of travel. Beyond 23.9 degrees, the margin of a leg is too small.
             let degrees = 23.2;
             let limit_line = limit_command(servo, degrees, robot);
             let neutral = robot.servos().map(|servo| servo.neutral);

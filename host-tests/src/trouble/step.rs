@@ -7,12 +7,12 @@ use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, RadioLink};
 /// One step of a scenario.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Step {
-    /// Sends a line and waits for its answer for a limited time.
+    /// Sends a line and waits a limited time for its answer.
     Say(String),
     /// Sends a line without waiting for its answer.
     Send(String),
     /// Sends a line; if it is refused because the servos rest, sends `stand`.
-    Order(String),
+    SayOrStand(String),
     /// Lets this many cycles pass.
     Wait(u64),
     /// Stalls the main loop for this many cycles, or until a reset.
@@ -25,17 +25,17 @@ pub enum Step {
     PowerCycle,
     /// Sets the supply voltage, mV.
     Supply(u16),
-    /// Connects a weak supply, which falls to 2.4 V whenever three servos have pulses, if true; a good supply if false.
+    /// Connects a weak supply (true), which falls to 2.4 V whenever three servos have pulses, or a good supply (false).
     WeakSupply(bool),
     /// Lets a person begin to drive by radio. The scenario's own lines are then sent by cable.
     Drive(RadioLink),
     /// Ends the drive: the person leaves with the phone.
     Leave,
-    /// Closes the contact at the pin with this Arduino number if true; opens it if false.
+    /// Closes (true) or opens (false) the contact at the pin with this Arduino number.
     Contact(u8, bool),
-    /// Sends `status` several times until the robot answers. The robot may have to find the line's baud rate first.
+    /// Sends `status` repeatedly until the robot answers. The robot may first have to find the sender's baud rate.
     AskUntilAnswered,
-    /// Sends random bytes on the serial line, at most as many as the line can carry in this many cycles.
+    /// Sends random bytes on the serial line, at most as many as the line can carry in this number of cycles.
     Noise(u64),
 }
 
@@ -44,7 +44,7 @@ impl fmt::Display for Step {
         match self {
             Self::Say(line) => write!(f, "say {line}"),
             Self::Send(line) => write!(f, "send {line} and do not wait"),
-            Self::Order(line) => write!(f, "say {line}; if the robot rests, say stand"),
+            Self::SayOrStand(line) => write!(f, "say {line}; if the robot rests, say stand"),
             Self::Wait(cycles) => write!(f, "wait {}", CyclesAsTime(*cycles)),
             Self::Stall(cycles) => write!(f, "stall main for {}", CyclesAsTime(*cycles)),
             Self::BlockInterrupts(cycles) => {
@@ -56,12 +56,12 @@ impl fmt::Display for Step {
             Self::WeakSupply(true) => write!(f, "supply 2400 mV whenever three servos have pulses"),
             Self::Drive(link) => write!(
                 f,
-                "a person drives by radio at {} baud: {:.0} % of the packets are lost, the link holds for {} ms{}",
+                "a person drives by radio at {} baud: {:.0} % packet loss, mean link time {} ms{}",
                 link.baud,
                 100.0 * link.packet_loss,
                 link.mean_link_ms,
                 if link.reports_link {
-                    ", and says so"
+                    ", the module reports the link"
                 } else {
                     ""
                 }
@@ -69,16 +69,17 @@ impl fmt::Display for Step {
             Self::Contact(pin, true) => write!(f, "the contact at pin {pin} closes"),
             Self::Contact(pin, false) => write!(f, "the contact at pin {pin} opens"),
             Self::AskUntilAnswered => write!(f, "ask for the status until there is an answer"),
-            Self::Leave => write!(f, "the person goes away"),
+            Self::Leave => write!(f, "the person leaves with the phone"),
             Self::Noise(cycles) => {
                 write!(f, "noise on the serial line for {}", CyclesAsTime(*cycles))
             }
-            Self::WeakSupply(false) => write!(f, "a strong supply again"),
+            Self::WeakSupply(false) => write!(f, "strong supply again"),
         }
     }
 }
 
-/// A number of cycles that is printed as a time. The exact number follows unless the time is a whole number of ms.
+/// A number of cycles that is printed as a time, followed by the number of cycles unless the time is a whole number of
+/// milliseconds.
 pub struct CyclesAsTime(pub u64);
 
 impl fmt::Display for CyclesAsTime {

@@ -1,5 +1,6 @@
-//! Tests of the Arduino library in `arduino/`. `make arduino-test` compiles the library's examples as the Arduino IDE
-//! does. The examples run on the simulated UNO, and their edges must equal those of the Rust crate `servo-pulses`.
+//! Tests of the Arduino library in `arduino/`. `make arduino-test` compiles the library's examples in the same way as
+//! the Arduino IDE. The examples run on the simulated UNO, and their edges must match those of the Rust crate
+//! `servo-pulses`.
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
@@ -16,21 +17,21 @@ fn load_elf(path: &str) -> Uno {
         .unwrap_or_else(|error| panic!("`make arduino-test` builds it: {error}"))
 }
 
-/// Loads the sketch of this name: an example of the library, or a sketch of the tests.
+/// Loads the sketch with this name, which is an example of the library or a sketch of the tests.
 fn load_sketch(name: &str) -> Uno {
     load_elf(&format!("target/arduino/{name}/{name}.ino.elf"))
 }
 
-/// Returns every edge of the servos' pins, each with the number of cycles since the first edge.
-fn edges_since_first_edge(uno: &Uno) -> Vec<(u64, Pin, bool)> {
+/// Returns all edges of the servos' pins, each with the number of cycles since the first edge.
+fn collect_relative_edges(uno: &Uno) -> Vec<(u64, Pin, bool)> {
     let is_servo = |edge: &&Edge| edge.pin != Pin::d(13);
     let edges: Vec<Edge> = uno.edges().iter().filter(is_servo).copied().collect();
     let first_cycle = edges.first().expect("there are edges").cycle;
-    let relative_edge_of = |edge: &Edge| (edge.cycle - first_cycle, edge.pin, edge.is_rising);
-    edges.iter().map(relative_edge_of).collect()
+    let to_relative_edge = |edge: &Edge| (edge.cycle - first_cycle, edge.pin, edge.is_rising);
+    edges.iter().map(to_relative_edge).collect()
 }
 
-/// Records each pin's pulse widths, in cycles, for 10 s while the sketch echoes bytes that arrive without gaps.
+/// Records each pin's pulse widths in cycles for 10 s, while the sketch echoes bytes that arrive without gaps.
 fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     uno.run_ms(100);
     uno.take_edges();
@@ -40,25 +41,25 @@ fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     assert_eq!(*uno.state(), State::Alive);
     let echoed_count = uno.transmitted().len();
     assert!(echoed_count > 100_000, "{echoed_count} bytes echoed");
-    let widths_of = |pin: &u8| {
+    let collect_widths = |pin: &u8| {
         uno.pulses(Pin::arduino(*pin))
             .iter()
             .map(|pulse| pulse.width)
             .collect()
     };
-    pins.iter().map(widths_of).collect()
+    pins.iter().map(collect_widths).collect()
 }
 
 /// Returns the difference between the longest and the shortest width.
-fn jitter(widths: &[u64]) -> u64 {
+fn compute_jitter(widths: &[u64]) -> u64 {
     let [min, max] = [widths.iter().min(), widths.iter().max()];
     max.expect("there are pulses") - min.expect("there are pulses")
 }
 
 #[test]
-fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
+fn edges_of_eight_servos_match_the_rust_engine_to_the_cycle() {
     let mut rust_uno = Uno::load(
-        FirmwareBench::elf().with_file_name("examples/sweep.elf"),
+        FirmwareBench::elf_path().with_file_name("examples/sweep.elf"),
         Fidelity::DataSheet,
     )
     .unwrap_or_else(|error| panic!("`make sweep` builds it: {error}"));
@@ -66,7 +67,7 @@ fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
     for uno in [&mut rust_uno, &mut cpp_uno] {
         uno.run_ms(20_000);
     }
-    let [rust_edges, cpp_edges] = [&rust_uno, &cpp_uno].map(edges_since_first_edge);
+    let [rust_edges, cpp_edges] = [&rust_uno, &cpp_uno].map(collect_relative_edges);
     let frame_count = 20_000 * CYCLES_PER_MS / u64::from(frame_cycles(8));
     let common_count = rust_edges.len().min(cpp_edges.len());
     assert!(
@@ -75,19 +76,19 @@ fn eight_servos_have_the_edges_of_the_rust_engine_to_the_cycle() {
     );
     let first_difference = (0..common_count).find(|index| cpp_edges[*index] != rust_edges[*index]);
     let pair = first_difference.map(|index| (index, cpp_edges[index], rust_edges[index]));
-    assert_eq!(pair, None, "the first edge that differs, C++ and Rust");
+    assert_eq!(pair, None, "the first differing edge (index, C++, Rust)");
 }
 
 #[test]
 fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
     let mut uno = load_sketch("BesideSerial");
-    // 90 degrees in a range from 544 to 2400 us.
+    // 90 degrees is the middle of the range between 544 and 2400 us.
     let expected_cycles = (544 + (2400 - 544) / 2) * u64::from(CYCLES_PER_US);
     for widths in record_widths_in_flood(&mut uno, &PINS) {
         assert!(widths.len() > 440, "{} pulses", widths.len());
         assert!(
             widths.iter().all(|actual| *actual == expected_cycles),
-            "not all are {expected_cycles}: {widths:?}"
+            "not all widths are {expected_cycles} cycles: {widths:?}"
         );
     }
     assert_eq!(uno.overruns(), 0);
@@ -122,10 +123,11 @@ fn the_servo_library_has_jitter_in_the_same_flood() {
     for (name, allowed_jitters) in [("ServoBesideSerial", 50..200), ("BesideSerial", 0..1)] {
         let mut uno = load_sketch(name);
         let widths = record_widths_in_flood(&mut uno, &PINS);
-        let measured_jitters: Vec<u64> = widths.iter().map(|widths| jitter(widths)).collect();
+        let measured_jitters: Vec<u64> =
+            widths.iter().map(|widths| compute_jitter(widths)).collect();
         let image = uno.image();
         println!(
-            "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} of RAM, {} cycles a second",
+            "{name}: jitter {measured_jitters:?} cycles, {} bytes of flash, {} bytes of RAM, {} cycles per second",
             image.flash_used(),
             image.static_ram(),
             handler_cycles_per_second(&uno)
@@ -143,20 +145,21 @@ fn a_late_pulse_is_left_out_and_no_pulse_is_too_short() {
     let mut uno = load_sketch("Late");
     uno.run_ms(10_000);
     let pulses = uno.pulses(Pin::d(9));
-    // The sketch disables interrupts for half of the time, so many of the 500 pulses are late.
+    // The sketch disables interrupts half of the time, so many of the 500 pulses are late.
     assert!(
         (100..400).contains(&pulses.len()),
         "{} pulses",
         pulses.len()
     );
     for pulse in pulses {
-        // A falling edge waits until interrupts are enabled again, 30 us at most.
-        assert!((24_000..24_500).contains(&pulse.width), "{}", pulse.width);
+        // A falling edge waits until interrupts are enabled again, at most 30 us.
+        assert!(
+            (24_000..24_500).contains(&pulse.width),
+            "{} cycles",
+            pulse.width
+        );
     }
-    assert!(
-        uno.is_high(Pin::d(13)),
-        "the sketch has reported no late edge"
-    );
+    assert!(uno.is_high(Pin::d(13)), "the sketch reported no late edge");
 }
 
 #[test]
@@ -186,13 +189,13 @@ fn every_change_of_a_width_is_atomic_and_no_pulse_is_cut() {
 }
 
 #[test]
-fn angles_and_widths_equal_those_of_the_servo_library() {
+fn angles_and_widths_match_the_servo_library() {
     let mut uno = load_sketch("Ask");
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
     let transmitted = uno.take_transmitted();
     let printed_bytes: Vec<u8> = transmitted.iter().map(|byte| byte.byte).collect();
     // For each of eight servos, the sketch prints the servo's index plus `attached()`, which is 1. For a ninth servo
-    // and for pin 20 it prints 255.
+    // and for pin 20, the sketch prints 255.
     assert_eq!(
         String::from_utf8_lossy(&printed_bytes),
         "12345678255255\r\n"
@@ -212,7 +215,7 @@ fn angles_and_widths_equal_those_of_the_servo_library() {
         assert_eq!(
             uno.say(&written_value.to_string()),
             Some(format!("{angle} {width_us}")),
-            "{written_value}"
+            "written value {written_value}"
         );
         uno.run_ms(50);
         uno.take_edges();
@@ -227,7 +230,7 @@ fn angles_and_widths_equal_those_of_the_servo_library() {
             widths
                 .iter()
                 .all(|width| *width == width_us * u64::from(CYCLES_PER_US)),
-            "{written_value}: {widths:?}"
+            "written value {written_value}: {widths:?}"
         );
         // All other servos are detached.
         assert!(uno.edges().iter().all(|edge| edge.pin == Pin::d(2)));

@@ -1,20 +1,20 @@
-//! A new board at a serial port of this machine, for tests of programs that write firmware to boards. The board is
-//! simulated in real time at a pseudo terminal. Its flash contains the boot loader of a stock UNO or of an old Nano.
+//! A new board on a serial port of this machine, for tests of programs that write firmware to boards. The board is
+//! simulated in real time on a pseudo terminal. Its flash contains the boot loader of a stock UNO or of an old Nano.
 
 use std::path::PathBuf;
 use std::time::Duration;
 
 use lizard_host_tests::root;
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::{Edge, Fidelity, Image, Port, Uno};
 
 use crate::shell::Shell;
 
-/// Address of the first byte of a UNO's boot loader. The firmware must end before this address.
+/// The address of the first byte of a UNO's boot loader. The firmware must end before this address.
 pub const BOOT_LOADER_START: usize = 0x7e00;
 
 /// Loads the boot loader of a stock UNO.
-pub fn uno_boot_loader() -> Image {
+pub fn load_uno_boot_loader() -> Image {
     load_boot_loader("optiboot.elf")
 }
 
@@ -24,7 +24,7 @@ pub fn load_boot_loader(name: &str) -> Image {
     Image::read(path).expect("`make flash-test` has built the boot loader")
 }
 
-/// A simulated board at a serial port of this machine, and the edges of its pins.
+/// A simulated board on a serial port of this machine, and the edges of its pins.
 pub struct Desk {
     pub uno: Uno,
     pub port: Port,
@@ -33,7 +33,7 @@ pub struct Desk {
 
 impl Desk {
     pub fn with_new_uno() -> Self {
-        Self::with_boot_loader(uno_boot_loader())
+        Self::with_boot_loader(load_uno_boot_loader())
     }
 
     pub fn with_boot_loader(boot_loader: Image) -> Self {
@@ -51,7 +51,7 @@ impl Desk {
 
     /// Runs the board until the condition holds. Returns false if the condition does not hold within the time limit.
     pub fn run_until(&mut self, mut condition: impl FnMut(&mut Uno) -> bool) -> bool {
-        LIMIT.wait_for(|| {
+        TIME_LIMIT.poll(|| {
             let period = Duration::from_millis(10);
             self.port
                 .serve(&mut self.uno, period)
@@ -71,11 +71,11 @@ impl Desk {
         };
         assert!(
             is_in_time && screen.contains(text),
-            "waited up to {LIMIT} for {text:?} in\n{screen}"
+            "waited up to {TIME_LIMIT} for {text:?} in\n{screen}"
         );
     }
 
-    /// Runs the board until the program in the shell has ended. Returns all output of the program.
+    /// Runs the board until the program in the shell has ended. Returns the program's entire output.
     pub fn run_until_exit(&mut self, shell: &Shell) -> String {
         let has_ended = self.run_until(|_| shell.has_ended());
         let screen = if has_ended {
@@ -85,29 +85,29 @@ impl Desk {
         };
         assert!(
             has_ended,
-            "waited {LIMIT} for the end of the upload:\n{screen}"
+            "waited {TIME_LIMIT} for the end of the upload:\n{screen}"
         );
         screen
     }
 
-    /// Returns the addresses below the boot loader where the flash differs from a program.
-    pub fn differences(&self, program: &[u8]) -> Vec<usize> {
+    /// Returns the addresses below the boot loader at which flash differs from a program.
+    pub fn find_differences(&self, program: &[u8]) -> Vec<usize> {
         let flash = self.uno.flash();
         (0..BOOT_LOADER_START)
             .filter(|&address| flash[address] != program[address])
             .collect()
     }
 
-    /// Asserts that the flash contains this program and the unchanged boot loader of a stock UNO.
+    /// Asserts that flash contains this program and the unchanged boot loader of a stock UNO.
     pub fn assert_written(&self, program: &[u8]) {
-        let wrong_addresses = self.differences(program);
+        let wrong_addresses = self.find_differences(program);
         assert!(
             wrong_addresses.is_empty(),
-            "the flash differs at {wrong_addresses:x?}"
+            "flash differs from the program at {wrong_addresses:x?}"
         );
-        let new_uno = Uno::with_boot_loader(uno_boot_loader(), Fidelity::DataSheet);
+        let new_uno = Uno::with_boot_loader(load_uno_boot_loader(), Fidelity::DataSheet);
         let is_unchanged =
             self.uno.flash()[BOOT_LOADER_START..] == new_uno.flash()[BOOT_LOADER_START..];
-        assert!(is_unchanged, "the boot loader has changed");
+        assert!(is_unchanged, "the boot loader was changed");
     }
 }

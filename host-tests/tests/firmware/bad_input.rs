@@ -1,5 +1,5 @@
-//! Robustness tests of the running image: floods of random bytes and of nearly valid lines, at the full rate of the
-//! serial line, for 15 seconds each. The variable `LIZARD_FUZZ`, if set, multiplies this time.
+//! Robustness tests of the running image: floods of random bytes and of nearly valid lines at the serial line's full
+//! rate, for 15 seconds each. The environment variable `LIZARD_FUZZ` multiplies this time.
 
 use fastrand::Rng;
 use lizard_core::memory::copies::{self, SavedState};
@@ -10,9 +10,9 @@ use simulated_uno::{CYCLES_PER_MS, EepromOperation, Fidelity};
 
 use crate::baud_rate::ask_until_answered;
 use crate::measurements::recorded_pulses;
-use crate::{boot_standing, end_flood, random_lines};
+use crate::{boot_to_stand, end_flood, random_lines};
 
-/// Bytes that the serial line carries in a second.
+/// Bytes that the serial line carries per second.
 const BYTES_PER_SECOND: usize = 11_520;
 
 /// The duration of each flood, s.
@@ -20,7 +20,7 @@ const FLOOD_SECONDS: u64 = 15;
 
 /// Sends bytes for the duration of a flood, and checks the pulses every second.
 fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> FirmwareBench {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut rng = lizard_host_tests::rng(77);
     bench.uno.take_edges();
     for second in 0..lizard_host_tests::scaled_count(FLOOD_SECONDS) {
@@ -31,8 +31,8 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
         bench.uno.send(&sent_bytes);
         bench.run_ms(1000);
         for (pulses, servo) in recorded_pulses(&bench).iter().zip(robot().servos()) {
-            let cycles_of_us = |us: f64| (us * CYCLES_PER_US).round() as u64;
-            let allowed_cycles = cycles_of_us(servo.min_us) - 2..=cycles_of_us(servo.max_us) + 2;
+            let us_to_cycles = |us: f64| (us * CYCLES_PER_US).round() as u64;
+            let allowed_cycles = us_to_cycles(servo.min_us) - 2..=us_to_cycles(servo.max_us) + 2;
             for pulse in pulses {
                 let is_allowed = allowed_cycles.contains(&pulse.width);
                 assert!(is_allowed, "{pulse:?} in second {second}");
@@ -41,7 +41,7 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
         bench.uno.take_edges();
     }
     let reset_count = bench.uno.reset_events().len();
-    assert_eq!(reset_count, 1, "there was a reset besides power-on");
+    assert_eq!(reset_count, 1, "the board was reset after power-on");
     // Waits for the bytes that are still queued in the sender and in the robot.
     while bench.uno.bytes_unsent() > 0 {
         bench.run_ms(1000);
@@ -50,9 +50,9 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
     bench
 }
 
-/// Checks that the console answers and the memory is valid.
+/// Checks that the console answers and the EEPROM is valid.
 fn assert_unharmed(mut bench: FirmwareBench) {
-    // Bytes that are not ASCII may have made the robot change its baud rate.
+    // Bytes outside ASCII may have made the robot change its baud rate.
     ask_until_answered(&mut bench);
     assert_eq!(bench.say("watch 0"), "ok watch 0");
     bench.run_ms(300);
@@ -60,7 +60,7 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     assert!(bench.say("status").starts_with("ok gait=stand "));
     let firmware = robot().firmware();
     let contents = bench.uno.eeprom();
-    let mut settings = Settings::of(firmware);
+    let mut settings = Settings::for_robot(firmware);
     let saved_state = copies::load(firmware, &Eeprom::with_bytes(contents), &mut settings);
     let is_valid = matches!(saved_state, SavedState::Latest | SavedState::Blank);
     assert!(is_valid, "{saved_state:?}");
@@ -68,8 +68,8 @@ fn assert_unharmed(mut bench: FirmwareBench) {
     assert!(contents[192..].iter().all(|byte| *byte == 0xff));
     let operations = bench.uno.eeprom_operations();
     println!("{} EEPROM operations", operations.len());
-    let is_slow = |pair: &[EepromOperation]| pair[1].cycle - pair[0].cycle > 3 * CYCLES_PER_MS;
-    assert!(operations.windows(2).all(is_slow));
+    let is_separate = |pair: &[EepromOperation]| pair[1].cycle - pair[0].cycle > 3 * CYCLES_PER_MS;
+    assert!(operations.windows(2).all(is_separate));
 }
 
 #[test]

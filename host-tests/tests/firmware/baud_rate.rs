@@ -1,14 +1,14 @@
-//! Tests of autobaud: the firmware finds the baud rate of its sender.
+//! Tests of autobaud: the firmware finds the sender's baud rate.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::pulses::servo_edges;
-use crate::{Status, boot_and_command, boot_standing, first_moving_gait, run_in_both_simulations};
+use crate::{Status, boot_and_command, boot_to_stand, first_moving_gait, run_in_both_simulations};
 
 /// The baud rates, each with the number of `status` lines until the first answer after a cold start. One line is lost
-/// at each rate that the robot tries first, and one more line is lost because only a part of it is received.
+/// at each rate that the robot tries first, and one more because the robot receives only part of it.
 const BAUD_RATES: [(f64, u32); 4] = [(115_200.0, 1), (57_600.0, 3), (38_400.0, 4), (9_600.0, 5)];
 
 /// Sends `status` until the robot answers, and returns the number of lines sent.
@@ -17,7 +17,7 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
         let line_count = bench.lines().len();
         bench.uno.send(b"status\n");
         bench.run_ms(350);
-        let mut texts = bench.texts_since(line_count).into_iter();
+        let mut texts = bench.texts_from(line_count).into_iter();
         if texts.any(|text| text.starts_with("ok gait=")) {
             return sent_count;
         }
@@ -25,22 +25,25 @@ pub fn ask_until_answered(bench: &mut FirmwareBench) -> u32 {
     panic!("no answer at any rate");
 }
 
-/// Returns a board whose robot has found this baud rate.
+/// Boots a board and lets its robot find this baud rate.
 fn boot_at(baud: f64) -> FirmwareBench {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.uno.set_baud(baud);
     ask_until_answered(&mut bench);
-    assert!((bench.uno.chip_baud() / baud - 1.0).abs() < 0.022, "{baud}");
+    assert!(
+        (bench.uno.chip_baud() / baud - 1.0).abs() < 0.022,
+        "{baud} baud"
+    );
     bench
 }
 
 #[test]
-fn a_robot_answers_at_each_baud_rate_after_a_few_lines_and_then_at_once() {
-    // Stock simavr delivers every byte, whatever its rate, so only the corrected simulation can test this.
+fn a_robot_finds_each_baud_rate_within_a_few_lines() {
+    // Stock simavr delivers every byte at any rate, so only the corrected simulation can test this.
     for (baud, expected_line_count) in BAUD_RATES {
-        // Slow and fast senders.
+        // The senders are slow, exact and fast.
         for factor in [0.985, 1.0, 1.02] {
-            let mut bench = boot_standing(Fidelity::DataSheet);
+            let mut bench = boot_to_stand(Fidelity::DataSheet);
             bench.uno.set_baud(baud * factor);
             let line_count = ask_until_answered(&mut bench);
             assert_eq!(line_count, expected_line_count, "{baud} baud");
@@ -50,16 +53,16 @@ fn a_robot_answers_at_each_baud_rate_after_a_few_lines_and_then_at_once() {
 }
 
 #[test]
-fn a_command_at_another_rate_is_reported_as_garbled_and_not_obeyed() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn a_command_at_another_rate_is_reported_as_garbled_and_not_executed() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.uno.set_baud(9_600.0);
-    let garbled_answer = "err 1 the line came garbled, send it again";
+    let garbled_answer = "err 1 the line was garbled; send it again";
     let line_count = bench.lines().len();
     for _ in 0..12 {
         bench.uno.send(b"cal\n");
         bench.run_ms(350);
     }
-    let answers = bench.texts_since(line_count);
+    let answers = bench.texts_from(line_count);
     let garbled_answers = answers.iter().filter(|answer| *answer == garbled_answer);
     assert!(garbled_answers.count() >= 2, "{answers:?}");
     assert!(answers.iter().all(|answer| !answer.starts_with("ok")));
@@ -109,7 +112,7 @@ fn a_reset_or_power_on_restores_115_200_baud_and_a_hang_keeps_the_rate() {
 }
 
 #[test]
-fn no_pulse_moves_by_a_cycle_while_the_baud_rate_is_sought() {
+fn the_baud_rate_search_moves_no_pulse_by_a_cycle() {
     run_in_both_simulations(|fidelity| {
         let gait = first_moving_gait();
         let [undisturbed_edges, disturbed_edges] = [false, true].map(|is_disturbed| {
@@ -131,13 +134,13 @@ fn no_pulse_moves_by_a_cycle_while_the_baud_rate_is_sought() {
             servo_edges(&bench)
         });
         assert!(undisturbed_edges.len() > 4_000);
-        assert!(undisturbed_edges == disturbed_edges, "an edge has moved");
+        assert!(undisturbed_edges == disturbed_edges, "an edge moved");
     });
 }
 
 #[test]
-fn noise_is_never_obeyed_and_the_rate_is_found_again() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn noise_is_never_executed_and_the_rate_is_found_again() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let line_count = bench.lines().len();
     let mut rng = Rng::with_seed(5);
     for _ in 0..400 {
@@ -146,7 +149,7 @@ fn noise_is_never_obeyed_and_the_rate_is_found_again() {
         bench.uno.send_with_framing_error(&noise);
         bench.run_ms(rng.u64(1..60));
     }
-    let mut texts = bench.texts_since(line_count).into_iter();
+    let mut texts = bench.texts_from(line_count).into_iter();
     assert!(!texts.any(|text| text.starts_with("ok ")));
     bench.uno.set_baud(115_200.0);
     assert!(ask_until_answered(&mut bench) <= 8);
@@ -160,7 +163,7 @@ fn garbled_bytes_between_commands_do_not_change_the_rate() {
     for _ in 0..40 {
         bench.uno.send_with_framing_error(&[0x55; 31]);
         bench.run_ms(100);
-        assert_eq!(bench.say(""), "err 1 the line came garbled, send it again");
+        assert_eq!(bench.say(""), "err 1 the line was garbled; send it again");
         bench.expect_ok(&gait);
         bench.uno.send_with_framing_error(&[0x55; 31]);
         bench.uno.send(b"\n");

@@ -1,11 +1,11 @@
-//! Tests of the bench itself, on a small program that answers lines and drives four servos as the firmware does.
+//! Tests of the bench itself, with a small program that, like the firmware, answers lines and drives four servos.
 
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, avr_gcc::compile_c};
 use simulated_uno::{Fidelity, Uno};
 
 /// A program that times slots of 4 ms in a busy loop, without interrupts. The pulses of A1 to A4 are 1000, 1200, 1400
-/// and 1600 us wide in the first frame, and grow by one microsecond per frame. The byte `r` stops the pulses, and `?`
-/// prints two notes and an answer.
+/// and 1600 us wide in the first frame, and lengthen by one microsecond per frame. The byte `r` stops the pulses, and
+/// `?` prints two notes and an answer.
 const SERVO_PROGRAM: &str = r##"
     #include <avr/io.h>
     static void write(const char *text) {
@@ -40,18 +40,18 @@ const SERVO_PROGRAM: &str = r##"
         }
     }"##;
 
-fn bench_with(program: &str) -> FirmwareBench {
+fn load_program(program: &str) -> FirmwareBench {
     let uno = Uno::with_image(compile_c(program), Fidelity::DataSheet);
     FirmwareBench::with_uno(uno)
 }
 
-fn bench() -> FirmwareBench {
-    bench_with(SERVO_PROGRAM)
+fn load_servo_program() -> FirmwareBench {
+    load_program(SERVO_PROGRAM)
 }
 
 #[test]
 fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
-    let mut bench = bench();
+    let mut bench = load_servo_program();
     assert_eq!(bench.next_line(500).as_deref(), Some("# lizard test"));
     let (notes, answer) = bench.ask("?");
     assert_eq!(notes, ["# one", "# two"]);
@@ -63,12 +63,12 @@ fn the_answer_to_a_line_is_distinguished_from_the_notes_before_it() {
 #[test]
 #[should_panic(expected = "no answer to \"x\"")]
 fn a_line_without_an_answer_panics() {
-    bench().say("x");
+    load_servo_program().say("x");
 }
 
 #[test]
 fn each_frame_has_one_pulse_of_each_servo() {
-    let mut bench = bench();
+    let mut bench = load_servo_program();
     bench.run_ms(100);
     let mut frames = bench.run_for_frames(10);
     frames.extend(bench.run_for_frames(5));
@@ -79,7 +79,7 @@ fn each_frame_has_one_pulse_of_each_servo() {
             // One microsecond per frame, 200 us per servo; the loops react within 40 cycles.
             let expected = first_widths[0] + 16 * n as u64 + 3200 * servo as u64;
             let error = width.abs_diff(expected);
-            assert!(error <= 40, "frame {n} servo {servo}: {width}");
+            assert!(error <= 40, "frame {n}, A{}: {width} cycles", servo + 1);
         }
     }
     for pair in frames.windows(2) {
@@ -88,8 +88,8 @@ fn each_frame_has_one_pulse_of_each_servo() {
 }
 
 #[test]
-fn the_calls_of_a_function_are_timed_by_its_name() {
-    let mut bench = bench_with(
+fn the_calls_of_a_named_function_are_timed() {
+    let mut bench = load_program(
         "#include <avr/io.h>
          __attribute__((noinline)) void work(void) { __builtin_avr_delay_cycles(1000); }
          int main(void) { for (;;) work(); }",
@@ -104,12 +104,12 @@ fn the_calls_of_a_function_are_timed_by_its_name() {
 #[test]
 #[should_panic(expected = "no function walk")]
 fn timing_a_function_that_does_not_exist_panics() {
-    bench().time_calls("walk", 1);
+    load_servo_program().time_calls("walk", 1);
 }
 
 #[test]
 fn a_resting_robot_has_silent_frames() {
-    let mut bench = bench();
+    let mut bench = load_servo_program();
     bench.run_ms(100);
     bench.say("r");
     let frames = bench.run_for_frames(3);

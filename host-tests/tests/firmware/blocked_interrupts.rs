@@ -1,4 +1,4 @@
-//! Tests of the servo pulses while interrupts are blocked, for at most [`MAX_BLOCKED_CYCLES`] cycles and for longer.
+//! Tests of the servo pulses while interrupts are blocked for at most [`MAX_BLOCKED_CYCLES`] cycles, and for longer.
 
 use fastrand::Rng;
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
@@ -12,8 +12,8 @@ use crate::{neutral_widths, run_in_both_simulations};
 /// Longest time for which other handlers and code with interrupts disabled may delay a servo interrupt, cycles.
 const MAX_BLOCKED_CYCLES: u64 = 160;
 
-/// An interval of `length` cycles in which interrupts are blocked. It begins `cycles_before_edge` cycles before an
-/// edge.
+/// An interval of `length` cycles in which interrupts are blocked. The interval begins `cycles_before_edge` cycles
+/// before an edge.
 #[derive(Clone, Copy, Debug)]
 struct BlockedInterval {
     cycles_before_edge: u64,
@@ -29,7 +29,7 @@ enum DelayedEdges {
 }
 
 /// Runs one frame for each blocked interval, which delays the chosen edges of all servos. Returns the frames, each with
-/// the widths that it should have.
+/// its interval and its expected widths.
 fn run_blocked_frames(
     run: &mut ReferenceRun,
     edges: DelayedEdges,
@@ -54,15 +54,19 @@ fn run_blocked_frames(
     }
     run.run_to(start + intervals.len() as u64 * FRAME_CYCLES - SLOT_CYCLES / 2);
     let frames = run.frames_since(start);
-    assert_eq!(frames.len(), intervals.len(), "each interval has its frame");
+    assert_eq!(
+        frames.len(),
+        intervals.len(),
+        "not every interval has a frame"
+    );
     let with_interval =
         |(interval, (frame, expected)): (&BlockedInterval, _)| (*interval, frame, expected);
     intervals.iter().zip(frames).map(with_interval).collect()
 }
 
-/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. The starts of the intervals of a length
-/// are seven cycles apart: the first interval begins at the edge, and the last ends before the edge.
-fn too_long_intervals() -> Vec<BlockedInterval> {
+/// Returns blocked intervals of several lengths above [`MAX_BLOCKED_CYCLES`]. For each length, the starts are seven
+/// cycles apart, from an interval that begins at the edge to an interval that ends before the edge.
+fn generate_too_long_intervals() -> Vec<BlockedInterval> {
     [200, 230, 300, 500, 900]
         .into_iter()
         .flat_map(|length| {
@@ -78,7 +82,10 @@ fn too_long_intervals() -> Vec<BlockedInterval> {
 /// Checks that a quarter to three quarters of the edges are late.
 fn assert_near_half(count: u64, edge_count: u64) {
     let allowed_counts = edge_count / 4..edge_count * 3 / 4;
-    assert!(allowed_counts.contains(&count), "{count} of {edge_count}");
+    assert!(
+        allowed_counts.contains(&count),
+        "{count} of {edge_count} edges are late"
+    );
 }
 
 #[test]
@@ -102,13 +109,13 @@ fn interrupts_blocked_for_the_allowed_time_move_no_edge() {
     });
 }
 
-// A late edge is a fault that stops a gait, so in the following tests the robot stands.
+// A late edge is a fault that stops a gait, so the robot stands in the following tests.
 
 #[test]
 fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = too_long_intervals();
+        let intervals = generate_too_long_intervals();
         let mut dropped_count = 0;
         for (interval, frame, expected) in
             run_blocked_frames(&mut run, DelayedEdges::Rising, &intervals)
@@ -125,10 +132,10 @@ fn a_late_rising_edge_drops_its_pulse_and_is_counted() {
 }
 
 #[test]
-fn a_late_falling_edge_is_made_at_once_and_counted() {
+fn a_late_falling_edge_occurs_at_once_and_is_counted() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
-        let intervals = too_long_intervals();
+        let intervals = generate_too_long_intervals();
         let mut late_count = 0;
         for (interval, frame, expected) in
             run_blocked_frames(&mut run, DelayedEdges::Falling, &intervals)
@@ -147,7 +154,7 @@ fn a_late_falling_edge_is_made_at_once_and_counted() {
 }
 
 #[test]
-fn interrupts_blocked_for_most_of_a_slot_drop_its_pulse_and_no_other() {
+fn interrupts_blocked_for_most_of_a_slot_drop_only_its_pulse() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         for (servo, length) in (0..4).zip([20_000, 30_000, 45_000, 62_000]) {
@@ -163,7 +170,7 @@ fn interrupts_blocked_for_most_of_a_slot_drop_its_pulse_and_no_other() {
                     expected[servo as usize] = None;
                 }
                 assert_eq!(frame.widths, expected, "A{} and {length}", servo + 1);
-                // Each pulse starts exactly on the grid of slots.
+                // Each pulse starts exactly at the start of its slot.
                 let slot_starts = [0, 1, 2, 3].map(|slot| frame.start + slot * SLOT_CYCLES);
                 for (start, slot_start) in frame.starts.into_iter().zip(slot_starts) {
                     assert!(start.is_none_or(|start| start == slot_start), "{frame:?}");
@@ -175,7 +182,7 @@ fn interrupts_blocked_for_most_of_a_slot_drop_its_pulse_and_no_other() {
 }
 
 #[test]
-fn a_falling_edge_that_is_missed_is_made_when_the_next_slot_begins() {
+fn a_missed_falling_edge_occurs_when_the_next_slot_begins() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         let pins = run.bench.pins();

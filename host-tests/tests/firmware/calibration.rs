@@ -1,39 +1,39 @@
-//! Tests of the servo settings, measured at the pins, and of the settings that survive a loss of power.
+//! Tests of the servo settings, measured at the pins, and of the settings saved across a loss of power.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::{CYCLES_PER_US, robot};
 use simulated_uno::{CYCLES_PER_MS, EepromOperation, Fidelity, PowerCut, Pulse, State};
 
 use crate::measurements::{
-    assert_no_leap, assert_no_leap_at, measure_widths, power_cycle, read_calibration,
-    recorded_pulses, run_for_pulses, slew_limit,
+    assert_within_slew_limit, assert_within_slew_limit_with, measure_widths, power_cycle,
+    read_calibration, recorded_pulses, run_and_record_pulses, servo_slew_limit,
 };
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
-    Status, boot_standing, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
+    Status, boot_to_stand, first_moving_gait, neutral_widths, pose_command, run_in_both_simulations,
 };
 
-/// Returns A1's pulse width, cycles, for a trim, a gain (us per degree) and a sweep from neutral.
-fn calibrated_width(trim_deg: f64, gain: f64, sweep_deg: f64) -> u64 {
+/// Returns A1's pulse width in cycles for a trim, a scale and a sweep from neutral.
+fn calibrated_width(trim_deg: f64, us_per_degree: f64, sweep_deg: f64) -> u64 {
     let servo = &robot().servos()[0];
-    ((servo.neutral_us + gain * (trim_deg + sweep_deg)) * CYCLES_PER_US).round() as u64
+    ((servo.neutral_us + us_per_degree * (trim_deg + sweep_deg)) * CYCLES_PER_US).round() as u64
 }
 
-/// Returns A1's gain, us per degree.
-fn gain() -> f64 {
+/// Returns A1's scale, us per degree.
+fn a1_us_per_degree() -> f64 {
     robot().servos()[0].us_per_degree
 }
 
-/// Asserts that a pulse width (cycles) is the expected one, within the rounding of angles.
+/// Asserts that a pulse width in cycles matches the expected width, except for the rounding of angles.
 fn assert_near(width: u64, expected: u64, message: &str) {
     // An angle is stored in steps of 0.0055 deg and commanded with two decimals.
     assert!(
         width.abs_diff(expected) <= 4,
-        "{message}: {width}, {expected}"
+        "{message}: expected {expected} cycles, got {width}"
     );
 }
 
-/// Checks that each servo has at least `min_count` pulses, all of its width.
+/// Checks that each servo has at least `min_count` pulses, all of its expected width.
 fn assert_steady(pulses: &[Vec<Pulse>; 4], widths: [u64; 4], min_count: usize) {
     for (pulses, width) in pulses.iter().zip(widths) {
         assert!(pulses.len() >= min_count && pulses.iter().all(|pulse| pulse.width == width));
@@ -41,28 +41,29 @@ fn assert_steady(pulses: &[Vec<Pulse>; 4], widths: [u64; 4], min_count: usize) {
 }
 
 #[test]
-fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
+fn a_trim_turns_only_its_servo_within_the_slew_limit() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let trim = [20, 10, 5, 2]
             .into_iter()
             .find(|trim| bench.say(&format!("trim 1 {trim}")) == format!("ok trim 1 {trim}"))
-            .expect("some trim suits the gaits");
+            .expect("one of the trims is compatible with the gaits");
         bench.say("trim 1 0");
         bench.run_ms(500);
         bench.uno.take_edges();
         bench.say(&format!("trim 1 {trim}"));
         bench.run_ms(1000);
         let pulses = recorded_pulses(&bench);
-        assert_no_leap(&pulses);
-        let is_fast = |pair: &[Pulse]| pair[0].width.abs_diff(pair[1].width) + 6 > slew_limit(0);
+        assert_within_slew_limit(&pulses);
+        let is_fast =
+            |pair: &[Pulse]| pair[0].width.abs_diff(pair[1].width) + 6 > servo_slew_limit(0);
         let has_fast_change = pulses[0].windows(2).any(is_fast);
         assert!(
             has_fast_change || trim < 10,
             "no change reaches the slew limit"
         );
         let last_width = pulses[0].last().expect("A1 has a pulse").width;
-        let expected_width = calibrated_width(trim.into(), gain(), 0.0);
+        let expected_width = calibrated_width(trim.into(), a1_us_per_degree(), 0.0);
         assert_near(last_width, expected_width, "trimmed");
         for (pulses, neutral) in pulses.iter().zip(neutral_widths()).skip(1) {
             assert!(pulses.iter().all(|pulse| pulse.width == neutral));
@@ -73,35 +74,35 @@ fn a_trim_turns_its_servo_alone_and_no_faster_than_the_slew_limit() {
 }
 
 #[test]
-fn a_new_scale_or_direction_shows_in_the_pulses_within_half_a_second() {
+fn a_new_scale_or_direction_changes_the_pulses_within_half_a_second() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
-        let gain_magnitude = gain().abs();
+        let mut bench = boot_to_stand(fidelity);
+        let scale_magnitude = a1_us_per_degree().abs();
         bench.say(&pose_command([5.0, 0.0, 0.0, 0.0]));
         bench.run_ms(1000);
-        let expected_width = calibrated_width(0.0, gain(), 5.0);
+        let expected_width = calibrated_width(0.0, a1_us_per_degree(), 5.0);
         assert_near(measure_widths(&mut bench)[0], expected_width, "before");
-        let scale = gain_magnitude + 1.25;
+        let scale = scale_magnitude + 1.25;
         bench.expect_ok(&format!("scale 1 {scale:.2}"));
         bench.run_ms(500);
-        let expected_width = calibrated_width(0.0, scale.copysign(gain()), 5.0);
+        let expected_width = calibrated_width(0.0, scale.copysign(a1_us_per_degree()), 5.0);
         assert_near(measure_widths(&mut bench)[0], expected_width, "scaled");
-        let other_direction = if gain() > 0.0 { '-' } else { '+' };
+        let other_direction = if a1_us_per_degree() > 0.0 { '-' } else { '+' };
         bench.expect_ok(&format!("dir 1 {other_direction}"));
         bench.uno.take_edges();
         bench.run_ms(500);
-        let mut gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
-        gains[0] = scale;
-        assert_no_leap_at(&recorded_pulses(&bench), gains);
-        let expected_width = calibrated_width(0.0, -scale.copysign(gain()), 5.0);
-        let turned_width = measure_widths(&mut bench)[0];
-        assert_near(turned_width, expected_width, "in the other direction");
+        let mut scales = robot().servos().each_ref().map(|servo| servo.us_per_degree);
+        scales[0] = scale;
+        assert_within_slew_limit_with(&recorded_pulses(&bench), scales);
+        let expected_width = calibrated_width(0.0, -scale.copysign(a1_us_per_degree()), 5.0);
+        let reversed_width = measure_widths(&mut bench)[0];
+        assert_near(reversed_width, expected_width, "in the other direction");
     });
 }
 
 #[test]
 fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let neutral = robot().servos()[0].neutral;
     let calibration_before = read_calibration(&mut bench);
     let too_narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 0.5, neutral + 0.5);
@@ -111,7 +112,7 @@ fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
         let calibration = read_calibration(&mut bench);
         assert_eq!(
             calibration, calibration_before,
-            "a refused line has changed it"
+            "a refused line changed the calibration"
         );
     }
     let narrow_line = format!("limit 1 {:.2} {:.2}", neutral - 40.0, neutral + 40.0);
@@ -123,7 +124,7 @@ fn limits_that_cut_off_a_gait_and_poses_beyond_a_limit_are_refused() {
 #[test]
 fn saved_settings_apply_from_the_first_pulse_after_power_on() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         bench.say("trim 1 1.5");
         bench.say("trim 3 -2");
         bench.say("deadman 2500");
@@ -131,24 +132,28 @@ fn saved_settings_apply_from_the_first_pulse_after_power_on() {
         assert_eq!(bench.say("save"), "ok save");
         bench.run_ms(500);
         let widths = measure_widths(&mut bench);
-        assert_near(widths[0], calibrated_width(1.5, gain(), 0.0), "trimmed");
+        assert_near(
+            widths[0],
+            calibrated_width(1.5, a1_us_per_degree(), 0.0),
+            "trimmed",
+        );
         power_cycle(&mut bench);
         bench.run_ms(700);
-        // From the first pulse on, the widths are those of the saved settings.
+        // From the first pulse on, the widths match the saved settings.
         assert_steady(&recorded_pulses(&bench), widths, 11);
         assert_eq!(read_calibration(&mut bench), calibration);
         let line_count = bench.lines().len();
-        let last_lines = bench.texts_since(line_count - 12).join("\n");
+        let last_lines = bench.texts_from(line_count - 12).join("\n");
         assert!(
             !last_lines.contains("calibration:"),
-            "the memory is valid: {last_lines}"
+            "the saved settings are invalid: {last_lines}"
         );
     });
 }
 
 #[test]
 fn load_factory_and_power_on_discard_unsaved_settings() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let factory_calibration = read_calibration(&mut bench);
     let refusal = bench.say("load");
     assert!(refusal.starts_with("err 9 "), "{refusal}");
@@ -160,7 +165,7 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
     assert_eq!(bench.say("load"), "ok load");
     assert_eq!(read_calibration(&mut bench), saved_calibration);
     bench.run_ms(500);
-    let expected_width = calibrated_width(1.0, gain(), 0.0);
+    let expected_width = calibrated_width(1.0, a1_us_per_degree(), 0.0);
     assert_near(measure_widths(&mut bench)[0], expected_width, "loaded");
     assert_eq!(bench.say("factory"), "ok factory");
     assert_eq!(read_calibration(&mut bench), factory_calibration);
@@ -170,7 +175,7 @@ fn load_factory_and_power_on_discard_unsaved_settings() {
     let calibration = read_calibration(&mut bench);
     assert_eq!(
         calibration, saved_calibration,
-        "`factory` alone has saved settings"
+        "`factory` saved settings without `save`"
     );
 }
 
@@ -198,13 +203,13 @@ fn a_save_writes_only_bytes_that_differ_one_at_a_time_and_loses_no_input() {
                 new_value,
                 ..
             } = operation;
-            assert_ne!(old_value, new_value, "an unchanged byte is written");
+            assert_ne!(old_value, new_value, "an unchanged byte was written");
         }
         for pair in operations.windows(2) {
             let interval = pair[1].cycle - pair[0].cycle;
             assert!(
                 interval >= 3 * CYCLES_PER_MS,
-                "two bytes are written at once"
+                "two bytes were written at once"
             );
         }
         assert_eq!(run.late_edge_count(), 0);
@@ -220,7 +225,7 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
         let start = run.run_to_next_frame();
         let operations_before = run.bench.uno.eeprom_operations().len();
         run.bench.send("save");
-        // The serial line stays busy, since the main loop reads no byte until it has saved.
+        // The serial line stays busy, because the main loop reads no byte until it has saved.
         for _ in 0..14 {
             run.bench.uno.send(b" \t ");
             run.run_to(run.bench.uno.cycle() + FRAME_CYCLES);
@@ -239,14 +244,18 @@ fn every_pulse_of_a_walk_is_exact_while_the_memory_is_written() {
 }
 
 #[test]
-fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
+fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_arrives() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let gait = first_moving_gait();
         bench.expect_ok(&format!("boot {gait}"));
         assert_eq!(bench.say("save"), "ok save");
         power_cycle(&mut bench);
-        assert_steady(&run_for_pulses(&mut bench, 2900), neutral_widths(), 1);
+        assert_steady(
+            &run_and_record_pulses(&mut bench, 2900),
+            neutral_widths(),
+            1,
+        );
         bench.run_ms(300);
         assert_eq!(bench.last_text(), format!("# boot: {gait}"));
         let status = Status::read(&mut bench);
@@ -254,11 +263,15 @@ fn boot_begins_its_gait_three_seconds_after_power_on_unless_a_byte_comes() {
         power_cycle(&mut bench);
         bench.run_ms(2000);
         bench.uno.send(b" ");
-        assert_steady(&run_for_pulses(&mut bench, 4000), neutral_widths(), 1);
+        assert_steady(
+            &run_and_record_pulses(&mut bench, 4000),
+            neutral_widths(),
+            1,
+        );
     });
 }
 
-/// Moves the robot to a pose near the neutral one and returns its pulse widths.
+/// Moves the robot to a pose near neutral and returns its pulse widths.
 fn move_to_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4] {
     bench.say(&pose_command([6.0, -6.0, 6.0, -6.0]));
     bench.run_ms(1000);
@@ -270,7 +283,7 @@ fn move_to_nearby_pose(bench: &mut lizard_host_tests::FirmwareBench) -> [u64; 4]
 #[test]
 fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let rest_widths = move_to_nearby_pose(&mut bench);
         assert_eq!(bench.say("rest"), "ok rest");
         bench.run_ms(400);
@@ -284,11 +297,11 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
                 let tenth = 5 * FRAME_CYCLES + SLOT_CYCLES;
                 assert_eq!(
                     interval, tenth,
-                    "the servos wake not a tenth of a second apart"
+                    "the servos do not wake a tenth of a second apart"
                 );
             }
         }
-        assert_no_leap(&pulses);
+        assert_within_slew_limit(&pulses);
         let widths = measure_widths(&mut bench);
         assert_eq!(widths, neutral_widths(), "the robot does not stand");
         // The robot has moved since it rested, so its saved rest pose is no longer valid.
@@ -300,15 +313,15 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
 }
 
 #[test]
-fn a_power_cut_while_a_rest_is_saved_gives_that_pose_or_the_neutral_one() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn a_power_cut_during_a_rest_save_leaves_the_rest_pose_or_the_neutral_pose() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let blank_eeprom = bench.uno.eeprom();
     let rest_widths = move_to_nearby_pose(&mut bench);
     let operations_before = bench.uno.eeprom_operations().len();
     bench.say("rest");
     bench.run_ms(400);
     let operation_count = bench.uno.eeprom_operations().len() - operations_before;
-    assert!(operation_count > 10, "{operation_count}");
+    assert!(operation_count > 10, "{operation_count} operations");
     let (mut neutral_count, mut rest_count) = (0, 0);
     for operation in 0..operation_count as u64 {
         for (stuck_bits, cut) in [

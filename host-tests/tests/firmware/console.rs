@@ -1,7 +1,7 @@
-//! Tests of the console: each line gets one answer, and the pulses agree with that answer.
+//! Tests of the console: each line gets one answer, and the pulses agree with the answer.
 
 use fastrand::Rng;
-use lizard_host::sim::analysis::servo_frames_of;
+use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host_tests::{
     CYCLES_PER_US, FirmwareBench, Frame, assert_contains, gait_commands, robot,
 };
@@ -9,12 +9,12 @@ use lizard_kinematics::{Check, Limits, Solution};
 use simulated_uno::{FREQUENCY, Fidelity};
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_and_command, boot_standing, first_moving_gait, parse_angles,
-    pose_command, run_in_both_simulations, widths,
+    FRAMES_PER_SECOND, Status, boot_and_command, boot_to_stand, first_moving_gait, frame_widths,
+    parse_angles, pose_command, run_in_both_simulations,
 };
 
-/// Largest rounding error of a printed angle, deg: half a step each of the two printed decimals, of the pulse width
-/// and of the neutral angle.
+/// Largest rounding error of a printed angle, deg: half a step each for the two printed decimals, the pulse width and
+/// the neutral angle.
 const MAX_PRINT_ERROR_DEG: f64 = 0.005 + 0.0032 + 0.0028;
 
 #[test]
@@ -34,12 +34,12 @@ fn the_banner_and_an_answer_come_within_a_second_of_power_on() {
 fn cr_and_lf_and_crlf_each_end_one_line() {
     run_in_both_simulations(|fidelity| {
         for end in ["\r", "\n", "\r\n"] {
-            let mut bench = boot_standing(fidelity);
+            let mut bench = boot_to_stand(fidelity);
             let line_count_before = bench.lines().len();
             let text = format!("{end}{end} \t{end}stand{end}{end}stop{end}status{end}");
             bench.uno.send(text.as_bytes());
             bench.run_ms(300);
-            let lines = bench.texts_since(line_count_before);
+            let lines = bench.texts_from(line_count_before);
             assert_eq!(lines.len(), 3, "{end:?}: {lines:?}");
             assert_eq!(lines[..2], ["ok stand", "ok stop"]);
             assert!(lines[2].starts_with("ok gait=stop "));
@@ -48,10 +48,10 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 }
 
 #[test]
-fn case_and_blanks_do_not_matter() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn letter_case_and_blanks_do_not_matter() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
-    // The gait with the most words in its name.
+    // The test uses the gait with the most words in its name.
     let mut gaits = gait_commands();
     gaits.sort_by_key(|gait| gait.split(' ').count());
     let gait = gaits.pop().expect("every robot has `stand`");
@@ -65,8 +65,8 @@ fn case_and_blanks_do_not_matter() {
 }
 
 #[test]
-fn a_line_may_have_63_characters_and_no_more() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn a_line_has_at_most_63_characters() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let longest_line = format!("stand{}", " ".repeat(58));
     assert_eq!(bench.say(&longest_line), "ok stand");
     assert!(bench.say(&format!("{longest_line} ")).starts_with("err 6 "));
@@ -74,18 +74,18 @@ fn a_line_may_have_63_characters_and_no_more() {
     let answer = bench.say("stop");
     assert_eq!(
         answer, "ok stop",
-        "the line after an overlong line is not read anew"
+        "the remainder of the overlong line was not discarded"
     );
 }
 
 /// Returns poses that violate a servo's travel, a margin and a slider's stroke, each with its error code. The pose for
-/// the stroke is missing if, on this robot, each such pose also violates a limit that the guard checks earlier.
-fn refused_poses() -> Vec<(String, u8)> {
+/// the stroke is missing if every such pose of this robot also violates a limit that the guard checks earlier.
+fn find_refused_poses() -> Vec<(String, u8)> {
     let mut rng = Rng::with_seed(1);
     let mut poses: [Option<String>; 3] = [None, None, None];
     let servos = robot().servos();
     for n in 0..400_000 {
-        // Half of the poses are closer to neutral, where fewer limits are violated at once.
+        // Half of the poses are closer to neutral, where poses violate fewer limits at once.
         let max_sweep = [175.0, 90.0, 45.0, 25.0][n % 4];
         let sweeps: [f64; 4] = std::array::from_fn(|_| max_sweep * (2.0 * rng.f64() - 1.0));
         let is_within_travel = |margin_deg: f64| {
@@ -115,8 +115,8 @@ fn refused_poses() -> Vec<(String, u8)> {
         }
     }
     let [travel, margin, stroke] = poses;
-    let travel = travel.expect("some servo does not turn by 175 degrees either way");
-    let margin = margin.expect("some pose violates a margin");
+    let travel = travel.expect("a pose violates a travel");
+    let margin = margin.expect("a pose violates a margin");
     let stroke = stroke.map(|line| (line, 5));
     println!("a pose that violates only a stroke: {stroke:?}");
     [Some((travel, 3)), Some((margin, 4)), stroke]
@@ -125,8 +125,8 @@ fn refused_poses() -> Vec<(String, u8)> {
         .collect()
 }
 
-/// Returns the error code of a pose within the travel; `None` if the pose is allowed, or so close to a limit that
-/// rounding decides its code. The guard first checks the margins of both five-bars, where crossed crank tips count as a
+/// Returns the error code of a pose within the travel; `None` if the pose is allowed, or so close to a limit that the
+/// code depends on rounding. The guard first checks the margins of both five-bars, where crossed crank tips count as a
 /// type-2 margin below 0, and checks the strokes last.
 fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     let is_violated = |strictness: f64, is_stroke: bool| {
@@ -144,8 +144,8 @@ fn certain_refusal_code(solution: &Solution) -> Option<u8> {
     }
 }
 
-/// Returns the robot's limits, made stricter: the sines by `strictness`, and the strokes by `10 * strictness` mm for
-/// a robot of the paper's size.
+/// Returns stricter limits for the robot: the sines by `strictness`, and the strokes by `10 * strictness` mm for a
+/// robot of the paper's size.
 fn stricter_limits(strictness: f64) -> Limits {
     let limits = robot().limits();
     let scale = robot().lizard().links.l10 / 135.0;
@@ -182,7 +182,7 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
         ("watch 10001", 3),
         (&"stop".repeat(16), 6),
     ];
-    let poses = refused_poses();
+    let poses = find_refused_poses();
     let poses = poses.iter().map(|(line, code)| (line.as_str(), *code));
     let refused_lines: Vec<(&str, u8)> = refused_lines.into_iter().chain(poses).collect();
     run_in_both_simulations(|fidelity| {
@@ -213,7 +213,7 @@ fn every_refused_line_gets_its_error_code_and_changes_nothing() {
 #[test]
 fn while_the_servos_rest_only_stand_moves_them() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         assert_eq!(bench.say("rest"), "ok rest");
         let other_gaits = gait_commands().into_iter().skip(1);
         for line in other_gaits.chain(["stop".into(), pose_command([0.0; 4])]) {
@@ -232,7 +232,7 @@ fn while_the_servos_rest_only_stand_moves_them() {
 
 #[test]
 fn help_names_every_gait_and_the_main_commands() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     for line in ["help", "?"] {
         let (notes, answer) = bench.ask(line);
         assert_eq!(answer, "ok help");
@@ -253,14 +253,15 @@ fn status_agrees_with_the_pulses() {
         bench.say("stop");
         bench.run_ms(100);
         let status = Status::read(&mut bench);
-        let sent_angles = servo_frames_of(robot(), &bench.run_for_frames(1))[0]
+        let sent_angles = compute_servo_frames(robot(), &bench.run_for_frames(1))[0]
             .angles
             .expect("each servo has a pulse");
         for (servo, (printed, sent)) in status.pose().into_iter().zip(sent_angles).enumerate() {
             let error_deg = (printed - sent).abs();
             assert!(
                 error_deg <= MAX_PRINT_ERROR_DEG,
-                "{servo}: {printed} and {sent}"
+                "A{}: printed {printed} deg, sent {sent} deg",
+                servo + 1
             );
         }
         let solution = robot().lizard().solve(&sent_angles.into());
@@ -294,10 +295,10 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
                 gait_cycles
             };
             let error = (phase_change - expected).rem_euclid(1.0);
-            // A phase is printed to a thousandth.
+            // A phase is printed with three decimals.
             assert!(
                 error.min(1.0 - error) <= 0.0021,
-                "{phase_change} in {frames} frames"
+                "phase change {phase_change} in {frames} frames"
             );
         }
         previous_sample = Some((cycle, status));
@@ -306,13 +307,13 @@ fn status_counts_fifty_frames_a_second_and_follows_the_phase() {
 }
 
 #[test]
-fn watch_reports_the_pose_of_every_nth_frame_until_it_is_switched_off() {
+fn watch_reports_the_pose_of_every_nth_frame_until_switched_off() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         assert_eq!(bench.say("watch 7"), "ok watch 7");
         let line_count = bench.lines().len();
         let frames = bench.run_for_frames(75);
-        let sent_frames = servo_frames_of(robot(), &frames);
+        let sent_frames = compute_servo_frames(robot(), &frames);
         // A report after the beginning of the last frame may belong to the next one.
         let end_cycle = frames[74].start;
         let lines: Vec<String> = bench.lines()[line_count..]
@@ -358,7 +359,7 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
             bench.expect_ok(&format!("speed {percent}"));
             bench.run_ms(500);
             let cycle_frames = slowdown * frame_count;
-            let sent_widths = widths(&bench.run_for_frames(2 * cycle_frames));
+            let sent_widths = frame_widths(&bench.run_for_frames(2 * cycle_frames));
             let (first_cycle, second_cycle) = sent_widths.split_at(cycle_frames as usize);
             for (i, servo) in robot().servos().iter().enumerate() {
                 // Allows half a percent of a gait cycle, and one frame, since a gait cycle may not be a whole number
@@ -374,7 +375,7 @@ fn a_gait_cycle_takes_twice_as_long_at_half_speed_and_ten_times_at_a_tenth() {
                     );
                 }
             }
-            // In a gait cycle, each leg makes its full sweep at any speed.
+            // In a gait cycle, each leg makes its full sweep at any pace.
             let a1_widths = first_cycle.iter().map(|widths| widths[0]);
             let (min, max) = (a1_widths.clone().min(), a1_widths.max());
             spans.push(max.unwrap_or(0) - min.unwrap_or(0));

@@ -1,5 +1,5 @@
-//! Comparison of the core on the AVR and on the host, cycle for cycle, with random commands for ten minutes.
-//! `LIZARD_MINUTES=2` shortens the run, so that many robots can be tried.
+//! Cycle-accurate comparison of the core on the AVR and on the host, with random commands for ten minutes.
+//! `LIZARD_MINUTES=2` shortens the run, so that many robots can be tested.
 
 use fastrand::Rng;
 use lizard_host::sim::core_run;
@@ -7,9 +7,9 @@ use lizard_host::sim::frame::{FRAME_CYCLES, first_cycle, group_frames, servo_pin
 use lizard_host_tests::{FirmwareBench, dialogue_minutes, robot};
 use simulated_uno::{CYCLES_PER_MS, FREQUENCY, Fidelity};
 
-use crate::{Status, boot_standing, comparable_line, for_each_in_parallel};
+use crate::{Status, boot_to_stand, for_each_in_parallel, to_comparable_line};
 
-/// Cycles that one byte takes on the serial line, rounded up.
+/// Duration of a byte on the serial line in cycles, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
 
 /// Returns the cycle at which the comparison ends.
@@ -50,9 +50,8 @@ fn random_line(rng: &mut Rng) -> String {
     }
 }
 
-/// Sends lines until a second before the end, and returns their number. Each line ends at a random time within a frame,
-/// at least a millisecond from the ticks, so that its frame is certain. Each line waits for the answer to the previous
-/// line.
+/// Sends lines until a second before the end, and returns their number. Each line waits for the answer to the previous
+/// line, and ends at a random time in a frame, at least a millisecond from the ticks, so that its frame is certain.
 fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) -> u32 {
     let mut sent_count = 0;
     let mut eeprom_cycles = 0;
@@ -70,7 +69,7 @@ fn send_random_lines(bench: &mut FirmwareBench, first_rise: u64, rng: &mut Rng) 
             .run_until_cycle(tick_cycle + frame * FRAME_CYCLES + cycles_in_frame - sending_cycles);
         bench.say(&line);
         sent_count += 1;
-        // The main loop reads no input while it stores or erases the pose of a rest.
+        // The main loop reads no input while it saves or erases a rest pose.
         eeprom_cycles = if line == "rest" { 250 } else { 10 } * CYCLES_PER_MS;
     }
     bench.run_ms(250);
@@ -85,7 +84,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
         (Fidelity::DataSheet, 3),
     ];
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let pins = servo_pins(robot());
         let first_rise = bench.first_pulse_cycle().expect("the robot stands");
         let sent_line_count = send_random_lines(&mut bench, first_rise, &mut Rng::with_seed(seed));
@@ -103,7 +102,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
             let expected = expected.map(u64::from);
             assert_eq!(
                 widths, expected,
-                "frame {n} differs, or the ELF is out of date"
+                "frame {n} differs, or the ELF file is outdated"
             );
             distinct_widths.insert(widths);
         }
@@ -116,14 +115,14 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
         assert!((0..3).all(|i| counts[i] > min_counts[i]), "{counts:?}");
 
         // The answers also agree, except for the fault counters, which are 0 on the host. Reports are not compared,
-        // since the frame in which one is printed also depends on the free space in the serial buffer.
+        // because the frame of a report also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
-        let to_comparable = |line: &'_ str| comparable_line(line, fidelity);
+        let to_comparable = |line: &'_ str| to_comparable_line(line, fidelity);
         let expected = commands.text.lines().filter(is_answer).map(to_comparable);
         let expected: Vec<String> = expected.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answers: Vec<String> = lines.filter(is_answer).map(to_comparable).collect();
-        // The UNO runs beyond the last complete frame, and may have answered once more.
+        // The UNO runs beyond the last complete frame, and may have sent one more answer.
         let extra_count = answers.len().saturating_sub(expected.len());
         assert!(extra_count <= 1, "{extra_count} answers more than expected");
         assert_eq!(answers[..answers.len() - extra_count], expected);

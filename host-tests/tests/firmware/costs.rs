@@ -1,6 +1,6 @@
-//! Tests of the firmware's costs: they meet every budget of `lizard sim bench` that is counted in cycles or bytes.
+//! Tests that the firmware meets every budget of `lizard sim bench` that is counted in cycles or bytes.
 
-use lizard_host::bench::{Figures, rows};
+use lizard_host::bench::{Measurements, list_rows};
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, patrolling_robot, robot};
 use simulated_uno::Fidelity;
 
@@ -8,11 +8,14 @@ use crate::{FRAMES_PER_SECOND, boot_and_command, first_moving_gait};
 
 #[test]
 fn every_budget_is_met() {
-    let (elf, patrolling_robot) = (FirmwareBench::elf(), Some(patrolling_robot()));
-    let figures = Figures::measure(&elf, robot(), patrolling_robot, |_| {});
-    let figures = figures.expect("the measurement runs");
+    let (elf, patrolling_robot) = (FirmwareBench::elf_path(), Some(patrolling_robot()));
+    let measurements = Measurements::measure(&elf, robot(), patrolling_robot, |_| {});
+    let measurements = measurements.expect("the measurement runs");
     let mut missed_rows = Vec::new();
-    for row in rows(&figures).iter().filter(|row| !row.wall_clock) {
+    for row in list_rows(&measurements)
+        .iter()
+        .filter(|row| !row.wall_clock)
+    {
         println!(
             "{:<30} {:>8.1?} {:<6} {:?}",
             row.what, row.measured, row.unit, row.budget
@@ -23,25 +26,25 @@ fn every_budget_is_met() {
     }
     assert!(missed_rows.is_empty(), "{missed_rows:#?}");
     // A measurement without any result would also meet most budgets.
-    assert!(figures.max_serial_interrupt_cycles > 50);
-    assert!(figures.max_tick_latency > figures.max_tick_cycles);
-    assert!(figures.mean_servo_interrupt_cycles > 1000.0);
-    let routine_cycles = figures.mean_routine_tick_cycles;
+    assert!(measurements.max_serial_interrupt_cycles > 50);
+    assert!(measurements.max_tick_latency > measurements.max_tick_cycles);
+    assert!(measurements.mean_servo_interrupt_cycles > 1000.0);
+    let routine_cycles = measurements.mean_routine_tick_cycles;
     assert!(routine_cycles.is_some_and(|mean| mean > 1_000.0));
     // No run uses more stack than the static analysis predicts, and the worst run comes close to the prediction.
-    let excess_bytes = i32::from(figures.stack_spare) - figures.stack_margin;
+    let excess_bytes = i32::from(measurements.stack_spare) - measurements.stack_margin;
     println!("the static analysis exceeds the measured stack by {excess_bytes} bytes");
     assert!((0..150).contains(&excess_bytes), "{excess_bytes}");
     if let (Some(tick_cycles), Some(guard_cycles), Some(main_cycles)) = (
-        figures.mean_tick_cycles,
-        figures.mean_guard_cycles,
-        figures.mean_main_cycles,
+        measurements.mean_tick_cycles,
+        measurements.mean_guard_cycles,
+        measurements.mean_main_cycles,
     ) {
-        assert!(tick_cycles > 1000.0 && figures.max_tick_cycles as f64 > tick_cycles);
+        assert!(tick_cycles > 1000.0 && measurements.max_tick_cycles as f64 > tick_cycles);
         assert!(guard_cycles > 100.0 && guard_cycles < tick_cycles && main_cycles > tick_cycles);
         // Where maps certify the cells, the guard makes two comparisons for each pair of servos.
         assert!(
-            guard_cycles < 2_000.0 || !figures.has_maps,
+            guard_cycles < 2_000.0 || !measurements.has_maps,
             "{guard_cycles}"
         );
     }
@@ -68,7 +71,7 @@ fn the_processor_is_awake_for_less_than_a_tenth_of_the_time_in_every_gait() {
 #[test]
 fn every_tick_computes_one_frame() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    // Aligns the run with the frames, so that the timing starts with a complete frame.
+    // Aligns the run with the frames, so that the measurement starts with a complete frame.
     bench.run_for_frames(0);
     let calls = bench.time_calls("Controller::compute_frame", 2000);
     assert_eq!(calls.len() as u64, 2 * FRAMES_PER_SECOND);

@@ -1,14 +1,14 @@
-//! Tests of the fault counters: each test provokes faults and reads their counter, even while the counter changes.
+//! Tests of the fault counters. Each test causes faults and reads their counter, even while the counter changes.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
 
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
-use crate::{Status, boot_standing, run_in_both_simulations};
+use crate::{Status, boot_to_stand, run_in_both_simulations};
 
 #[test]
 fn each_overrun_of_the_receiver_is_counted() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut overruns_before = 0;
     for overrun_count in 1..=5 {
         // Two bytes wait in the buffer, a third is in the shift register, and more arrive.
@@ -30,28 +30,28 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         let late_address = run.variable_address("pulses::LATE_EDGES");
-        // From here on, the robot has stopped because of a late pulse, and the count of frames has four digits, so
-        // all answers have the same length.
+        // From here on, the robot has stopped because of a late pulse, and the frame count has four digits, so all
+        // answers have the same length.
         run.bench.uno.poke(late_address, 255);
         run.bench.run_ms(20_000);
         let start = run.run_to_next_frame();
         let (mut old_value_count, mut new_value_count) = (0, 0);
         // The main loop reads the count about `read_lead` cycles before it writes the last part of the answer, which
-        // is `answer_delay` cycles after the line arrives. Interrupts for ticks and edges lengthen `answer_delay` by
-        // an amount that depends on when in the frame they come. So `answer_delay` is measured repeatedly, with the
-        // read aimed at a rising edge, until it no longer changes. Each attempt takes three frames, so that an answer
-        // is complete before the next line is sent.
-        let rise_of_attempt = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
+        // is `answer_delay` cycles after the line arrives. Interrupts for ticks and edges lengthen `answer_delay`,
+        // depending on their time in the frame. Therefore `answer_delay` is measured repeatedly, with the read aimed
+        // at a rising edge, until the delay no longer changes. Each attempt takes three frames, so that an answer is
+        // complete before the next line is sent.
+        let rise_cycle = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
         let (mut answer_delay, mut read_lead, mut attempt) = (150_000, 2_800, 0);
         loop {
             attempt += 1;
-            let arrival_cycle = rise_of_attempt(attempt) - read_lead - answer_delay;
+            let arrival_cycle = rise_cycle(attempt) - read_lead - answer_delay;
             let new_delay = measure_answer_delay(&mut run, arrival_cycle);
             if new_delay == answer_delay {
                 break;
             }
-            // At some points of the frame, a tick delays only some answers. A little earlier in the frame, a tick
-            // delays every answer or none.
+            // At some times in the frame, a tick delays only some answers. Slightly earlier, a tick delays every
+            // answer or none.
             read_lead += 200 * u64::from(attempt > 4);
             answer_delay = new_delay;
             assert!(attempt < 40, "the answer delay does not converge");
@@ -60,7 +60,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
         // the stall.
         for round in 0..500 {
             // Sending the answer takes most of a frame, and a note may come before it.
-            let rise = rise_of_attempt(attempt + round + 2);
+            let rise = rise_cycle(attempt + round + 2);
             run.run_to(rise - read_lead - answer_delay - 15_000);
             run.bench.uno.poke(late_address, 255);
             run.bench.uno.poke(late_address + 1, 0);
@@ -82,7 +82,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             {
                 Some("255") => old_value_count += 1,
                 Some("256") => new_value_count += 1,
-                count => panic!("{count:?} in round {round} of the sweep: {answer}"),
+                count => panic!("round {round}: unexpected count {count:?} in {answer}"),
             }
         }
         let counts = (old_value_count, new_value_count);
@@ -103,8 +103,8 @@ fn send_status_at(run: &mut ReferenceRun, arrival_cycle: u64) {
     run.bench.uno.send(b"\n");
 }
 
-/// Returns the cycles from the last byte of `status`, which arrives at `arrival_cycle`, to the last part of its
-/// answer, which contains the counts.
+/// Sends `status` so that its last byte arrives at `arrival_cycle`. Returns the cycles from this byte to the last part
+/// of the answer, which contains the counts.
 fn measure_answer_delay(run: &mut ReferenceRun, arrival_cycle: u64) -> u64 {
     send_status_at(run, arrival_cycle);
     let part_calls = run.bench.time_calls("print::print_answer", 30);

@@ -1,27 +1,27 @@
-//! Tests of the firmware with a missing or damaged robot section in the flash: the firmware sends no pulse, and its
-//! console and LED say why. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads
-//! the chip's flash, where no slice bound stops a read beyond the section.
+//! Tests of the firmware with a missing or damaged robot section in flash: the firmware sends no pulse, and its console
+//! and LED show the reason. The core's own tests (`section/damaged.rs`) flip every bit. Here the firmware itself reads
+//! the chip's flash, where no bounds checking stops a read beyond the section.
 
 use std::mem::offset_of;
 use std::ops::Range;
 
 use lizard_core::console::word::Word;
-use lizard_core::numbers::section::{Header, Numbers, SPACE_BYTES, START_ADDRESS, write_checksum};
+use lizard_core::numbers::section::{Header, Numbers, REGION_BYTES, START_ADDRESS, write_checksum};
 use lizard_host::board::SimulatedBoard;
 
-use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, rng, robot, robot_named};
+use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, load_named_robot, rng, robot};
 
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin};
 
-use crate::measurements::LED;
+use crate::measurements::LED_PIN;
 use crate::{first_moving_gait, for_each_in_parallel, pose_command, run_in_both_simulations};
 
-const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash, write one";
+const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash; write one";
 const OTHER_VERSION_NOTE: &str =
-    "# fault: the robot in the flash is for another version, write it again";
-const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged, write it again";
+    "# fault: the robot in the flash is for another version; write it again";
+const DAMAGED_ROBOT_NOTE: &str = "# fault: the robot in the flash is damaged; write it again";
 
-/// Bytes in the flash in place of a valid robot.
+/// Bytes in flash in place of a valid robot.
 struct DamagedSection {
     description: String,
     section: Vec<u8>,
@@ -65,14 +65,14 @@ fn write_word(section: &mut [u8], offset: usize, word: u16) {
 }
 
 /// Returns sections that are missing, truncated or for another version.
-fn missing_sections() -> Vec<DamagedSection> {
+fn build_missing_sections() -> Vec<DamagedSection> {
     let mut sections = vec![
         damage_section("erased flash", MISSING_ROBOT_NOTE, Vec::clear),
         damage_section("zeros", MISSING_ROBOT_NOTE, |section| {
-            *section = vec![0; SPACE_BYTES.into()];
+            *section = vec![0; REGION_BYTES.into()];
         }),
         damage_section("a program's noise", MISSING_ROBOT_NOTE, |section| {
-            *section = vec![0; SPACE_BYTES.into()];
+            *section = vec![0; REGION_BYTES.into()];
             rng(160).fill(section);
         }),
     ];
@@ -110,8 +110,8 @@ fn missing_sections() -> Vec<DamagedSection> {
 }
 
 /// Returns sections with one flipped bit each: one for each field of the header, and one for each of forty parts of the
-/// rest of the section.
-fn sections_with_flipped_bit() -> Vec<DamagedSection> {
+/// remaining section.
+fn build_sections_with_flipped_bit() -> Vec<DamagedSection> {
     let rng = &mut rng(161);
     let header_bytes = size_of::<Header>();
     let rest_bytes = robot().section().len() - header_bytes;
@@ -144,8 +144,8 @@ fn sections_with_flipped_bit() -> Vec<DamagedSection> {
     ranges.map(|(range, note)| flip(range, note)).collect()
 }
 
-/// Returns sections whose checksum is right but whose content is wrong.
-fn invalid_sections() -> Vec<DamagedSection> {
+/// Returns sections with a correct checksum but a wrong content.
+fn build_invalid_sections() -> Vec<DamagedSection> {
     vec![
         damage_with_checksum("a servo on the serial line", |section| {
             section[size_of::<Header>() + offset_of!(Numbers, pins)] = 1;
@@ -179,10 +179,10 @@ fn invalid_sections() -> Vec<DamagedSection> {
     ]
 }
 
-/// Returns a board with this damage in its flash, just powered on.
+/// Powers on a board with this damage in its flash.
 fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
-    let space = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(SPACE_BYTES);
+    let space = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
     image
         .replace(space, &damaged.section)
         .expect("the section fits");
@@ -194,12 +194,12 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
     let bench = &mut boot_damaged_board(damaged, Fidelity::DataSheet);
     bench.run_ms(300);
     let banner = format!("# lizard {} without a robot", env!("CARGO_PKG_VERSION"));
-    let lines = bench.texts_since(0);
+    let lines = bench.texts_from(0);
     assert!(lines[0].starts_with(&banner), "{lines:?}");
     assert_eq!(lines[1..], [damaged.expected_note]);
-    // The firmware answers only questions, and refuses all other commands.
-    let questions = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
-    let refused_words = Word::ALL.iter().filter(|word| !questions.contains(word));
+    // The firmware answers only queries, and refuses all other commands.
+    let query_words = [Word::Help, Word::QuestionMark, Word::Status, Word::Watch];
+    let refused_words = Word::ALL.iter().filter(|word| !query_words.contains(word));
     let examples = refused_words.map(|word| word.example().to_owned());
     let moves = [
         first_moving_gait(),
@@ -224,11 +224,15 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
         status,
         "ok gait=rest late=0 rx_lost=0 guard=clear fault=robot reset=power resets=0"
     );
-    let texts = bench.texts_since(0).into_iter();
+    let texts = bench.texts_from(0).into_iter();
     let fault_lines = texts.filter(|text| text.starts_with("# fault:"));
-    assert_eq!(fault_lines.count(), 1, "reports of the fault");
-    let other_edge = bench.uno.edges().into_iter().find(|edge| edge.pin != LED);
-    assert_eq!(other_edge, None, "a pin other than the LED's has changed");
+    assert_eq!(fault_lines.count(), 1, "number of fault reports");
+    let other_edge = bench
+        .uno
+        .edges()
+        .into_iter()
+        .find(|edge| edge.pin != LED_PIN);
+    assert_eq!(other_edge, None, "a pin other than the LED's changed");
     for pin in (2..=12).chain(14..=19).map(Pin::arduino) {
         assert!(!bench.uno.is_high(pin), "{pin}");
     }
@@ -239,27 +243,27 @@ fn assert_finds_no_robot(damaged: &DamagedSection) {
 }
 
 #[test]
-fn without_a_complete_robot_there_is_no_pulse_and_the_console_says_why() {
-    for_each_in_parallel(&missing_sections(), assert_finds_no_robot);
+fn without_a_complete_robot_there_is_no_pulse_and_the_console_names_the_reason() {
+    for_each_in_parallel(&build_missing_sections(), assert_finds_no_robot);
 }
 
 #[test]
 fn with_a_flipped_bit_in_any_part_of_the_robot_there_is_no_pulse() {
-    for_each_in_parallel(&sections_with_flipped_bit(), assert_finds_no_robot);
+    for_each_in_parallel(&build_sections_with_flipped_bit(), assert_finds_no_robot);
 }
 
 #[test]
 fn impossible_numbers_move_no_servo_even_with_a_valid_checksum() {
-    for_each_in_parallel(&invalid_sections(), assert_finds_no_robot);
+    for_each_in_parallel(&build_invalid_sections(), assert_finds_no_robot);
 }
 
-/// The check of the section is the only part of the start that a robot compiled into the firmware would not need.
+/// This check is the only part of the start-up that a robot compiled into the firmware would not need.
 #[test]
 fn the_largest_section_is_checked_within_a_frame() {
     for_each_in_parallel(
         &["grain", "large", "own-gaits", "paper", "unequal"],
         |name| {
-            let robot = robot_named(name);
+            let robot = load_named_robot(name);
             let image = FirmwareBench::image_with(&robot);
             let board = SimulatedBoard::with_image(image, Fidelity::DataSheet, &robot);
             let calls = FirmwareBench(board).time_calls("Robot::open", 200);
@@ -277,11 +281,14 @@ fn the_largest_section_is_checked_within_a_frame() {
 #[test]
 fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
     run_in_both_simulations(|fidelity| {
-        let bench = &mut boot_damaged_board(&missing_sections()[0], fidelity);
+        let bench = &mut boot_damaged_board(&build_missing_sections()[0], fidelity);
         bench.run_ms(8_000);
         let edges = bench.uno.edges();
-        let led_edges: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
-        // Durations of light and dark, in frames.
+        let led_edges: Vec<Edge> = edges
+            .into_iter()
+            .filter(|edge| edge.pin == LED_PIN)
+            .collect();
+        // The durations in frames, with true if the LED was on.
         let durations = led_edges.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME_CYCLES as f64;
             (pair[0].is_rising, frames.round() as u64)

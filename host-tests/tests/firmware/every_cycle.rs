@@ -1,4 +1,4 @@
-//! Test that a byte received at any cycle of a frame moves no edge and is not lost.
+//! Test that a byte arriving at any cycle of a frame moves no edge and is not lost.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use simulated_uno::Fidelity;
@@ -6,9 +6,9 @@ use simulated_uno::Fidelity;
 use crate::reference_run::ReferenceRun;
 use crate::run_in_both_simulations;
 
-/// Returns the number of bytes to send, and the cycles between two bytes, which suffice for the main loop to fall
-/// asleep. In corrected simavr, the bytes cover every cycle of a frame, since the interval and the frame have no common
-/// factor. In stock simavr, they cover every fifth cycle, since the common factor is five.
+/// Returns the number of bytes to send, and the interval between bytes in cycles, which is long enough for the main
+/// loop to fall asleep. In corrected simavr, the bytes cover every cycle of a frame, because interval and frame have no
+/// common factor. In stock simavr, the bytes cover every fifth cycle, because the common factor is five.
 const fn byte_count_and_interval(fidelity: Fidelity) -> (u64, u64) {
     match fidelity {
         Fidelity::DataSheet => (FRAME_CYCLES, 3_001),

@@ -1,11 +1,11 @@
-//! Tests of the faults that stop a motion: each has its own word in `status`, its own message and its own number of LED
+//! Tests of the faults that stop a motion. Each has its own word in `status`, its own message and its own number of LED
 //! flashes.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
-use crate::measurements::{count_flashes, measure_widths, recorded_pulses, run_for_pulses};
+use crate::measurements::{count_flashes, measure_widths, recorded_pulses, run_and_record_pulses};
 use crate::reference_run::ReferenceRun;
 use crate::{Status, boot_and_command, first_moving_gait};
 
@@ -15,7 +15,7 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_co
     let status = Status::read(bench);
     assert_eq!((status.text("gait"), status.text("fault")), ("stop", word));
     let held_widths = measure_widths(bench);
-    for (pulses, width) in run_for_pulses(bench, 1000).iter().zip(held_widths) {
+    for (pulses, width) in run_and_record_pulses(bench, 1000).iter().zip(held_widths) {
         assert!(pulses.len() >= 49 && pulses.iter().all(|pulse| pulse.width == width));
     }
     let line = format!("# fault: {message}");
@@ -30,7 +30,7 @@ fn assert_stopped(bench: &mut FirmwareBench, word: &str, message: &str, flash_co
 }
 
 #[test]
-fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
+fn a_gait_ends_if_no_line_arrives_within_the_deadman_time() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     bench.say("deadman 800");
     let start = bench.uno.cycle();
@@ -49,9 +49,9 @@ fn a_gait_ends_when_no_line_has_come_for_as_long_as_deadman_says() {
     // 800 ms after the last line, which came at 1400 ms plus the time of an answer; a line takes 5 ms.
     assert!(
         stop_ms.is_some_and(|ms| (2_190..2_260).contains(&ms)),
-        "{stop_ms:?}"
+        "stopped after {stop_ms:?} ms"
     );
-    let message = "no line for as long as deadman says, stopped";
+    let message = "no command within the deadman time, stopped";
     assert_stopped(&mut bench, "link", message, 3);
     bench.expect_ok(&first_moving_gait());
     assert_eq!(Status::read(&mut bench).text("fault"), "none");
@@ -79,13 +79,13 @@ fn a_late_edge_stops_the_motion_and_its_pulse_is_dropped() {
     let pulses = recorded_pulses(&run.bench);
     let starts: Vec<u64> = pulses[0].iter().map(|pulse| pulse.start).collect();
     assert_eq!(starts, [rise + FRAME_CYCLES]);
-    let message = "a pulse came late, stopped";
+    let message = "a pulse was late, stopped";
     assert_stopped(&mut run.bench, "late", message, 5);
     assert_eq!(Status::read(&mut run.bench).number("late"), 1.0);
 }
 
 #[test]
-fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
+fn a_stack_overflow_stops_the_motion_permanently() {
     for byte in 0..4 {
         let mut run = ReferenceRun::start_walking(Fidelity::DataSheet);
         let guard_address = run.variable_address("lizard_stack_guard") + byte;
@@ -94,7 +94,7 @@ fn a_stack_that_has_reached_the_data_stops_the_motion_for_good() {
         run.bench.run_ms(100);
         let message = "the stack has grown into the data, stopped";
         assert_stopped(&mut run.bench, "stack", message, 6);
-        // The data may be corrupt, so the robot does not move again.
+        // The data may be corrupt, so the robot must not move again.
         run.bench.say(&first_moving_gait());
         run.bench.run_ms(100);
         let held_widths = measure_widths(&mut run.bench);

@@ -1,62 +1,62 @@
-//! Tests of the gaits at the servo pins: the pulses and the robot's travel agree with the gaits in floating point.
+//! Tests of the gaits at the servo pins: the pulses and the robot's displacement match the gaits in floating point.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use lizard_host::sim::analysis::servo_frames_of;
+use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host_tests::{CYCLES_PER_US, robot};
 use lizard_robot::CheckedGait;
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, boot_standing, for_each_in_parallel};
+use crate::{FRAMES_PER_SECOND, boot_to_stand, for_each_in_parallel};
 
-/// Largest deviation of the gait tables from floating point that the project promises, deg.
+/// Documented maximum error of the gait tables relative to floating point, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
-/// Returns the largest angle error due to the rounding to cycles of 62.5 ns, deg: half a cycle each for the width and
-/// for the neutral width.
+/// Returns the largest angle error due to rounding to cycles of 62.5 ns, deg: half a cycle each for the width and the
+/// neutral width.
 fn max_rounding_error_deg() -> f64 {
-    let gains = robot().servos().map(|servo| servo.us_per_degree.abs());
-    1.0 / CYCLES_PER_US / gains.into_iter().fold(f64::INFINITY, f64::min)
+    let scales = robot().servos().map(|servo| servo.us_per_degree.abs());
+    1.0 / CYCLES_PER_US / scales.into_iter().fold(f64::INFINITY, f64::min)
 }
 
-/// Number of frames in which a gait accelerates at its start.
+/// Number of frames in which a gait accelerates to full pace.
 const ACCELERATION_FRAMES: usize = 7;
 
-/// The share of the full pace that a gait gains in each frame of its acceleration.
+/// The fraction of the full pace that a gait gains in each frame of its acceleration.
 const PACE_STEP: f64 = 147.0 / 1024.0;
 
 /// Starts a gait one second after power-on and returns the servo angles of each frame from then on, deg.
 fn record_angles(gait: &CheckedGait, fidelity: Fidelity) -> Vec<[f64; 4]> {
-    let mut bench = boot_standing(fidelity);
+    let mut bench = boot_to_stand(fidelity);
     let line = gait.command();
     assert_eq!(bench.say(&line), format!("ok {line}"));
     let frames = bench.run_for_frames(
         (3.5 * gait.period() * FRAMES_PER_SECOND as f64) as u64 + 3 * FRAMES_PER_SECOND,
     );
-    let angles_of = |frame: lizard_host::sim::analysis::ServoFrame| {
+    let to_angles = |frame: lizard_host::sim::analysis::ServoFrame| {
         frame.angles.expect("each servo has a pulse")
     };
-    servo_frames_of(robot(), &frames)
+    compute_servo_frames(robot(), &frames)
         .into_iter()
-        .map(angles_of)
+        .map(to_angles)
         .collect()
 }
 
-/// Returns the phase of a gait this many frames after its start.
-fn phase_after(gait: &CheckedGait, frame_count: usize) -> f64 {
+/// Returns the phase of a gait `frame_count` frames after its start.
+fn compute_phase(gait: &CheckedGait, frame_count: usize) -> f64 {
     let pace = |frame: usize| (frame as f64 * PACE_STEP).min(1.0);
     let frames_at_full_pace: f64 = (1..=frame_count).map(pace).sum();
     gait.phase_at(frames_at_full_pace / FRAMES_PER_SECOND as f64)
 }
 
-/// Returns the angles of a gait frame by frame from its start, in floating point, deg.
-fn expected_angles(gait: &CheckedGait, frame_count: usize) -> Vec<[f64; 4]> {
+/// Returns the angles of a gait in each frame from its start, computed in floating point, deg.
+fn compute_expected_angles(gait: &CheckedGait, frame_count: usize) -> Vec<[f64; 4]> {
     (0..frame_count)
-        .map(|n| gait.angles(phase_after(gait, n)))
+        .map(|n| gait.angles(compute_phase(gait, n)))
         .collect()
 }
 
-/// Returns the largest deviation of any servo angle from the gait if the gait starts at frame `start`, deg.
+/// Returns the largest deviation of a servo angle from the gait in deg, if the gait starts at frame `start`.
 fn max_deviation(float_angles: &[[f64; 4]], sent_angles: &[[f64; 4]], start: usize) -> f64 {
     let pairs = sent_angles[start..]
         .iter()
@@ -67,8 +67,8 @@ fn max_deviation(float_angles: &[[f64; 4]], sent_angles: &[[f64; 4]], start: usi
     })
 }
 
-/// Returns the frame at which the gait starts: the frame with the smallest deviation, since the start is the only
-/// unknown of the comparison.
+/// Returns the frame at which the gait starts. This is the frame with the smallest deviation, because the start is the
+/// only unknown in the comparison.
 fn find_gait_start(
     gait: &CheckedGait,
     float_angles: &[[f64; 4]],
@@ -92,7 +92,7 @@ fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
             let sent_angles = record_angles(gait, *fidelity);
-            let float_angles = expected_angles(gait, sent_angles.len());
+            let float_angles = compute_expected_angles(gait, sent_angles.len());
             let start = find_gait_start(gait, &float_angles, &sent_angles);
             let error = max_deviation(&float_angles, &sent_angles, start);
             println!(
@@ -105,10 +105,10 @@ fn the_pulses_of_every_gait_follow_the_gait_frame_by_frame() {
                 "{}: {error} deg",
                 gait.name()
             );
-            // One frame earlier or later would exceed the bound, so the comparison can tell frames apart.
+            // One frame earlier or later, the deviation is larger, so the comparison can distinguish frames.
             if gait.has_movement() {
                 assert!(error > 0.0, "{}: no rounding error", gait.name());
-                // The first frame has no previous one.
+                // The first frame has no previous frame.
                 let neighbours = [Some(start + 1), start.checked_sub(1)];
                 for neighbour in neighbours.into_iter().flatten() {
                     assert!(
@@ -135,22 +135,22 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
         };
         compared_count.fetch_add(usize::from(gait.has_movement()), Ordering::Relaxed);
         let sent_angles = record_angles(gait, Fidelity::DataSheet);
-        let float_angles = expected_angles(gait, sent_angles.len());
+        let float_angles = compute_expected_angles(gait, sent_angles.len());
         let start = find_gait_start(gait, &float_angles, &sent_angles);
-        // Whole gait cycles, from the first frame at full pace that begins a cycle: two if one cycle is not a whole
-        // number of frames.
+        // Compares whole gait cycles, from the first frame at full pace that begins a cycle: two cycles if one cycle is
+        // not a whole number of frames.
         let gait_cycles = if (gait.period() * FRAMES_PER_SECOND as f64).fract() == 0.0 {
             1
         } else {
             2
         };
-        // If two cycles are not a whole number of frames either, the missing part of a frame is negligible.
+        // If two cycles are not a whole number of frames either, the missing fraction of a frame is negligible.
         let frame_count =
             (f64::from(gait_cycles) * gait.period() * FRAMES_PER_SECOND as f64) as usize;
         let phase_step = 1.0 / (gait.period() * FRAMES_PER_SECOND as f64);
         let first_frame = (start + ACCELERATION_FRAMES..sent_angles.len())
             .find(|frame| {
-                let phase = phase_after(gait, frame - start);
+                let phase = compute_phase(gait, frame - start);
                 if gait.is_reversed() {
                     1.0 - phase <= phase_step
                 } else {
@@ -168,7 +168,7 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
             travel.turn / f64::from(gait_cycles),
         );
         println!("{name:<10} {measured_forward:7.2} mm {measured_turn:7.2} deg");
-        // An error of a tenth of a degree may decide which feet stick.
+        // An error of a tenth of a degree may change which feet stick.
         let scale = robot().lizard().links.l10 / 135.0;
         let max_error = (0.3 * scale).max(forward.abs() * 0.02);
         assert!(
@@ -180,6 +180,6 @@ fn the_pulses_of_every_gait_move_the_robot_as_the_contact_model_predicts() {
     let compared_count = compared_count.into_inner();
     assert!(
         compared_count > 0,
-        "for every gait that moves, the prediction depends on a tie"
+        "the prediction of every moving gait depends on a tie between feet"
     );
 }

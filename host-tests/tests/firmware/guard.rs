@@ -1,25 +1,25 @@
-//! Tests of the guard on the chip: it refuses exactly the unsafe poses, and lets no unsafe frame pass.
+//! Tests of the guard on the chip: the guard refuses exactly the unsafe poses, and passes no unsafe frame.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::part::{End, Side};
 use lizard_core::numbers::pose::Pose as Sweeps;
 use lizard_core::numbers::units::Sweep;
-use lizard_host::sim::analysis::servo_frames_of;
+use lizard_host::sim::analysis::compute_servo_frames;
 use lizard_host_tests::robot;
 use lizard_kinematics::{self as kinematics, Limits, Pose, Solution, wrap};
 use lizard_proof::{LENGTH_BAND_STEPS, margin_band};
 use simulated_uno::Fidelity;
 
-use crate::{FRAMES_PER_SECOND, Status, boot_standing, for_each_in_parallel, neutral_widths};
+use crate::{FRAMES_PER_SECOND, Status, boot_to_stand, for_each_in_parallel, neutral_widths};
 
-/// Returns the largest error of the guard's slider position against floating point, mm.
+/// Returns the largest error of the guard's slider position relative to floating point, mm.
 fn max_stroke_error() -> f64 {
     let scales = Side::ALL.map(|side| robot().firmware().slider(side).scale.bits);
     LENGTH_BAND_STEPS / f64::from(1 << scales[0].min(scales[1]))
 }
 
-/// Returns the largest error of a margin that the guard computes, if the type-2 margins are at least `type2`.
+/// Returns the largest error of the guard's margins if the type-2 margins are at least `type2`.
 fn max_margin_error(type2: f64) -> f64 {
     let ends = [
         (End::Head, kinematics::End::Head),
@@ -32,7 +32,7 @@ fn max_margin_error(type2: f64) -> f64 {
     bands[0].max(bands[1])
 }
 
-/// Returns the robot's limits, made stricter by the guard's tolerance (`sign` = 1) or less strict (`sign` = -1).
+/// Returns the robot's limits, tightened (`sign` = 1) or relaxed (`sign` = -1) by the guard's tolerance.
 fn limits_with_tolerance(sign: f64) -> Limits {
     let limits = robot().limits();
     let (margin, stroke) = (max_margin_error(limits.type2), max_stroke_error());
@@ -51,7 +51,7 @@ fn is_safe(angles: [f64; 4], limits: &Limits) -> bool {
     result.is_ok_and(|solution| limits.is_safe(&solution))
 }
 
-/// True if every servo's angle is inside its travel by more than the rounding.
+/// True if every servo's angle is within its travel by more than the rounding error.
 fn is_within_travel(angles: [f64; 4]) -> bool {
     robot().servos().iter().zip(angles).all(|(servo, angle)| {
         let (min, max) = servo.travel();
@@ -60,7 +60,7 @@ fn is_within_travel(angles: [f64; 4]) -> bool {
     })
 }
 
-/// Returns a random pose within this many degrees of neutral, rounded to the two decimals that the console takes.
+/// Returns a random pose within `max_deg` degrees of neutral, rounded to the two decimals that the console accepts.
 fn random_pose_within(rng: &mut Rng, max_deg: f64) -> [f64; 4] {
     std::array::from_fn(|i| {
         let angle = robot().servos()[i].neutral + max_deg * (2.0 * rng.f64() - 1.0);
@@ -78,17 +78,17 @@ fn random_safe_pose(rng: &mut Rng) -> [f64; 4] {
     }
 }
 
-/// Returns the command for a pose whose angles (deg) are in the chassis frame, not from neutral.
+/// Returns the command for a pose with angles in the chassis frame, deg.
 fn pose_line(angles: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles;
     format!("pose {a1} {a2} {a3} {a4}")
 }
 
 #[test]
-fn a_pose_is_accepted_exactly_if_floating_point_finds_it_safe() {
+fn a_pose_is_accepted_exactly_if_it_is_safe_in_floating_point() {
     for_each_in_parallel(&[20.0, 40.0, 80.0], |&max_deg| {
         let mut rng = Rng::with_seed(max_deg as u64);
-        let mut bench = boot_standing(Fidelity::DataSheet);
+        let mut bench = boot_to_stand(Fidelity::DataSheet);
         let (mut accepted_count, mut refused_counts) = (0, [0; 2]);
         for _ in 0..400 {
             let angles = random_pose_within(&mut rng, max_deg);
@@ -113,9 +113,9 @@ fn a_pose_is_accepted_exactly_if_floating_point_finds_it_safe() {
     });
 }
 
-/// Parses a refusal into the name of the violated condition, with its error code, and the value if the guard knows
-/// one: `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...`, `err 5 left
-/// slider is at 55.35 mm, ...`.
+/// Parses a refusal into the name of the violated condition, with its error code, and the value if the refusal gives
+/// one. Examples are `err 4 leg margin of A1 is 0.259, ...`, `err 4 type-2 margin of the head is below 0.1, ...` and
+/// `err 5 left slider is at 55.35 mm, ...`.
 fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     let (name, rest) = answer
         .split_once(" is ")
@@ -128,12 +128,12 @@ fn parse_refusal(answer: &str) -> (&str, Option<f64>) {
     (&name[4..], Some(value.expect("the value is a number")))
 }
 
-/// Returns the value of the named condition in floating point, and the guard's largest error of that value. The name
-/// begins with the error code. `None` if no condition has this name.
-fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
+/// Computes the value of the named condition in floating point, and the guard's largest error for this value; `None` if
+/// no condition has this name. The name begins with the error code.
+fn compute_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f64)> {
     let margins = &solution.margins;
-    // The margin is negative if the crank tips have crossed.
-    let type2_of = |end: usize| {
+    // The margin is negative if the crank tips are crossed.
+    let signed_type2 = |end: usize| {
         let gap = [&solution.head, &solution.tail][end].gap;
         if gap.x < 0.0 {
             -margins.type2[end]
@@ -141,40 +141,24 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
             margins.type2[end]
         }
     };
-    // Where the couplers are nearly in line, an error of a length step turns them by a large angle.
-    let tolerance_of_end = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
+    // If the couplers are nearly in line, an error of one length step turns them by a large angle.
+    let end_tolerance = |end: usize| max_margin_error(margins.type2[end].max(0.05)) + 0.0005;
     let stroke_tolerance = max_stroke_error() + 0.005;
     let conditions = [
         (
             "4 type-2 margin of the head",
-            type2_of(0),
-            tolerance_of_end(0),
+            signed_type2(0),
+            end_tolerance(0),
         ),
         (
             "4 type-2 margin of the tail",
-            type2_of(1),
-            tolerance_of_end(1),
+            signed_type2(1),
+            end_tolerance(1),
         ),
-        (
-            "4 type-1 margin of A1",
-            margins.type1[0],
-            tolerance_of_end(0),
-        ),
-        (
-            "4 type-1 margin of A2",
-            margins.type1[1],
-            tolerance_of_end(0),
-        ),
-        (
-            "4 type-1 margin of A3",
-            margins.type1[2],
-            tolerance_of_end(1),
-        ),
-        (
-            "4 type-1 margin of A4",
-            margins.type1[3],
-            tolerance_of_end(1),
-        ),
+        ("4 type-1 margin of A1", margins.type1[0], end_tolerance(0)),
+        ("4 type-1 margin of A2", margins.type1[1], end_tolerance(0)),
+        ("4 type-1 margin of A3", margins.type1[2], end_tolerance(1)),
+        ("4 type-1 margin of A4", margins.type1[3], end_tolerance(1)),
         ("4 leg margin of A1", margins.leg[0], 0.001),
         ("4 leg margin of A2", margins.leg[1], 0.001),
         ("4 leg margin of A3", margins.leg[2], 0.001),
@@ -187,8 +171,8 @@ fn float_value_and_tolerance(solution: &Solution, name: &str) -> Option<(f64, f6
 }
 
 #[test]
-fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn a_refusal_names_the_violated_condition_and_any_computed_value() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut rng = Rng::with_seed(3);
     let (mut printed_count, mut unknown_count) = (0, 0);
     for _ in 0..400 {
@@ -201,8 +185,8 @@ fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() 
         let solution = match robot().lizard().solve(&Pose::from(angles)) {
             Ok(solution) => solution,
             Err(loop_error) => {
-                // A five-bar that does not close has no margins. But the guard checks the head first, so it may print
-                // the head's value although the tail does not close.
+                // A five-bar that does not close has no margins. The guard checks the head first, so it may print the
+                // head's value even if the tail does not close.
                 let head = robot().lizard().end(kinematics::End::Head);
                 let head = head.forward(angles[0], angles[1]);
                 match head {
@@ -227,13 +211,13 @@ fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() 
             }
         };
         let (float_value, max_error) =
-            float_value_and_tolerance(&solution, name).unwrap_or_else(|| panic!("{answer}"));
+            compute_value_and_tolerance(&solution, name).unwrap_or_else(|| panic!("{answer}"));
         match printed_value {
             Some(printed_value) => {
                 let error = (printed_value - float_value).abs();
                 assert!(
                     error <= max_error,
-                    "{angles:?}: {answer}, not {float_value}"
+                    "{angles:?}: expected {float_value}, got {answer}"
                 );
                 printed_count += 1;
             }
@@ -241,7 +225,7 @@ fn a_refusal_names_the_violated_condition_and_its_value_if_the_guard_knows_it() 
                 assert!(name.starts_with("4 type-2"), "{answer}");
                 assert!(
                     float_value.abs() < 0.1,
-                    "{angles:?}: {answer}, not {float_value}"
+                    "{angles:?}: expected {float_value}, got {answer}"
                 );
                 unknown_count += 1;
             }
@@ -260,7 +244,7 @@ fn no_frame_violates_a_limit_under_random_commands() {
     ];
     for_each_in_parallel(&cases, |&(fidelity, seed)| {
         let mut rng = Rng::with_seed(seed);
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let lines: Vec<String> = robot().gaits().iter().map(|gait| gait.command()).collect();
         let mut frames = Vec::new();
         for _ in 0..150 {
@@ -272,13 +256,13 @@ fn no_frame_violates_a_limit_under_random_commands() {
             assert!(bench.say(&line).starts_with("ok "), "{line}");
             frames.extend(bench.run_for_frames(rng.u64(..2 * FRAMES_PER_SECOND)));
         }
-        let lax_limits = limits_with_tolerance(-1.0);
-        let sent_frames = servo_frames_of(robot(), &frames);
+        let relaxed_limits = limits_with_tolerance(-1.0);
+        let sent_frames = compute_servo_frames(robot(), &frames);
         for frame in &sent_frames {
             let angles = frame.angles.expect("each servo has a pulse");
-            assert!(is_safe(angles, &lax_limits), "{frame:?}");
+            assert!(is_safe(angles, &relaxed_limits), "{frame:?}");
         }
-        // In one frame, no servo moves by more than the slew limits allow.
+        // No servo moves by more in one frame than the slew limits allow.
         let speed_limits = robot().speed_limits();
         let max_step_deg = speed_limits.gait_slew.max(speed_limits.slew) / 50.0;
         for (pair, frame_pair) in sent_frames.windows(2).zip(frames.windows(2)) {
@@ -301,22 +285,22 @@ fn no_frame_violates_a_limit_under_random_commands() {
     });
 }
 
-/// Returns two safe poses, each with a safe path from and to neutral. The straight path between the two is unsafe
-/// for longer than a frame. `None` if no such poses are found.
-fn poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
+/// Finds two safe poses, each with a safe path from and to neutral, whose straight connecting path is unsafe for longer
+/// than a frame; `None` if no such poses are found.
+fn find_poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
     let mut rng = Rng::with_seed(4);
     let firmware = robot().firmware();
-    let steps_of = |angles: [f64; 4]| -> [f64; 4] {
+    let to_steps = |angles: [f64; 4]| -> [f64; 4] {
         let servos = robot().servos();
         std::array::from_fn(|i| wrap(angles[i] - servos[i].neutral) * 65536.0 / 360.0)
     };
     let unsafe_count_between = |from: [f64; 4], to: [f64; 4]| {
-        let (from, to) = (steps_of(from), steps_of(to));
+        let (from, to) = (to_steps(from), to_steps(to));
         let is_unsafe_at = |percent: &u32| {
-            let share = f64::from(*percent) / 100.0;
-            let sweep_at = |i: usize| Sweep((from[i] + share * (to[i] - from[i])) as i16);
-            let pose = Sweeps(std::array::from_fn(sweep_at));
-            Clearance::of(firmware, &pose)
+            let fraction = f64::from(*percent) / 100.0;
+            let sweep = |i: usize| Sweep((from[i] + fraction * (to[i] - from[i])) as i16);
+            let pose = Sweeps(std::array::from_fn(sweep));
+            Clearance::measure(firmware, &pose)
                 .first_hazard(firmware)
                 .is_some()
         };
@@ -333,7 +317,7 @@ fn poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
             if let Some(kept_pose) = partner {
                 return Some([*kept_pose, pose]);
             }
-            // Keeps few poses, so that all pairs can be tried: some robots have no unsafe path.
+            // Keeps few poses, so that all pairs can be tried, because some robots have no unsafe path.
             if kept_poses.len() < 40 {
                 kept_poses.push(pose);
             }
@@ -342,11 +326,11 @@ fn poses_with_unsafe_path() -> Option<[[f64; 4]; 2]> {
     None
 }
 
-/// Checks that the robot reaches every safe pose and that the guard never holds it, for robots without an unsafe
-/// path between two safe poses.
+/// Checks that a robot without an unsafe path between two safe poses reaches every safe pose, and that the guard never
+/// holds the robot.
 fn assert_every_safe_pose_is_reached() {
     let mut rng = Rng::with_seed(4);
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     for _ in 0..20 {
         let pose = random_safe_pose(&mut rng);
         assert!(bench.say(&pose_line(pose)).starts_with("ok pose"));
@@ -360,7 +344,7 @@ fn assert_every_safe_pose_is_reached() {
         for (actual, expected) in status.pose().into_iter().zip(pose) {
             assert!(
                 wrap(actual - expected).abs() <= 0.02,
-                "{actual}, not {expected}"
+                "expected {expected} deg, got {actual}"
             );
         }
     }
@@ -368,12 +352,12 @@ fn assert_every_safe_pose_is_reached() {
 
 #[test]
 fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
-    let Some([from, to]) = poses_with_unsafe_path() else {
+    let Some([from, to]) = find_poses_with_unsafe_path() else {
         assert_every_safe_pose_is_reached();
         return;
     };
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
-        let mut bench = boot_standing(*fidelity);
+        let mut bench = boot_to_stand(*fidelity);
         assert!(bench.say(&pose_line(from)).starts_with("ok pose"));
         bench.run_ms(5000);
         assert!(bench.say(&pose_line(to)).starts_with("ok pose"));
@@ -382,7 +366,7 @@ fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
         assert_eq!(Status::read(&mut bench).text("guard"), "held");
         let frames = bench.run_for_frames(FRAMES_PER_SECOND);
         assert!(frames.iter().all(|frame| frame.widths == frames[0].widths));
-        let held_angles = servo_frames_of(robot(), &frames)[0]
+        let held_angles = compute_servo_frames(robot(), &frames)[0]
             .angles
             .expect("each servo has a pulse");
         assert!(is_safe(held_angles, &limits_with_tolerance(-1.0)) && held_angles != from);

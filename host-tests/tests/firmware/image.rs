@@ -1,19 +1,19 @@
-//! Tests of the firmware's ELF: it contains no panic, no floating point and no `core::fmt`, and its tables stay in
-//! flash.
+//! Tests of the firmware's ELF file: it contains no panics, no floating point and no `core::fmt`, and its tables stay
+//! in flash.
 
 use std::process::Command;
 
 use lizard_host_tests::{FirmwareBench, robot, root};
 use simulated_uno::{Fidelity, Image, SRAM_END, SRAM_START};
 
-use crate::{Status, boot_standing};
+use crate::{Status, boot_to_stand};
 
 fn image() -> Image {
     FirmwareBench::image()
 }
 
-/// Returns the paths of the functions whose path contains one of these parts.
-fn function_paths_with(parts: &[&str]) -> Vec<String> {
+/// Finds the functions whose paths contain one of these parts, and returns the paths.
+fn find_function_paths(parts: &[&str]) -> Vec<String> {
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let paths: Vec<String> = functions.map(|symbol| symbol.path()).collect();
@@ -31,7 +31,7 @@ fn function_paths_with(parts: &[&str]) -> Vec<String> {
 
 #[test]
 fn the_image_contains_no_panic_code() {
-    let functions = function_paths_with(&[
+    let functions = find_function_paths(&[
         "panic",
         "rust_begin_unwind",
         "unwrap_failed",
@@ -43,14 +43,14 @@ fn the_image_contains_no_panic_code() {
 
 #[test]
 fn the_image_does_not_contain_core_fmt() {
-    let functions = function_paths_with(&["core::fmt", "Formatter", "Display", "Debug"]);
+    let functions = find_function_paths(&["core::fmt", "Formatter", "Display", "Debug"]);
     assert!(functions.is_empty(), "{functions:?}");
 }
 
 #[test]
 fn the_image_contains_no_floating_point_routines() {
-    // Routines of avr-libc and compiler-rt (__addsf3, __muldf3, __floatsisf, __fixunssfsi, __fp_split3 and similar
-    // ones) and of libm.
+    // Looks for routines of avr-libc, compiler-rt (such as __addsf3, __muldf3, __floatsisf, __fixunssfsi, __fp_split3)
+    // and libm.
     let image = image();
     let functions = image.symbols().iter().filter(|symbol| symbol.is_function);
     let is_float = |name: &str| {
@@ -79,7 +79,7 @@ fn the_image_contains_no_floating_point_routines() {
 
 #[test]
 fn tables_and_messages_stay_in_flash() {
-    let bench = boot_standing(Fidelity::DataSheet);
+    let bench = boot_to_stand(Fidelity::DataSheet);
     let ram: Vec<u8> = (SRAM_START..SRAM_END)
         .map(|address| bench.uno.peek(address))
         .collect();
@@ -88,7 +88,7 @@ fn tables_and_messages_stay_in_flash() {
     for n in 0..waves.len() {
         let wave = waves.get(n).expect("the waveform exists").load();
         for samples in wave.windows(6) {
-            // A held leg gives a run of equal values, which RAM may contain by chance.
+            // A held leg gives a sequence of equal values, which RAM may contain by chance.
             if samples.iter().all(|sample| *sample == samples[0]) {
                 continue;
             }
@@ -112,13 +112,13 @@ fn tables_and_messages_stay_in_flash() {
     }
     assert!(
         ram_contains(b"# lizard"),
-        "the banner is not in RAM, although it has just been sent"
+        "the banner is not in RAM, although it was just sent"
     );
 }
 
 #[test]
-fn no_interrupt_of_higher_priority_than_the_servos_is_used() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+fn no_interrupt_has_a_higher_priority_than_the_servos() {
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     for line in ["walk", "help", "status", "rest", "stand"] {
         bench.say(line);
         bench.run_ms(300);
@@ -137,7 +137,7 @@ fn no_interrupt_of_higher_priority_than_the_servos_is_used() {
 }
 
 #[test]
-fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functions() {
+fn the_error_for_an_image_that_does_not_fit_names_the_excess_and_the_largest_functions() {
     let folder = tempfile::tempdir().expect("a temporary folder can be made");
     let changed_elf = folder.path().join("changed.elf");
     let image = image();
@@ -145,13 +145,13 @@ fn an_image_that_does_not_fit_is_refused_with_the_excess_and_the_largest_functio
         .symbol("__code_end")
         .expect("the ELF has the symbol")
         .address;
-    // The script takes the bounds of the robot's section from two symbols. A symbol with another address makes the code
-    // or the robot too large.
+    // The script takes the bounds of the robot's section from two symbols. Moving a symbol makes the code or the robot
+    // too large.
     let check_with_symbol = |symbol: &str, address: u64| {
         let status = Command::new("avr-objcopy")
             .arg(format!("--strip-symbol={symbol}"))
             .args(["--add-symbol", &format!("{symbol}={address:#x}")])
-            .args([&FirmwareBench::elf(), &changed_elf])
+            .args([&FirmwareBench::elf_path(), &changed_elf])
             .status();
         assert!(status.expect("avr-objcopy runs").success());
         let output = Command::new(root().join("scripts/size"))

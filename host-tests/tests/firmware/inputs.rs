@@ -1,4 +1,4 @@
-//! Tests of a button and an obstacle switch at the pins of the running image, with the patrol of docs/gaits.md.
+//! Tests of a button and an obstacle switch at the pins of the running image, with the patrol from docs/gaits.md.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -9,27 +9,28 @@ use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, root};
 use lizard_robot::{Robot, Travel};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
-use crate::measurements::{measure_widths, power_cycle, run_for_pulses};
+use crate::measurements::{measure_widths, power_cycle, run_and_record_pulses};
 use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 
-/// The pins of the button and of the obstacle switch in docs/gaits.md.
-const BUTTON: Pin = Pin::a(1);
-const NOSE: Pin = Pin::a(2);
+/// The button's pin in docs/gaits.md.
+const BUTTON_PIN: Pin = Pin::a(1);
+/// The obstacle switch's pin in docs/gaits.md.
+const NOSE_PIN: Pin = Pin::a(2);
 
-/// The shortest closing of a contact that is certain to count, ms: three frames.
+/// The shortest time for which a contact must be closed to count for certain, ms: three frames.
 const DEBOUNCE_MS: u64 = 60;
 
-/// The largest allowed mean duration of the computation of a frame, cycles.
+/// The largest allowed mean duration of a frame's computation, cycles.
 const MAX_MEAN_FRAME_CYCLES: u64 = 5_000;
 
-/// Returns the paper's robot with the patrol of docs/gaits.md.
+/// Returns the paper's robot with the patrol from docs/gaits.md.
 fn patrol_robot() -> &'static Robot {
-    static ROBOT: LazyLock<Robot> = LazyLock::new(|| patrol_robot_with_pins("A1", "A2"));
+    static ROBOT: LazyLock<Robot> = LazyLock::new(|| build_patrol_robot("A1", "A2"));
     &ROBOT
 }
 
-/// Returns the paper's robot with the patrol of docs/gaits.md, its button and obstacle switch at these pins.
-fn patrol_robot_with_pins(button_pin: &str, nose_pin: &str) -> Robot {
+/// Builds the paper's robot with the patrol from docs/gaits.md, with button and obstacle switch at these pins.
+fn build_patrol_robot(button_pin: &str, nose_pin: &str) -> Robot {
     let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let page_text = read_file("docs/gaits.md");
     let blocks = page_text
@@ -40,22 +41,22 @@ fn patrol_robot_with_pins(button_pin: &str, nose_pin: &str) -> Robot {
     let patrol = patrol.replace("\"A1\"", &format!("\"{button_pin}\""));
     let patrol = patrol.replace("\"A2\"", &format!("\"{nose_pin}\""));
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
-    Robot::parse(&text).expect("the patrol suits the robot")
+    Robot::parse(&text).expect("the robot with the patrol is valid")
 }
 
-/// Returns a board with this robot, a second after power-on, with both contacts open.
+/// Boots a board with this robot and both contacts open, and runs it for a second.
 fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
-    let board = SimulatedBoard::boot(&FirmwareBench::elf(), fidelity, robot)
+    let board = SimulatedBoard::boot(&FirmwareBench::elf_path(), fidelity, robot)
         .expect("the firmware prints its banner");
     let mut bench = FirmwareBench(board);
-    for pin in [BUTTON, NOSE] {
+    for pin in [BUTTON_PIN, NOSE_PIN] {
         bench.uno.set_contact(pin, false);
     }
     bench.run_ms(1_000);
     bench
 }
 
-/// Starts the patrol and returns a bench whose robot is waiting for the button.
+/// Starts the patrol and returns a bench whose robot waits for the button.
 fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = boot_with_inputs(patrol_robot(), fidelity);
     assert_eq!(bench.say("patrol"), "ok patrol");
@@ -64,10 +65,10 @@ fn start_waiting_patrol(fidelity: Fidelity) -> FirmwareBench {
     bench
 }
 
-/// Starts the patrol, presses the button, and returns a bench whose robot walks until its obstacle switch closes.
+/// Starts the patrol, presses the button, and returns a bench whose robot walks until the obstacle switch closes.
 fn start_walking_patrol(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = start_waiting_patrol(fidelity);
-    press(&mut bench, BUTTON, 200);
+    press(&mut bench, BUTTON_PIN, 200);
     bench.run_ms(1_000);
     bench
 }
@@ -86,26 +87,26 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
         line.starts_with('#') && !excluded_starts.iter().any(|start| line.starts_with(start))
     };
     bench
-        .texts_since(first_line)
+        .texts_from(first_line)
         .into_iter()
         .filter(is_note)
         .collect()
 }
 
-/// Predicts the travel for these pulses with the contact model.
-fn travel_of(frames: &[Frame]) -> Travel {
+/// Predicts the robot's displacement for these pulses with the contact model.
+fn predict_travel(frames: &[Frame]) -> Travel {
     let servos = patrol_robot().servos();
-    let angles_of = |frame: &Frame| {
+    let to_angles = |frame: &Frame| {
         let widths = frame.widths();
         std::array::from_fn(|i| {
             servos[i].neutral + servos[i].sweep(widths[i] as f64 / CYCLES_PER_US)
         })
     };
-    patrol_robot().predict_travel(frames.iter().map(angles_of))
+    patrol_robot().predict_travel(frames.iter().map(to_angles))
 }
 
 /// Runs the board for a second. Returns true if no pulse width changes.
-fn stays_still_for_a_second(bench: &mut FirmwareBench) -> bool {
+fn run_second_and_check_still(bench: &mut FirmwareBench) -> bool {
     let frames = bench.run_for_frames(FRAMES_PER_SECOND);
     frames.iter().all(|frame| frame.widths == frames[0].widths)
 }
@@ -122,37 +123,37 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         bench.run_ms(10_000);
         let notes = read_notes(&mut bench, line_count);
         assert_eq!(notes, ["# boot: patrol", "# waiting for button"]);
-        assert!(stays_still_for_a_second(&mut bench));
+        assert!(run_second_and_check_still(&mut bench));
         // The button bounces.
         for ms in [1, 3, 1, 2, 7, 1, 2] {
-            press(&mut bench, BUTTON, ms);
+            press(&mut bench, BUTTON_PIN, ms);
             bench.run_ms(1);
         }
-        press(&mut bench, BUTTON, 150);
+        press(&mut bench, BUTTON_PIN, 150);
         // The move to the first pose ends within half a second.
         bench.run_ms(500);
-        let travel = travel_of(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
+        let travel = predict_travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
         assert!(
             travel.forward > 90.0 && travel.turn.abs() < 5.0,
             "{travel:?}"
         );
         for _ in 0..2 {
             let line_count = bench.lines().len();
-            bench.uno.set_contact(NOSE, true);
+            bench.uno.set_contact(NOSE_PIN, true);
             let mut frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-            bench.uno.set_contact(NOSE, false);
+            bench.uno.set_contact(NOSE_PIN, false);
             frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
-            let turn_travel = travel_of(&frames);
+            let turn_travel = predict_travel(&frames);
             assert!(
                 turn_travel.turn > 75.0,
-                "the robot has not turned: {turn_travel:?}"
+                "the robot did not turn: {turn_travel:?}"
             );
             assert!(read_notes(&mut bench, line_count).is_empty());
             // The patrol needs no second press: it waits only for the obstacle switch.
             bench.run_ms(2_500);
             let notes = read_notes(&mut bench, line_count);
             assert_eq!(notes, ["# waiting for nose"]);
-            let travel = travel_of(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
+            let travel = predict_travel(&bench.run_for_frames(3 * FRAMES_PER_SECOND));
             assert!(
                 travel.forward > 90.0 && travel.turn.abs() < 5.0,
                 "{travel:?}"
@@ -164,23 +165,23 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
 }
 
 #[test]
-fn a_stuck_button_or_too_short_a_press_starts_nothing() {
+fn a_stuck_button_or_a_short_press_starts_nothing() {
     run_in_both_simulations(|fidelity| {
         let mut bench = boot_with_inputs(patrol_robot(), fidelity);
-        bench.uno.set_contact(BUTTON, true);
+        bench.uno.set_contact(BUTTON_PIN, true);
         bench.say("patrol");
         bench.run_ms(5_000);
-        assert!(stays_still_for_a_second(&mut bench));
-        bench.uno.set_contact(BUTTON, false);
+        assert!(run_second_and_check_still(&mut bench));
+        bench.uno.set_contact(BUTTON_PIN, false);
         bench.run_ms(DEBOUNCE_MS);
-        // Shorter than two frames, so the button is never seen closed in three frames.
+        // Presses shorter than two frames never close the button in three successive frames.
         for ms in 1..39 {
-            press(&mut bench, BUTTON, ms);
+            press(&mut bench, BUTTON_PIN, ms);
             bench.run_ms(41);
         }
-        assert!(stays_still_for_a_second(&mut bench));
-        press(&mut bench, BUTTON, DEBOUNCE_MS);
-        assert!(!stays_still_for_a_second(&mut bench));
+        assert!(run_second_and_check_still(&mut bench));
+        press(&mut bench, BUTTON_PIN, DEBOUNCE_MS);
+        assert!(!run_second_and_check_still(&mut bench));
     });
 }
 
@@ -211,9 +212,9 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
             event(&mut bench);
             let widths_before = measure_widths(&mut bench);
             let line_count = bench.lines().len();
-            for pin in [BUTTON, NOSE] {
+            for pin in [BUTTON_PIN, NOSE_PIN] {
                 bench.uno.set_contact(pin, true);
-                let servo_pulses = run_for_pulses(&mut bench, 1_000);
+                let servo_pulses = run_and_record_pulses(&mut bench, 1_000);
                 bench.uno.set_contact(pin, false);
                 for (pulses, width_before) in servo_pulses.iter().zip(widths_before) {
                     let is_steady = pulses.iter().all(|pulse| pulse.width == width_before);
@@ -231,7 +232,7 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
 #[test]
 fn contacts_on_the_servos_ports_change_no_pulse() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_with_inputs(&patrol_robot_with_pins("D8", "D4"), fidelity);
+        let mut bench = boot_with_inputs(&build_patrol_robot("D8", "D4"), fidelity);
         bench.uno.set_contact(Pin::d(8), false);
         bench.uno.set_contact(Pin::d(4), false);
         let neutral = measure_widths(&mut bench);
@@ -241,7 +242,7 @@ fn contacts_on_the_servos_ports_change_no_pulse() {
         }
         press(&mut bench, Pin::d(8), 100);
         bench.run_ms(2_000);
-        assert!(!stays_still_for_a_second(&mut bench));
+        assert!(!run_second_and_check_still(&mut bench));
         press(&mut bench, Pin::d(4), 100);
         bench.run_ms(10_000);
         assert_eq!(Status::read(&mut bench).text("late"), "0");
@@ -252,7 +253,7 @@ fn contacts_on_the_servos_ports_change_no_pulse() {
 }
 
 #[test]
-fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
+fn a_patrol_frame_takes_at_most_five_thousand_cycles_on_average() {
     for start_patrol in [start_waiting_patrol, start_walking_patrol] {
         let mut bench = start_patrol(Fidelity::DataSheet);
         let calls = bench.time_calls("Controller::compute_frame", 4_000);
@@ -261,7 +262,7 @@ fn a_frame_of_a_patrol_takes_no_more_than_five_thousand_cycles_on_average() {
         println!("{mean_cycles} cycles a frame");
         assert!(
             calls.len() >= 190 && mean_cycles <= MAX_MEAN_FRAME_CYCLES,
-            "{mean_cycles}"
+            "{mean_cycles} cycles a frame"
         );
     }
 }

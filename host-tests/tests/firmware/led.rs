@@ -1,10 +1,10 @@
-//! Test of the LED on D13, whose slow blinking shows that the board is alive.
+//! Test of the LED on D13, whose slow flashes show that the board is running.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Edge;
 
-use crate::measurements::LED;
+use crate::measurements::LED_PIN;
 use crate::run_in_both_simulations;
 
 #[test]
@@ -13,7 +13,10 @@ fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(5000);
         let edges = bench.uno.edges();
-        let led_edges: Vec<Edge> = edges.into_iter().filter(|edge| edge.pin == LED).collect();
+        let led_edges: Vec<Edge> = edges
+            .into_iter()
+            .filter(|edge| edge.pin == LED_PIN)
+            .collect();
         assert!(
             led_edges[0].is_rising && led_edges[0].cycle < 3 * FRAME_CYCLES,
             "{:?}",
@@ -22,11 +25,11 @@ fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
         assert!(led_edges.len() >= 7, "{} changes in 5 s", led_edges.len());
         for (n, pair) in led_edges.windows(2).enumerate().skip(1) {
             assert_ne!(pair[0].is_rising, pair[1].is_rising);
-            // The firmware sets the LED after it has computed the frame, which does not always take the same time.
+            // The firmware sets the LED after computing the frame, whose duration varies.
             let interval = pair[1].cycle - pair[0].cycle;
             assert!(
                 interval.abs_diff(32 * FRAME_CYCLES) < FRAME_CYCLES / 10,
-                "change {n}: {interval}"
+                "change {n}: {interval} cycles"
             );
         }
     });

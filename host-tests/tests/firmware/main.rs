@@ -1,18 +1,18 @@
-//! Tests of the firmware's ELF on a simulated UNO: its answers, its pulses, its contents and its costs.
+//! Tests of the firmware's ELF file on a simulated UNO: its answers, its pulses, its contents and its costs.
 //!
 //! Every claim about pulses and the serial line is tested twice, on stock simavr and on simavr corrected to follow the
-//! data sheet. The two differ in interrupt latency and in the serial receiver, so a claim that holds in both depends on
-//! neither.
+//! data sheet. The two simulations differ in interrupt latency and in the serial receiver, so a claim that holds in
+//! both depends on neither.
 //!
-//! `make firmware` builds the ELF. If the ELF is older than the sources, it differs from the core that these tests
-//! contain, and the tests fail.
+//! `make firmware` builds the ELF file. If the file is older than the sources, it differs from the core in these tests,
+//! and the tests fail.
 
 use std::collections::HashMap;
 use std::thread;
 
 use lizard_host::sim::tour;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
-use lizard_robot::command_of;
+use lizard_robot::to_command;
 use simulated_uno::Fidelity;
 
 mod bad_input;
@@ -52,28 +52,28 @@ mod watchdog;
 
 const FRAMES_PER_SECOND: u64 = 50;
 
-/// Removes from a line the values that the core on the host cannot know. The firmware writes a status in three parts,
-/// each in the frame in which the serial buffer has room for it, so the values of a moving robot depend on timing.
-/// Stock simavr measures voltages against a reference of 1.1 V, even if the robot's reference differs.
-fn comparable_line(line: &str, fidelity: Fidelity) -> String {
-    let mut unknown_keys = vec!["phase=", "pose=", "margin=", "frames="];
+/// Removes the values that the core on the host cannot compute from a line. The firmware writes a status in three
+/// parts, each once the serial buffer has room, so the values of a moving robot depend on timing. Stock simavr measures
+/// voltages against a reference of 1.1 V, even if the robot's reference differs.
+fn to_comparable_line(line: &str, fidelity: Fidelity) -> String {
+    let mut excluded_keys = vec!["phase=", "pose=", "margin=", "frames="];
     if fidelity == Fidelity::Stock {
-        unknown_keys.extend(["vcc=", "rail="]);
+        excluded_keys.extend(["vcc=", "rail="]);
     }
     let is_status = line.starts_with("ok gait=");
-    let is_known =
-        |pair: &&str| !is_status || !unknown_keys.iter().any(|key| pair.starts_with(key));
-    let known_pairs: Vec<&str> = line.split(' ').filter(is_known).collect();
-    known_pairs.join(" ")
+    let is_comparable =
+        |pair: &&str| !is_status || !excluded_keys.iter().any(|key| pair.starts_with(key));
+    let comparable_pairs: Vec<&str> = line.split(' ').filter(is_comparable).collect();
+    comparable_pairs.join(" ")
 }
 
-/// Runs a test on stock simavr and on corrected simavr, in parallel.
+/// Runs a test on stock and on corrected simavr, in parallel.
 fn run_in_both_simulations(test: impl Fn(Fidelity) + Sync) {
     let fidelities = [Fidelity::Stock, Fidelity::DataSheet];
     for_each_in_parallel(&fidelities, |fidelity| test(*fidelity));
 }
 
-/// Runs a test for every case, each case on its own thread.
+/// Runs a test for every case, each on its own thread.
 fn for_each_in_parallel<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T) + Sync) {
     thread::scope(|scope| {
         let handles: Vec<_> = cases
@@ -88,24 +88,24 @@ fn for_each_in_parallel<T: Sync + std::fmt::Debug>(cases: &[T], test: impl Fn(&T
 
 /// Boots the board, sends the command `line` and returns the board one second later.
 fn boot_and_command(line: &str, fidelity: Fidelity) -> FirmwareBench {
-    let mut bench = boot_standing(fidelity);
+    let mut bench = boot_to_stand(fidelity);
     bench.expect_ok(line);
     bench.run_ms(1000);
     bench
 }
 
 /// Boots the board and returns it one second later, when the robot stands.
-fn boot_standing(fidelity: Fidelity) -> FirmwareBench {
+fn boot_to_stand(fidelity: Fidelity) -> FirmwareBench {
     let mut bench = FirmwareBench::boot_with(fidelity);
     bench.run_ms(1000);
     bench
 }
 
-/// Returns the command for the robot's first gait that moves. Every robot under test needs such a gait: without one,
-/// most of these tests would run on a robot that only stands.
+/// Returns the command for the robot's first gait that moves. Every robot under test needs such a gait; otherwise most
+/// of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
-    let moving_gaits = tour::moving_gaits(robot());
-    command_of(
+    let moving_gaits = tour::list_moving_gaits(robot());
+    to_command(
         moving_gaits
             .first()
             .expect("a robot under test has a gait that moves"),
@@ -126,17 +126,17 @@ fn neutral_widths() -> [u64; 4] {
         .map(|servo| (servo.neutral_us * CYCLES_PER_US).round() as u64)
 }
 
-/// Ends a flood of serial input and waits until the robot has answered the lines that are in its buffer.
+/// Ends a flood of serial input and waits until the robot has answered the lines in its buffer.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
-    // The buffer may hold 32 lines `?`, and each answer has a kilobyte.
+    // The buffer may hold 32 `?` lines, and each answer has a kilobyte.
     bench.run_ms(5000);
     bench.uno.send(b"\n");
     bench.run_ms(200);
 }
 
 /// Returns the pulse widths of each frame, cycles.
-fn widths(frames: &[Frame]) -> Vec<[u64; 4]> {
+fn frame_widths(frames: &[Frame]) -> Vec<[u64; 4]> {
     frames.iter().map(Frame::widths).collect()
 }
 

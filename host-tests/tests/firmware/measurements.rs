@@ -1,15 +1,15 @@
-//! Measurements at the servo pins, at the LED and on the console that several tests share.
+//! Measurements that several tests share: servo pins, LED and console.
 
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench};
 use simulated_uno::{CYCLES_PER_MS, Pin, Pulse};
 
 use crate::robot;
 
-/// The pin of the LED.
-pub const LED: Pin = Pin::d(13);
+/// The LED's pin, D13.
+pub const LED_PIN: Pin = Pin::d(13);
 
-/// Runs for `ms` milliseconds and returns the pulses of A1 to A4 in that time.
-pub fn run_for_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
+/// Runs for `ms` milliseconds and returns the pulses of A1 to A4 from this time.
+pub fn run_and_record_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     bench.uno.take_edges();
     bench.uno.run_ms(ms);
     recorded_pulses(bench)
@@ -22,7 +22,7 @@ pub fn recorded_pulses(bench: &FirmwareBench) -> [Vec<Pulse>; 4] {
 
 /// Runs for 50 ms and returns the last pulse width of each servo, cycles; 0 for a servo without a pulse.
 pub fn measure_widths(bench: &mut FirmwareBench) -> [u64; 4] {
-    run_for_pulses(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
+    run_and_record_pulses(bench, 50).map(|pulses| pulses.last().map_or(0, |pulse| pulse.width))
 }
 
 /// Switches the power off and on, discards the edges recorded so far, and waits for the banner.
@@ -32,7 +32,7 @@ pub fn power_cycle(bench: &mut FirmwareBench) {
     bench.uno.take_edges();
     for _ in 0..500 {
         bench.uno.run_ms(1);
-        // The remainder of a line that the power cut interrupted may come first.
+        // The end of a line that the power cut interrupted may come first.
         let lines = &bench.lines()[lines_before..];
         if lines.iter().any(|line| line.text.contains("# lizard ")) {
             return;
@@ -56,52 +56,55 @@ pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     lines.into_iter().filter(is_setting).collect()
 }
 
-/// Returns a servo's slew limit: the largest change of its pulse width from frame to frame, cycles.
-pub fn slew_limit(servo: usize) -> u64 {
-    slew_limit_at(
+/// Returns a servo's slew limit, which is the largest change in its pulse width from frame to frame, cycles.
+pub fn servo_slew_limit(servo: usize) -> u64 {
+    compute_slew_limit(
         robot().servos()[servo].us_per_degree,
         robot().speed_limits().slew,
     )
 }
 
-/// Returns the slew limit of a servo with `gain` us per degree at `slew` deg/s, cycles per frame.
-fn slew_limit_at(gain: f64, slew: f64) -> u64 {
+/// Returns the slew limit of a servo with this scale and speed limit, cycles per frame.
+fn compute_slew_limit(us_per_degree: f64, slew_deg_per_s: f64) -> u64 {
     // The three cycles allow for rounding: one for each of the two widths, and one for the limit, whose rounding error
-    // is half a step of an angle.
-    (slew / 50.0 * gain.abs() * CYCLES_PER_US) as u64 + 3
+    // is half an angle step.
+    (slew_deg_per_s / 50.0 * us_per_degree.abs() * CYCLES_PER_US) as u64 + 3
 }
 
 /// Asserts that no pulse width of a gait differs from the previous one by more than the slew limits allow.
-pub fn assert_no_leap_in_gait(pulses: &[Vec<Pulse>; 4]) {
+pub fn assert_gait_within_slew_limits(pulses: &[Vec<Pulse>; 4]) {
     let speed_limits = robot().speed_limits();
     for (servo, pulses) in robot().servos().iter().zip(pulses) {
-        let max_leap = slew_limit_at(
+        let max_step = compute_slew_limit(
             servo.us_per_degree,
             speed_limits.slew.max(speed_limits.gait_slew),
         );
         assert!(pulses.len() > 1, "{pulses:?}");
         for pair in pulses.windows(2) {
-            let leap = pair[0].width.abs_diff(pair[1].width);
-            assert!(leap <= max_leap, "{leap} cycles of {max_leap}: {pair:?}");
+            let step = pair[0].width.abs_diff(pair[1].width);
+            assert!(
+                step <= max_step,
+                "a step of {step} cycles exceeds {max_step}: {pair:?}"
+            );
         }
     }
 }
 
 /// Asserts that no pulse width differs from the previous one by more than the slew limit allows.
-pub fn assert_no_leap(pulses: &[Vec<Pulse>; 4]) {
-    let gains = robot().servos().each_ref().map(|servo| servo.us_per_degree);
-    assert_no_leap_at(pulses, gains);
+pub fn assert_within_slew_limit(pulses: &[Vec<Pulse>; 4]) {
+    let scales = robot().servos().each_ref().map(|servo| servo.us_per_degree);
+    assert_within_slew_limit_with(pulses, scales);
 }
 
-/// Asserts that no pulse width of servos with these gains (us per degree) differs from the previous one by more than
+/// Asserts that no pulse width of servos with these scales (us per degree) differs from the previous one by more than
 /// the slew limit allows.
-pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
-    for (servo, (pulses, gain)) in pulses.iter().zip(gains).enumerate() {
+pub fn assert_within_slew_limit_with(pulses: &[Vec<Pulse>; 4], scales: [f64; 4]) {
+    for (servo, (pulses, scale)) in pulses.iter().zip(scales).enumerate() {
         assert!(pulses.len() > 1, "A{}: {pulses:?}", servo + 1);
         for pair in pulses.windows(2) {
-            let leap = pair[0].width.abs_diff(pair[1].width);
+            let step = pair[0].width.abs_diff(pair[1].width);
             assert!(
-                leap <= slew_limit_at(gain, robot().speed_limits().slew),
+                step <= compute_slew_limit(scale, robot().speed_limits().slew),
                 "A{}: {pair:?}",
                 servo + 1
             );
@@ -109,13 +112,13 @@ pub fn assert_no_leap_at(pulses: &[Vec<Pulse>; 4], gains: [f64; 4]) {
     }
 }
 
-/// Runs for `seconds` seconds and returns the number of LED flashes between each pause and the next.
+/// Runs for `seconds` seconds and returns the numbers of LED flashes between consecutive pauses.
 pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);
     let edges = bench.uno.edges();
-    let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED).collect();
-    // In a flash the LED is on for 160 ms and off for 160 ms; in a pause it stays off for one second more.
+    let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED_PIN).collect();
+    // In a flash the LED is on for 160 ms and off for 160 ms; in a pause it stays off for another second.
     let mut flash_counts = Vec::new();
     let mut current_count = None;
     for pair in edges.windows(2) {
@@ -127,7 +130,7 @@ pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
                 flash_counts.extend(current_count);
                 current_count = Some(0);
             }
-            unexpected => panic!("unexpected LED phase, lit and ms: {unexpected:?}"),
+            unexpected => panic!("unexpected LED interval (is on, duration in ms): {unexpected:?}"),
         }
     }
     flash_counts

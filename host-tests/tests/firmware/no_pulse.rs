@@ -1,4 +1,4 @@
-//! Tests that no pulse is sent if its width does not fit into a slot, or once the firmware has cleared
+//! Tests that no pulse is sent if its width does not fit into a slot, or after the firmware has cleared
 //! `pulses::ALLOWED_PINS`, which disallows pulses permanently.
 
 use lizard_host::sim::frame::FRAME_CYCLES;
@@ -22,7 +22,7 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
         ];
         for width in widths {
             let start = run.run_to_next_frame();
-            // At this time, the frame's widths have been handed over, and A3's slot is not yet scheduled.
+            // By now, the frame's widths have been handed over, and A3's slot is not yet scheduled.
             run.run_to(start + 2_000);
             for (address, index) in a3_width_addresses
                 .into_iter()
@@ -40,9 +40,10 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
             run.run_to(start + FRAME_CYCLES - SLOT_CYCLES / 2);
             let (frame, expected_widths) = run.frames_since(start)[0];
             let expected = ALLOWED_WIDTHS.contains(&width).then_some(u64::from(width));
-            assert_eq!(frame.widths[2], expected, "{width}");
+            assert_eq!(frame.widths[2], expected, "A3's width is {width}");
             for servo in [0, 1, 3] {
-                assert_eq!(frame.widths[servo], Some(expected_widths[servo]), "{width}");
+                let expected = Some(expected_widths[servo]);
+                assert_eq!(frame.widths[servo], expected, "A3's width is {width}");
             }
             run.bench.run_ms(40);
         }
@@ -51,10 +52,9 @@ fn a_width_that_does_not_fit_into_a_slot_gives_no_pulse() {
 }
 
 #[test]
-fn once_pulses_are_disallowed_the_current_pulse_ends_normally_none_follows_and_the_ticks_continue()
-{
+fn disallowing_pulses_lets_the_current_pulse_end_and_the_ticks_continue() {
     run_in_both_simulations(|fidelity| {
-        // Disallows pulses at 40 moments of a frame: before, during and after each pulse.
+        // Disallows pulses at 40 times in a frame: before, during and after each pulse.
         for moment in 0..40 {
             let mut run = ReferenceRun::start_standing(fidelity);
             let start = run.run_to_next_frame();
@@ -65,7 +65,7 @@ fn once_pulses_are_disallowed_the_current_pulse_ends_normally_none_follows_and_t
             let frames_before = Status::read(&mut run.bench).number("frames");
             run.bench.run_ms(1000);
             for edge in crate::pulses::servo_edges(&run.bench) {
-                // One cycle of tolerance, for a store instruction that is already executing.
+                // Allows one cycle for a store instruction that is already executing.
                 assert!(
                     !edge.is_rising || edge.cycle <= clear_cycle + 1,
                     "{moment}: {edge:?}"

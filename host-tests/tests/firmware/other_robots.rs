@@ -1,40 +1,41 @@
-//! Tests with robots that have random pins, directions and gaits: no frame is late or wrong.
+//! Tests that no frame is late or wrong for robots with random pins, directions and gaits.
 
 use lizard_core::numbers::gaits::MAX_NAME_BYTES;
-use lizard_host::bench::longest_step;
+use lizard_host::bench::measure_longest_step;
 use lizard_host::board::SimulatedBoard;
 
 use lizard_host::sim::tour;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
-use lizard_robot::{Robot, command_of};
+use lizard_robot::{Robot, to_command};
 use simulated_uno::Fidelity;
 
-use crate::pulses::commanded_widths;
+use crate::pulses::compute_core_widths;
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
 /// Lines that move no servo, each sent at the full rate of the serial line.
 const FLOODS: [&str; 5] = ["status\n", "help\n", "cal\n", "?\r", "x"];
 
-/// Returns the number of random robots; `make other-robots` tries 100.
+/// Returns the number of random robots, which is 100 in `make other-robots`.
 fn robot_count() -> u64 {
     let value = std::env::var("LIZARD_ROBOTS").ok();
     value.map_or(4, |count| count.parse().expect("LIZARD_ROBOTS is a number"))
 }
 
 /// Runs a gait for two seconds during a flood of serial input, and asserts that each frame has the widths that the core
-/// computes for it.
+/// computes.
 fn assert_frames_exact(robot: &Robot, gait: &str, flood: &str, robot_name: &str) {
-    let board = SimulatedBoard::power_on(&FirmwareBench::elf(), Fidelity::DataSheet, robot);
+    let board = SimulatedBoard::power_on(&FirmwareBench::elf_path(), Fidelity::DataSheet, robot);
     let mut bench = FirmwareBench(board.expect("`make firmware` has built the ELF"));
     bench.run_ms(1000);
     let first_rise = bench.first_pulse_cycle().expect("the robot stands");
     bench.say("watch 1");
-    bench.say(&command_of(gait));
+    bench.say(&to_command(gait));
     let received_count = bench.uno.received_by_uno().len();
     bench.uno.flood(flood.as_bytes());
     let sent_frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-    let expected_widths = commanded_widths(robot, &bench, first_rise, received_count, &sent_frames);
+    let expected_widths =
+        compute_core_widths(robot, &bench, first_rise, received_count, &sent_frames);
     for (frame, expected) in sent_frames.iter().zip(expected_widths) {
         let widths = frame.all_widths();
         assert_eq!(widths, Some(expected), "{robot_name}, {flood:?}: {frame:?}");
@@ -47,14 +48,14 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
         for number in (*parity..robot_count()).step_by(2) {
             let mut rng = rng(2_000 + number);
             let (text, mut robot) = random_robot(&mut rng);
-            // A third of the robots get many gaits with short names, another third many with long names.
+            // A third of the robots get many gaits with short names, and another third many gaits with long names.
             match number % 3 {
                 1 => robot = with_many_gaits(&text, 10),
                 2 => robot = with_many_gaits(&text, MAX_NAME_BYTES),
                 _ => {}
             }
             let robot_name = format!("robot {number}");
-            let gaits = tour::moving_gaits(&robot);
+            let gaits = tour::list_moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
                 assert_frames_exact(&robot, gait, flood, &robot_name);
@@ -64,8 +65,8 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
 }
 
 #[test]
-fn the_longest_step_of_main_stays_within_its_bound_however_many_gaits_there_are() {
-    /// Upper bound of the cycles of `factory`, the longest command apart from the search for a gait.
+fn the_longest_step_of_main_stays_within_its_bound_for_any_number_of_gaits() {
+    /// Upper bound of the cycles for `factory`, the longest command apart from the search for a gait.
     const MAX_OTHER_COMMAND_CYCLES: usize = 34_000;
     let (text, robot) = random_robot(&mut rng(2_000));
     let name_lengths = [10, 24, MAX_NAME_BYTES];
@@ -74,20 +75,21 @@ fn the_longest_step_of_main_stays_within_its_bound_however_many_gaits_there_are(
         .iter()
         .chain([&robot])
     {
-        let cycles = longest_step(&FirmwareBench::elf(), robot).expect("the measurement runs");
+        let cycles =
+            measure_longest_step(&FirmwareBench::elf_path(), robot).expect("the measurement runs");
         let search_cycles = robot.max_search_cycles();
         println!(
-            "{} gaits: {cycles} cycles of {search_cycles}",
+            "{} gaits: {cycles} cycles, bound of the search {search_cycles}",
             robot.gaits().len()
         );
         assert!(
             cycles as usize <= search_cycles.max(MAX_OTHER_COMMAND_CYCLES),
-            "{cycles} of {search_cycles}"
+            "{cycles} cycles, bound of the search {search_cycles}"
         );
-        // Where the search is the longest step, the bound is less than twice the measured time.
+        // If the search is the longest step, the bound is less than twice the measured time.
         assert!(
             search_cycles < MAX_OTHER_COMMAND_CYCLES || cycles as usize > search_cycles / 2,
-            "{cycles} of {search_cycles}"
+            "{cycles} cycles, bound of the search {search_cycles}"
         );
     }
 }

@@ -1,5 +1,5 @@
-//! Tests of the saved settings after power cuts during a save, at every byte and with every torn value of this byte,
-//! and after bit flips in the EEPROM.
+//! Tests of the saved settings after power cuts during a save, at every byte and with every torn value of the byte, and
+//! after bit flips in the EEPROM.
 
 use lizard_core::memory::copies::{self, SavedState};
 use lizard_core::memory::settings::Settings;
@@ -7,12 +7,12 @@ use lizard_core::virtual_board::Eeprom;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{EEPROM_SIZE, EepromOperation, Fidelity, PowerCut};
 
-use crate::boot_standing;
+use crate::boot_to_stand;
 use crate::measurements::{power_cycle, read_calibration};
 
-/// Loads the settings of an EEPROM as the core does.
+/// Loads the settings from an EEPROM with the core's code.
 fn load_settings(contents: &[u8; EEPROM_SIZE]) -> (Settings, SavedState) {
-    let mut settings = Settings::of(robot().firmware());
+    let mut settings = Settings::for_robot(robot().firmware());
     let saved_state = copies::load(
         robot().firmware(),
         &Eeprom::with_bytes(*contents),
@@ -32,7 +32,7 @@ struct UnsavedBoard {
 
 impl UnsavedBoard {
     fn new() -> Self {
-        let mut bench = boot_standing(Fidelity::DataSheet);
+        let mut bench = boot_to_stand(Fidelity::DataSheet);
         for trim in ["1 0.5", "2 -0.75"] {
             bench.say(&format!("trim {trim}"));
             assert_eq!(bench.say("save"), "ok save");
@@ -49,14 +49,14 @@ impl UnsavedBoard {
         }
     }
 
-    /// Saves the changed settings, and returns the EEPROM operations.
+    /// Saves the changed settings and returns the EEPROM operations.
     fn save(&mut self) -> Vec<EepromOperation> {
         let operations_before = self.bench.uno.eeprom_operations().len();
         assert_eq!(self.bench.say("save"), "ok save");
         self.bench.uno.eeprom_operations()[operations_before..].to_vec()
     }
 
-    /// Powers the board on with these contents, and returns the output of `cal`.
+    /// Powers on the board with these EEPROM contents and returns the output of `cal`.
     fn power_on_with(&mut self, contents: &[u8; EEPROM_SIZE]) -> Vec<String> {
         self.bench.uno.set_eeprom(contents);
         power_cycle(&mut self.bench);
@@ -79,7 +79,7 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
             contents[usize::from(operation.address)],
             operation.old_value
         );
-        // In a torn byte, some bits are 1 that are 0 in its old or its new value.
+        // In a torn byte, some bits are 1 that are 0 in the old or in the new value.
         for stuck_bits in 0..=255u8 {
             for torn_byte in [
                 operation.old_value | stuck_bits,
@@ -105,7 +105,7 @@ fn a_power_cut_at_any_byte_of_a_save_leaves_the_old_or_the_new_settings() {
         contents[usize::from(operation.address)] = operation.new_value;
     }
     assert_eq!(contents, contents_after);
-    println!("{torn_count} torn EEPROMs: {outcome_counts:?} old and new");
+    println!("{torn_count} torn EEPROMs; old and new settings: {outcome_counts:?}");
     assert!(outcome_counts[0] > 0 && outcome_counts[1] > 0);
 }
 
@@ -159,7 +159,7 @@ fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
     let contents = board.bench.uno.eeprom();
     let [latest, previous] =
         [contents, board.saved_eeprom].map(|contents| load_settings(&contents).0);
-    let mut defaults = Settings::of(robot().firmware());
+    let mut defaults = Settings::for_robot(robot().firmware());
     defaults.set_save_number(0);
     let mut outcome_counts = [0, 0, 0];
     for bit in 0..8 * EEPROM_SIZE {
@@ -177,7 +177,7 @@ fn after_any_bit_flip_the_latest_or_the_previous_settings_are_loaded() {
             assert_eq!(&calibration, expected, "bit {bit}");
         }
     }
-    println!("{outcome_counts:?}: the latest settings, the previous ones, the defaults");
+    println!("latest settings, previous settings, defaults: {outcome_counts:?}");
     assert_eq!(outcome_counts[2], 0, "a bit flip invalidates both copies");
     assert!(
         outcome_counts[1] >= 8 * 44,

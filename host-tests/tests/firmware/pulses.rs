@@ -1,4 +1,4 @@
-//! Tests of the servo pulses: they are exact to the cycle, whatever the serial line does.
+//! Tests that the servo pulses are exact to the cycle, whatever happens on the serial line.
 
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
@@ -7,15 +7,20 @@ use lizard_robot::Robot;
 use simulated_uno::{Edge, Fidelity, most_pins_high};
 
 use crate::{
-    FRAMES_PER_SECOND, Status, boot_standing, end_flood, first_moving_gait, for_each_in_parallel,
+    FRAMES_PER_SECOND, Status, boot_to_stand, end_flood, first_moving_gait, for_each_in_parallel,
     run_in_both_simulations,
 };
 
 /// Returns the recorded edges of the servos' pins.
 pub fn servo_edges(bench: &FirmwareBench) -> Vec<Edge> {
     let pins = bench.pins();
-    let is_of_servo = |edge: &Edge| pins.contains(&edge.pin);
-    bench.uno.edges().into_iter().filter(is_of_servo).collect()
+    let is_servo_edge = |edge: &Edge| pins.contains(&edge.pin);
+    bench
+        .uno
+        .edges()
+        .into_iter()
+        .filter(is_servo_edge)
+        .collect()
 }
 
 /// Asserts that each servo has one pulse in each frame, exactly 20 ms apart, and that only one pin is high at a time.
@@ -23,7 +28,7 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     for frame in frames {
         for (servo, start) in frame.starts.into_iter().enumerate() {
             let start = start.unwrap_or_else(|| panic!("no pulse: {frame:?}"));
-            // Each servo has a slot of 4 ms, counted from A1's.
+            // Each servo has a slot of 4 ms, counted from A1's slot.
             assert_eq!(
                 start,
                 frame.start + servo as u64 * FRAME_CYCLES / 5,
@@ -36,9 +41,9 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     assert_eq!(most_pins_high(&edges), 1);
 }
 
-/// Returns the widths that the core computes for these frames if it receives only the first `received_count` bytes.
-/// `first_rise` is the cycle of A1's first pulse.
-pub fn commanded_widths(
+/// Computes the widths of these frames with the core on the host, which receives only the first `received_count` bytes.
+/// `first_rise` is the cycle at which A1's first pulse begins.
+pub fn compute_core_widths(
     robot: &Robot,
     bench: &FirmwareBench,
     first_rise: u64,
@@ -59,32 +64,32 @@ pub fn commanded_widths(
 }
 
 #[test]
-fn every_width_is_the_one_that_the_core_computes() {
+fn every_width_matches_the_core() {
     for_each_in_parallel(&[Fidelity::Stock, Fidelity::DataSheet], |fidelity| {
         for gait in robot().gaits() {
-            // The line is sent while the firmware writes nothing. If the line ends so shortly before a tick that the
-            // main loop may read it before or after the tick, a new bench sends the line a millisecond later.
+            // The line is sent while the firmware writes nothing. If the line ends so close to a tick that the main
+            // loop may read it before or after the tick, a new bench sends the line a millisecond later.
             let boot_and_command_after = |delay_ms| {
-                let mut bench = boot_standing(*fidelity);
+                let mut bench = boot_to_stand(*fidelity);
                 let first_rise = bench.first_pulse_cycle().expect("the robot stands");
                 bench.run_ms(delay_ms);
                 bench.say(&gait.command());
                 (bench, first_rise)
             };
             let is_away_from_ticks = |(bench, first_rise): &(FirmwareBench, u64)| {
-                core_run::undecided_lines(&bench.uno.received_by_uno(), *first_rise)
+                core_run::find_undecided_lines(&bench.uno.received_by_uno(), *first_rise)
                     .next()
                     .is_none()
             };
             let (mut bench, first_rise) = (200..220)
                 .map(boot_and_command_after)
                 .find(is_away_from_ticks)
-                .expect("some delay keeps the line away from the ticks");
+                .expect("one of the delays keeps the line away from the ticks");
             let frames = bench.run_for_frames(6 * FRAMES_PER_SECOND);
             assert_on_slot_grid(&bench, &frames);
             let received_count = bench.uno.received_by_uno().len();
             let expected_widths =
-                commanded_widths(robot(), &bench, first_rise, received_count, &frames);
+                compute_core_widths(robot(), &bench, first_rise, received_count, &frames);
             for (frame, expected) in frames.iter().zip(expected_widths) {
                 assert_eq!(frame.widths(), expected, "{}: {frame:?}", gait.name());
             }
@@ -94,11 +99,11 @@ fn every_width_is_the_one_that_the_core_computes() {
 
 #[test]
 fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
-    // None of these can become a command that moves a servo, however many bytes are lost.
+    // No loss of bytes can make one of these a command that moves a servo.
     const FLOODS: [&str; 4] = ["status\n", "help\n", "?\r", "x"];
     run_in_both_simulations(|fidelity| {
         for flood in FLOODS {
-            let mut bench = boot_standing(fidelity);
+            let mut bench = boot_to_stand(fidelity);
             let first_rise = bench.first_pulse_cycle().expect("the robot stands");
             bench.say("watch 1");
             bench.say(&first_moving_gait());
@@ -109,7 +114,7 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
             let sent_count = bench.bytes().len() - sent_before;
             assert_on_slot_grid(&bench, &frames);
             let expected_widths =
-                commanded_widths(robot(), &bench, first_rise, received_count, &frames);
+                compute_core_widths(robot(), &bench, first_rise, received_count, &frames);
             for (frame, expected) in frames.iter().zip(expected_widths) {
                 assert_eq!(frame.widths(), expected, "{flood:?}: {frame:?}");
             }
@@ -121,19 +126,19 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
                 !can_vary || changes.count() as u64 > 2 * FRAMES_PER_SECOND,
                 "the widths do not vary"
             );
-            // Both directions are saturated: the robot receives 11 520 bytes a second, and its answers fill the other
+            // Both directions are saturated: the robot receives 11 520 bytes per second, and its answers fill the other
             // direction, unless the flood is a single overlong line.
             let seconds = frames.len() as f64 / FRAMES_PER_SECOND as f64;
             let received_rate =
                 (bench.uno.received_by_uno().len() - received_count) as f64 / seconds;
             assert!(
                 received_rate > 11_000.0 || fidelity == Fidelity::Stock && received_rate > 10_000.0,
-                "{received_rate} bytes a second"
+                "{received_rate} bytes per second received"
             );
             let sent_rate = sent_count as f64 / seconds;
             assert!(
                 sent_rate > 9_500.0 || flood == "x",
-                "{flood:?}: {sent_rate} bytes a second back"
+                "{flood:?}: {sent_rate} bytes per second sent"
             );
             end_flood(&mut bench);
             let status = Status::read(&mut bench);
@@ -146,7 +151,7 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
 #[test]
 fn every_frame_is_counted_during_a_flood() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         bench.run_for_frames(0);
         let (cycle, status_before) = (bench.uno.cycle(), Status::read(&mut bench));
         bench.uno.flood(b"status\nhelp\n");

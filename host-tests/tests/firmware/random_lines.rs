@@ -1,11 +1,12 @@
 //! Generator of nearly valid console lines: every command with arguments near its ranges, often with up to three
-//! bytes changed.
+//! changed bytes.
 
 use fastrand::Rng;
 use lizard_core::console::word::Word;
 use lizard_host_tests::robot;
 
-/// Returns a random number with at most two decimals, from the range `min` to `max` extended by a fifth at each end.
+/// Returns a random number with at most two decimals, from the range between `min` and `max`, extended by a fifth at
+/// each end.
 fn random_number(rng: &mut Rng, min: f64, max: f64) -> String {
     let margin = (max - min) * 0.2;
     let number = min - margin + rng.f64() * (max - min + 2.0 * margin);
@@ -23,7 +24,7 @@ fn random_angle(rng: &mut Rng, servo: usize) -> String {
     random_number(rng, neutral - max_deg, neutral + max_deg)
 }
 
-/// Returns a random line that is valid, except that its numbers may be out of range.
+/// Returns a random line that is valid except that its numbers may be out of range.
 fn random_line(rng: &mut Rng) -> String {
     let random_gait = |rng: &mut Rng| {
         let gait = &robot().gaits()[rng.usize(..robot().gaits().len())];
@@ -88,7 +89,7 @@ pub fn nearly_valid_line(rng: &mut Rng) -> Vec<u8> {
             _ => bytes.truncate(offset),
         }
     }
-    // A line end in the middle would make two lines.
+    // A line end within the bytes would make two lines.
     bytes.retain(|byte| !matches!(byte, b'\r' | b'\n'));
     bytes
 }

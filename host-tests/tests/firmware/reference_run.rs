@@ -1,17 +1,16 @@
-//! A robot that walks or stands, and the pulse widths that it should send, for tests that disturb the robot at chosen
-//! cycles.
+//! A robot that walks or stands, and its expected pulse widths, for tests that disturb the robot at chosen cycles.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::Fidelity;
 
-use crate::pulses::commanded_widths;
-use crate::{boot_standing, first_moving_gait};
+use crate::pulses::compute_core_widths;
+use crate::{boot_to_stand, first_moving_gait};
 
 /// Cycles from the start of one servo's pulse to the start of the next servo's pulse.
 pub const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
-/// A robot that walks its first gait or stands. Its widths follow from the received bytes and the first pulse.
+/// A robot that walks its first gait or stands. Its expected widths follow from the received bytes and the first pulse.
 pub struct ReferenceRun {
     pub bench: FirmwareBench,
     fidelity: Fidelity,
@@ -20,18 +19,18 @@ pub struct ReferenceRun {
 }
 
 impl ReferenceRun {
-    /// Starts the robot's first gait and runs it for a second.
+    /// Starts the robot's first gait and runs for a second.
     pub fn start_walking(fidelity: Fidelity) -> Self {
-        Self::start_with(&first_moving_gait(), fidelity)
+        Self::start(&first_moving_gait(), fidelity)
     }
 
-    /// Makes the robot stand in its neutral pose and runs it for a second.
+    /// Makes the robot stand in its neutral pose and runs for a second.
     pub fn start_standing(fidelity: Fidelity) -> Self {
-        Self::start_with("stand", fidelity)
+        Self::start("stand", fidelity)
     }
 
-    fn start_with(line: &str, fidelity: Fidelity) -> Self {
-        let mut bench = boot_standing(fidelity);
+    fn start(line: &str, fidelity: Fidelity) -> Self {
+        let mut bench = boot_to_stand(fidelity);
         let first_pulse_cycle = bench.first_pulse_cycle().expect("the robot stands");
         bench.say(line);
         let received_byte_count = bench.uno.received_by_uno().len();
@@ -44,15 +43,15 @@ impl ReferenceRun {
         }
     }
 
-    /// Runs to just before the next frame's first pulse and returns the cycle of that pulse. Discards the edges
-    /// recorded so far.
+    /// Runs to just before the first pulse of the next frame and returns the pulse's cycle. Discards the edges recorded
+    /// so far.
     pub fn run_to_next_frame(&mut self) -> u64 {
         self.bench.run_for_frames(0);
         let cycles_since_pulse = self.bench.uno.cycle() - self.first_pulse_cycle;
         self.first_pulse_cycle + cycles_since_pulse.div_ceil(FRAME_CYCLES) * FRAME_CYCLES
     }
 
-    /// Returns the frames from cycle `start` to now, and the widths that they should have.
+    /// Returns the frames from cycle `start` to now, each with its expected widths.
     pub fn frames_since(&self, start: u64) -> Vec<(Frame, [u64; 4])> {
         let count = (self.bench.uno.cycle() + SLOT_CYCLES / 2 - start) / FRAME_CYCLES;
         let edges = self.bench.uno.edges();
@@ -61,7 +60,7 @@ impl ReferenceRun {
         sent_frames.into_iter().zip(expected).collect()
     }
 
-    /// Returns the widths that `count` frames from cycle `start` on should have.
+    /// Returns the expected widths of `count` frames from cycle `start` on.
     pub fn expected_widths(&self, start: u64, count: u64) -> Vec<[u64; 4]> {
         let silent_frame = Frame {
             start,
@@ -70,7 +69,7 @@ impl ReferenceRun {
         };
         let frames = vec![silent_frame; count as usize];
         let (first_rise, count) = (self.first_pulse_cycle, self.received_byte_count);
-        commanded_widths(robot(), &self.bench, first_rise, count, &frames)
+        compute_core_widths(robot(), &self.bench, first_rise, count, &frames)
     }
 
     /// True if the simulation is simavr corrected to follow the data sheet.

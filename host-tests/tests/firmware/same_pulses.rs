@@ -1,19 +1,19 @@
-//! Test that the pulses of every robot in robots/ equal the recorded pulses, cycle for cycle.
+//! Test that the pulses of every robot in robots/ match the recorded pulses to the cycle.
 //!
-//! The record of a robot is the number of edges of its servos' pins in ten simulated minutes of random commands, and a
-//! digest of these edges. A pulse that is one cycle longer or later, or on another pin, changes the digest. An intended
-//! change of a robot's values or of the effect of a command also changes the digest; then replace the records with
-//! those that the failed test prints.
+//! A robot's record is the number of edges at its servo pins in ten simulated minutes of random commands, and a digest
+//! of these edges. A pulse that is one cycle longer or later, or on another pin, changes the digest. An intended change
+//! to a robot's values or to a command's effect also changes the digest; in this case, replace the records with the
+//! values that the failed test prints.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, servo_pins};
 use lizard_host::sim::supplies;
-use lizard_host_tests::{FirmwareBench, robot_named, root, text_of};
+use lizard_host_tests::{FirmwareBench, decode_text, load_named_robot, root};
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, State, Uno};
 
 use crate::{FRAMES_PER_SECOND, for_each_in_parallel};
 
-/// A random number generator whose numbers no update of a library changes: xorshift64*, Vigna 2016.
+/// A random number generator that no library update can change: xorshift64*, Vigna 2016.
 struct Random(u64);
 
 impl Random {
@@ -25,7 +25,7 @@ impl Random {
         (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) % end
     }
 
-    /// Returns a random number from `min` to `max` hundredths, written with two decimals as the console takes it.
+    /// Returns a random number between `min` and `max` hundredths, formatted with two decimals for the console.
     fn next_decimal(&mut self, min: i64, max: i64) -> String {
         let value = min + self.next_below((max - min) as u64 + 1) as i64;
         let sign = if value < 0 { "-" } else { "" };
@@ -34,13 +34,13 @@ impl Random {
     }
 }
 
-/// Returns a random command, a gait in almost half of the cases.
+/// Returns a random command, which is a gait in almost half of the cases.
 fn random_command(random: &mut Random, robot: &Robot) -> String {
     let servo = 1 + random.next_below(4);
-    let neutral_of = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
-    let pose_near = |random: &mut Random, max_hundredths: i64| {
+    let neutral_hundredths = |index: usize| (robot.servos()[index].neutral * 100.0).round() as i64;
+    let random_pose_near = |random: &mut Random, max_hundredths: i64| {
         let random_angle = |index: usize| {
-            let angle = neutral_of(index);
+            let angle = neutral_hundredths(index);
             random.next_decimal(angle - max_hundredths, angle + max_hundredths)
         };
         let angles: Vec<String> = (0..4).map(random_angle).collect();
@@ -52,8 +52,8 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
             let gait = &gaits[random.next_below(gaits.len() as u64) as usize];
             gait.command()
         }
-        14..17 => pose_near(random, 2_000),
-        17 => pose_near(random, 6_000),
+        14..17 => random_pose_near(random, 2_000),
+        17 => random_pose_near(random, 6_000),
         18 => "stop".into(),
         19 => "rest".into(),
         20 | 21 => "stand".into(),
@@ -61,7 +61,7 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
         23 | 24 => format!("speed {}", 10 + random.next_below(91)),
         25 => format!("trim {servo} {}", random.next_decimal(-2_000, 2_000)),
         26 => {
-            let neutral = neutral_of(servo as usize - 1);
+            let neutral = neutral_hundredths(servo as usize - 1);
             let min = random.next_decimal(neutral - 9_000, neutral - 1_000);
             let max = random.next_decimal(neutral + 1_000, neutral + 9_000);
             format!("limit {servo} {min} {max}")
@@ -74,22 +74,22 @@ fn random_command(random: &mut Random, robot: &Robot) -> String {
     }
 }
 
-/// True if the robot of this file name fits into the flash beside the firmware. Without the project's own linker step,
-/// the code is larger, and some robots do not fit.
-fn fits_beside_firmware(name: &str) -> bool {
+/// True if the robot of this file name fits in flash with the firmware. Without the project's own linker step, the code
+/// is larger, and some robots do not fit.
+fn fits_in_flash(name: &str) -> bool {
     let is_plain_link = option_env!("LIZARD_PLAIN_LINK") == Some("1");
     let robot = Robot::load(root().join(format!("robots/{name}.toml")));
     !(is_plain_link && robot.is_err_and(|error| error.to_string().contains("bytes")))
 }
 
-/// Runs a robot for ten minutes and returns the digest of all servo edges and their number.
+/// Runs a robot for ten minutes and returns the digest and the number of all servo edges.
 fn run_and_digest(name: &str) -> (u64, u64) {
     let frames = 600 * FRAMES_PER_SECOND;
-    let robot = robot_named(name);
+    let robot = load_named_robot(name);
     let mut uno = Uno::with_image(FirmwareBench::image_with(&robot), Fidelity::DataSheet);
     supplies::connect(&mut uno, &robot);
     let pins = servo_pins(&robot);
-    // Times count from the first pulse, because the time until then depends on the code.
+    // Times are relative to the first pulse, because the time of the first pulse depends on the code.
     let has_risen = uno.run_until(500 * CYCLES_PER_MS, 1_000, |uno| uno.is_high(pins[0]));
     assert!(has_risen, "no pulse");
     let is_a1_rise = |edge: &&Edge| edge.is_rising && edge.pin == pins[0];
@@ -108,8 +108,8 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     for frame in 0..frames {
         let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
-            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next line, so it
-            // is certain in which frame the robot obeys.
+            // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next line, so
+            // the frame in which the robot executes the line is certain.
             uno.run_until_cycle(start + random.next_below(8) * CYCLES_PER_MS);
             uno.send(random_command(&mut random, &robot).as_bytes());
             uno.send(b"\n");
@@ -133,22 +133,23 @@ fn run_and_digest(name: &str) -> (u64, u64) {
             }
         }
     }
-    let text = text_of(&uno.transmitted());
+    let text = decode_text(&uno.transmitted());
     let answer_count = text.lines().filter(|line| !line.starts_with('#')).count();
     assert!(
         (command_count - 1..=command_count).contains(&answer_count),
-        "{answer_count} of {command_count} answers"
+        "{answer_count} answers to {command_count} commands"
     );
     println!("{name}: {command_count} commands, {edge_count} edges, {digest:#018x}");
     (digest, edge_count)
 }
 
 #[test]
-fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
-    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths: there are as many edges
-    // as on the last firmware that had each robot compiled into it (commit e49c5b5). The large robot is the paper's
-    // robot scaled by 4/3, so its servos get the same pulses. The robot of grain.toml was recorded when its file was
-    // added. All were recorded again when `deadman` began to count only commands, which ends some gaits earlier.
+fn the_pulses_of_every_robot_match_its_record() {
+    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths: the number of edges is
+    // the same as with the last firmware that had each robot compiled in (commit e49c5b5). The large robot is the
+    // paper's robot scaled by 4/3, so its servos get the same pulses. The robot of grain.toml was recorded when its
+    // file was added. All were recorded again when `deadman` began to count only commands, which ends some gaits
+    // earlier.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
         ("large", (0x3a1b_1df5_bc67_f514, 184_384)),
@@ -156,21 +157,21 @@ fn ten_minutes_of_random_commands_give_every_robot_its_recorded_pulses() {
         ("paper", (0x3a1b_1df5_bc67_f514, 184_384)),
         ("unequal", (0xef9f_3060_6801_8a27, 164_444)),
     ];
-    let name_of_file = |entry: std::io::Result<std::fs::DirEntry>| {
+    let file_stem = |entry: std::io::Result<std::fs::DirEntry>| {
         let path = entry.expect("the folder is readable").path();
         let name = path.file_stem().expect("a file has a name");
         name.to_string_lossy().into_owned()
     };
     let folder = std::fs::read_dir(root().join("robots")).expect("robots/ is readable");
-    let mut names: Vec<String> = folder.map(name_of_file).collect();
+    let mut names: Vec<String> = folder.map(file_stem).collect();
     names.sort();
     assert_eq!(
         names,
         recorded.map(|(name, _)| name),
-        "the records are not those of the files"
+        "expected one record for each file"
     );
     for_each_in_parallel(&recorded, |(name, expected)| {
-        if !fits_beside_firmware(name) {
+        if !fits_in_flash(name) {
             return;
         }
         let (digest, edge_count) = run_and_digest(name);

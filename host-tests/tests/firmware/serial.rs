@@ -1,16 +1,15 @@
-//! Tests of the serial line: no byte is lost while the sender waits for answers, and the bytes that are lost in a flood
-//! are counted.
+//! Tests of the serial line: no byte is lost while the sender waits for answers, and bytes lost in a flood are counted.
 
 use fastrand::Rng;
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
 
 use crate::{
-    Status, boot_standing, end_flood, first_moving_gait, pose_command, run_in_both_simulations,
+    Status, boot_to_stand, end_flood, first_moving_gait, pose_command, run_in_both_simulations,
 };
 
 /// Sends a line and asserts that the answer is `ok`.
-fn say_expecting_ok(bench: &mut FirmwareBench, line: &str) {
+fn expect_ok_answer(bench: &mut FirmwareBench, line: &str) {
     let answer = bench.say(line);
     assert!(answer.starts_with("ok "), "{line}: {answer}");
 }
@@ -18,9 +17,9 @@ fn say_expecting_ok(bench: &mut FirmwareBench, line: &str) {
 #[test]
 fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let mut rng = Rng::with_seed(7);
-        say_expecting_ok(&mut bench, "watch 1");
+        expect_ok_answer(&mut bench, "watch 1");
         let padded_line = format!("status{}", " ".repeat(57));
         let (gait, pose) = (first_moving_gait(), pose_command([0.0; 4]));
         let lines = [
@@ -33,9 +32,9 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
             &padded_line,
         ];
         for _ in 0..600 {
-            say_expecting_ok(&mut bench, lines[rng.usize(..lines.len())]);
+            expect_ok_answer(&mut bench, lines[rng.usize(..lines.len())]);
         }
-        say_expecting_ok(&mut bench, "watch 0");
+        expect_ok_answer(&mut bench, "watch 0");
         let status = Status::read(&mut bench);
         assert_eq!(status.numbers(["rx_lost", "late"]), [0.0; 2]);
         assert_eq!(bench.uno.overruns(), 0);
@@ -44,9 +43,9 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
 
 #[test]
 fn the_longest_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
-    // Sends the longest line right after the question with the longest answer, without waiting.
+    // Sends the longest line directly after the command with the longest answer, without waiting.
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let line_count = bench.lines().len();
         bench.uno.send(b"help\n");
         bench
@@ -62,17 +61,18 @@ fn the_longest_line_waits_in_the_buffer_while_an_answer_is_being_sent() {
 #[test]
 fn a_long_answer_takes_less_than_2000_cycles_a_byte() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
-        say_expecting_ok(&mut bench, "stand");
+        let mut bench = boot_to_stand(fidelity);
+        expect_ok_answer(&mut bench, "stand");
         let bytes_before = bench.bytes().len();
-        say_expecting_ok(&mut bench, "help");
+        expect_ok_answer(&mut bench, "help");
         let bytes = &bench.bytes()[bytes_before..];
         let duration_cycles = bytes[bytes.len() - 1].cycle - bytes[0].cycle;
-        // A byte takes 1360 cycles, in stock simavr 1496. Frames, and the time to compose each line, add to that.
+        // A byte takes 1360 cycles, in stock simavr 1496. Frames and the composition of each line take additional time.
         let cycles_per_byte = duration_cycles / bytes.len() as u64;
         assert!(
             bytes.len() > 200 && cycles_per_byte < 2_000,
-            "{cycles_per_byte} cycles a byte"
+            "{} bytes, {cycles_per_byte} cycles per byte",
+            bytes.len()
         );
     });
 }
@@ -80,7 +80,7 @@ fn a_long_answer_takes_less_than_2000_cycles_a_byte() {
 #[test]
 fn bytes_lost_in_a_flood_are_counted() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let (bytes_before, lines_before) = (bench.uno.received_by_uno().len(), bench.lines().len());
         bench.uno.flood(b"a\n");
         bench.run_ms(5000);
@@ -96,20 +96,20 @@ fn bytes_lost_in_a_flood_are_counted() {
         let read_count = received_count - lost_count;
         assert!(
             (2.0 * answer_count..4.0 * answer_count).contains(&read_count),
-            "{read_count} for {answer_count} answers"
+            "{read_count} bytes read for {answer_count} answers"
         );
-        // After a flood, the buffer contains none of its bytes.
-        say_expecting_ok(&mut bench, &first_moving_gait());
+        // After a flood, the buffer contains no bytes from the flood.
+        expect_ok_answer(&mut bench, &first_moving_gait());
         assert_eq!(Status::read(&mut bench).number("rx_lost"), lost_count);
     });
 }
 
 #[test]
 fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
-    // While the answer to `help` is being sent, the main loop reads nothing: 64 bytes fit into the buffer and the rest
-    // is lost.
+    // While the answer to `help` is sent, the main loop reads nothing: 64 bytes fit into the buffer, and the rest is
+    // lost.
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         bench.uno.send(b"help\n");
         bench.run_ms(3);
         bench.uno.send(&[b' '; 150]);
@@ -122,10 +122,10 @@ fn a_burst_that_overruns_the_buffer_is_counted_to_the_byte() {
 
 #[test]
 fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
-    // The receiver has room for two bytes and the byte being received. The answer shows which of the five digits were
-    // not lost.
+    // The receiver has room for two bytes and the byte being received. The answer shows which of the five digits
+    // arrived.
     let byte_cycles = 1_400;
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let (mut lost_before, mut overrun_count) = (0.0, 0);
     for round in 0..40u64 {
         let overruns_before = bench.uno.overruns();
@@ -137,7 +137,7 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
         bench.run_ms(3);
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
-        // The first byte may still be received: this depends on where the main loop disables interrupts.
+        // The first byte may still arrive, depending on the time at which the main loop disables interrupts.
         let was_lost = bench.uno.overruns() > overruns_before;
         assert_eq!(digits.len() < 5, was_lost, "{round}: {answer}");
         overrun_count += usize::from(was_lost);
@@ -163,9 +163,9 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
 #[test]
 fn a_line_of_any_bytes_gets_one_answer_unless_it_is_blank() {
     let mut rng = Rng::with_seed(11);
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     for _ in 0..300 {
-        // No backspace and no delete, which would remove bytes from the line.
+        // Excludes backspace and delete, which would remove bytes from the line.
         let bytes: Vec<u8> = (0..rng.u64(..80))
             .map(|_| rng.u8(..).max(32))
             .filter(|byte| *byte != 0x7f)
@@ -183,9 +183,9 @@ fn a_line_of_any_bytes_gets_one_answer_unless_it_is_blank() {
 }
 
 #[test]
-fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
+fn a_line_with_a_garbled_byte_is_refused_and_the_byte_counted() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         let line = b"speed 90";
         for index in 0..line.len() {
             bench.uno.send(&line[..index]);
@@ -193,7 +193,7 @@ fn a_line_with_a_garbled_byte_anywhere_is_refused_and_the_byte_counted() {
             bench.uno.send(&line[index + 1..]);
             bench.uno.send(b"\n");
             bench.run_ms(20);
-            let refusal = "err 1 the line came garbled, send it again";
+            let refusal = "err 1 the line was garbled; send it again";
             assert_eq!(bench.last_text(), refusal, "byte {index}");
         }
         let status = Status::read(&mut bench);

@@ -1,4 +1,4 @@
-//! Tests of the settings of the serial line, read from the chip and measured on the wire.
+//! Tests of the serial line's settings, read from the chip and measured on the wire.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::Fidelity;
@@ -14,7 +14,7 @@ const UBRR0: [u16; 2] = [0xc4, 0xc5];
 fn the_line_has_eight_data_bits_no_parity_and_one_stop_bit() {
     run_in_both_simulations(|fidelity| {
         let bench = FirmwareBench::boot_with(fidelity);
-        // Asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
+        // The fields are: asynchronous 00, no parity 00, one stop bit 0, eight data bits 11.
         assert_eq!(bench.uno.peek(UCSR0C), 0b0000_0110);
     });
 }
@@ -45,7 +45,7 @@ fn a_byte_on_the_wire_takes_ten_bits_of_136_cycles() {
         .count();
     assert!(
         back_to_back_count > intervals.len() * 9 / 10,
-        "{back_to_back_count} of {}",
+        "{back_to_back_count} of {} bytes follow without a gap",
         intervals.len()
     );
 }

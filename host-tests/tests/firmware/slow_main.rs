@@ -1,19 +1,19 @@
-//! Tests that stop the main loop at every instruction that shares data with an interrupt: in the hand-over of a frame,
+//! Tests that stop the main loop at every instruction that shares data with an interrupt: during a frame's hand-over,
 //! at the LED, in an answer, and before the loop sleeps.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, group_frames, servo_pins};
 use lizard_host_tests::{FirmwareBench, gait_commands, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
-use crate::measurements::{assert_no_leap_in_gait, recorded_pulses};
+use crate::measurements::{assert_gait_within_slew_limits, recorded_pulses};
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
 use crate::{
-    Status, boot_and_command, boot_standing, for_each_in_parallel, run_in_both_simulations,
+    Status, boot_and_command, boot_to_stand, for_each_in_parallel, run_in_both_simulations,
 };
 
-/// Upper bound of the cycles that the main loop takes, after it has computed a frame, to hand the frame over and to
-/// set the LED. A sweep takes three frames for each of these cycles. This is an odd multiple of the 32 frames between
-/// two changes of the LED, so the LED is lit in a second sweep where it was dark in the first.
+/// Upper bound of the cycles that the main loop takes to hand over a computed frame and to set the LED. A sweep takes
+/// three frames for each of these cycles. This is an odd multiple of the 32 frames between two changes of the LED, so
+/// the LED's state in the second sweep is the opposite of its state in the first.
 const MAX_HAND_OVER_CYCLES: u64 = 608;
 
 /// Runs until `Controller::compute_frame` returns to the main loop with the next frame.
@@ -22,18 +22,18 @@ fn run_to_hand_over(bench: &mut FirmwareBench) {
     let entry_address = frame_function.expect("the ELF has the function").address as u32;
     let uno = &mut bench.uno;
     assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == entry_address));
-    let byte_at = |address| u16::from(uno.peek(address));
-    let stack_pointer = byte_at(0x5d) | byte_at(0x5e) << 8;
+    let read_byte = |address| u16::from(uno.peek(address));
+    let stack_pointer = read_byte(0x5d) | read_byte(0x5e) << 8;
     let return_address =
-        u32::from(byte_at(stack_pointer + 1) << 8 | byte_at(stack_pointer + 2)) * 2;
+        u32::from(read_byte(stack_pointer + 1) << 8 | read_byte(stack_pointer + 2)) * 2;
     assert!(uno.run_until(FRAME_CYCLES, 1, |uno| uno.pc() == return_address));
 }
 
 #[test]
-fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() {
-    // The main loop stops until A1's pulse has begun. Meanwhile the timer interrupt takes over the next frame, and the
-    // pin of A1, which may share its port with the LED, rises. The test stops the main loop only in every third frame,
-    // because a frame that comes too late is played at the next tick, so it affects two frames.
+fn a_frame_is_sent_completely_or_not_at_all_wherever_main_stops_in_the_hand_over() {
+    // The main loop stops until A1's pulse has begun. Meanwhile the timer interrupt takes over the next frame, and A1's
+    // pin, which may share its port with the LED, rises. The test stops the main loop only in every third frame,
+    // because a frame that comes too late is sent at the next tick and therefore affects two frames.
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         let start = run.run_to_next_frame();
@@ -52,7 +52,7 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
         run.run_to(start + frame_count * FRAME_CYCLES - SLOT_CYCLES / 2);
         let frames = run.frames_since(start);
         assert_eq!(frames.len() as u64, frame_count);
-        // No frame is skipped: each sent frame repeats the previous one, or is the next computed one.
+        // No frame is skipped: each sent frame is the previous frame or the next computed frame.
         let commanded: Vec<_> = frames
             .iter()
             .map(|(_, commanded)| Some(*commanded))
@@ -68,12 +68,12 @@ fn a_frame_is_played_whole_or_not_at_all_wherever_main_stops_in_the_hand_over() 
             );
             next_index += usize::from(is_next);
         }
-        // Some frames are repeated, but not all: at the end of the sweep, the main loop has handed the frame over
-        // before it stops.
+        // Not all frames are repeated: at the end of the sweep, the main loop has handed over the frame before it
+        // stops.
         let repeated_count = frames.len() - next_index;
         assert!(
             (40..frames.len() / 3 - 40).contains(&repeated_count),
-            "{repeated_count}"
+            "{repeated_count} frames repeated"
         );
         assert_eq!(run.late_edge_count(), 0);
     });
@@ -113,12 +113,12 @@ fn a_rest_that_replaces_a_pending_frame_ends_all_pulses_or_none() {
 }
 
 #[test]
-fn an_answer_is_the_same_wherever_main_stops_in_writing_it() {
-    // Longer than two bytes take, so the USART sends everything that it holds.
+fn an_answer_is_the_same_wherever_main_stops_while_writing_it() {
+    // Longer than the duration of two bytes, so the USART sends everything in its buffer.
     const STOP_CYCLES: u64 = 3_000;
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
-        // From here on, the robot prints nothing but answers.
+        let mut bench = boot_to_stand(fidelity);
+        // From here on, the robot prints only answers.
         assert_eq!(bench.say("stop"), "ok stop");
         for delay_cycles in 0..4_500 {
             bench.send("stop");
@@ -162,7 +162,7 @@ fn a_byte_at_any_cycle_of_falling_asleep_wakes_main_at_once() {
 }
 
 #[test]
-fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
+fn missed_ticks_are_skipped_and_make_no_servo_jump() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_walking(fidelity);
         run.run_to_next_frame();
@@ -176,13 +176,13 @@ fn ticks_that_main_misses_are_skipped_and_make_no_servo_leap() {
         }
         let pulses = recorded_pulses(&run.bench);
         assert!(pulses.iter().all(|pulses| pulses.len() > 250));
-        assert_no_leap_in_gait(&pulses);
+        assert_gait_within_slew_limits(&pulses);
         let frames = Status::read(&mut run.bench).number("frames") - frames_before;
         let passed_frames = (run.bench.uno.cycle() - start_cycle) as f64 / FRAME_CYCLES as f64;
         let missed_frames = passed_frames - frames;
         assert!(
             (70.0..=101.0).contains(&missed_frames),
-            "{missed_frames} of {passed_frames}"
+            "{missed_frames} of {passed_frames} frames missed"
         );
     });
 }
@@ -204,17 +204,17 @@ fn the_last_widths_repeat_while_main_is_stalled() {
 }
 
 #[test]
-fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
-    // The watchdog has two stages of 125 ms each, and is fed at most one frame before a stall. A stall shorter than
-    // POSSIBLE_RESET_MS never causes a reset, and a stall of at least CERTAIN_RESET_MS always does.
+fn pulses_stay_within_the_slew_limit_after_any_stall_in_any_gait() {
+    // The watchdog has two stages of 125 ms each, and main last resets it at most one frame before a stall. A stall
+    // shorter than POSSIBLE_RESET_MS never causes a reset, and a stall of at least CERTAIN_RESET_MS always does.
     const POSSIBLE_RESET_MS: u64 = 105;
     const CERTAIN_RESET_MS: u64 = 250;
     for_each_in_parallel(&gait_commands(), |gait| {
         let mut bench = boot_and_command(gait, Fidelity::DataSheet);
-        // Short stalls are tried at more moments, because only short stalls end near the next tick.
+        // Short stalls are tried at more times, because only short stalls end near the next tick.
         let lengths_ms = (0..6).flat_map(|_| 1..=25).chain(1..=300);
         for (stall_index, length_ms) in lengths_ms.enumerate() {
-            // Spreads the stalls evenly over the frame, since 7 919 is a prime.
+            // Spreads the stalls evenly over the frame, because 7 919 is prime.
             bench
                 .uno
                 .run_cycles(FRAME_CYCLES + stall_index as u64 * 7_919 % FRAME_CYCLES);
@@ -234,7 +234,7 @@ fn no_pulse_leaps_after_a_stall_of_any_length_at_any_moment_of_any_gait() {
                 "{length_ms} ms"
             );
             println!("{gait}, stalled for {length_ms} ms");
-            assert_no_leap_in_gait(&recorded_pulses(&bench));
+            assert_gait_within_slew_limits(&recorded_pulses(&bench));
             if was_reset {
                 bench.say(gait);
                 bench.run_ms(900);

@@ -1,5 +1,5 @@
-//! Tests with Debian's own `simavr`, which runs the unchanged ELF and HEX files: both start, and a robot with a gait
-//! set by `boot` walks after power-on.
+//! Tests with Debian's own `simavr`, which runs the unchanged ELF and HEX files. Both files start, and a robot whose
+//! `boot` setting is a gait walks after power-on.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, robot};
 
-/// Time after which simavr is stopped. simavr runs in real time or, on a busy machine, slower.
+/// Time after which simavr is stopped. simavr runs in real time, or slower on a busy machine.
 const TIMEOUT: Duration = Duration::from_secs(200);
 
 /// Returns the command for the first gait after `stand`.
@@ -19,7 +19,7 @@ fn first_gait_command() -> String {
     robot().gaits()[1].command()
 }
 
-/// Writes a HEX file of an EEPROM whose saved settings start the first gait after power-on.
+/// Writes the HEX file of an EEPROM whose saved settings start the first gait after power-on.
 fn write_eeprom(folder: &Path) {
     let mut running_robot = RunningRobot::power_on(*robot().firmware());
     running_robot.run_frames(50);
@@ -62,8 +62,8 @@ fn objcopy(arguments: &[&str], folder: &Path) {
     assert!(status.expect("avr-objcopy runs").success(), "{arguments:?}");
 }
 
-/// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, so that simavr closes its
-/// files.
+/// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, which makes simavr close
+/// its files.
 fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output_path = folder.join("output.txt");
     let file = File::create(&output_path).expect("the folder is writable");
@@ -95,7 +95,7 @@ const VCD_FILENAME: [u8; 2] = [12, 64];
 const VCD_PORTPIN: [u8; 2] = [15, 35];
 
 /// Returns simavr's tags for a trace file and for each pin to be traced.
-fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
+fn build_trace_tags(pins: [u8; 4]) -> Vec<u8> {
     let mut name_tag = VCD_FILENAME.to_vec();
     name_tag.extend(b"pins.vcd");
     name_tag.resize(2 + usize::from(VCD_FILENAME[1]), 0);
@@ -115,7 +115,7 @@ fn trace_tags(pins: [u8; 4]) -> Vec<u8> {
     tags
 }
 
-/// Returns the widths of each servo's pulses, us, from a trace file with steps of 10 ns.
+/// Returns the widths of each servo's pulses in us, from a trace file with steps of 10 ns.
 fn parse_widths(vcd: &str) -> HashMap<String, Vec<f64>> {
     let (mut names, mut rises_us, mut now_us) = (HashMap::new(), HashMap::new(), 0.0);
     let mut widths: HashMap<String, Vec<f64>> = HashMap::new();
@@ -145,7 +145,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     let folder = tempfile::tempdir().expect("the folder is writable");
     let folder = folder.path();
     write_eeprom(folder);
-    fs::copy(FirmwareBench::elf(), folder.join("lizard.elf"))
+    fs::copy(FirmwareBench::elf_path(), folder.join("lizard.elf"))
         .expect("`make firmware` has built the firmware");
     // `traced.elf` is the same file with trace tags for four pins added to its own tags.
     objcopy(
@@ -163,7 +163,7 @@ fn the_elf_file_walks_in_debians_simavr() {
     );
     let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("avr-objcopy has written the section");
     let end = mmcu.len() - 2;
-    mmcu.splice(end..end, trace_tags(robot().firmware().pins()));
+    mmcu.splice(end..end, build_trace_tags(robot().firmware().pins()));
     fs::write(folder.join("mmcu.bin"), mmcu).expect("the folder is writable");
     objcopy(
         &[
@@ -215,7 +215,7 @@ fn the_elf_file_walks_in_debians_simavr() {
         );
         assert!(
             max_us - min_us > 50.0,
-            "A{} does not turn: {min_us} to {max_us} us",
+            "A{} does not turn: pulses between {min_us} and {max_us} us",
             servo + 1
         );
         let limits = [calibration.travel_min, calibration.travel_max]
@@ -223,19 +223,19 @@ fn the_elf_file_walks_in_debians_simavr() {
         let (low_us, high_us) = (limits[0].min(limits[1]), limits[0].max(limits[1]));
         assert!(
             low_us - 0.1 <= min_us && max_us <= high_us + 0.1,
-            "A{}: {min_us} to {max_us} us",
+            "A{}: pulses between {min_us} and {max_us} us",
             servo + 1
         );
     }
 }
 
-/// A HEX file cannot tell simavr the supply voltage, so simavr assumes 3.3 V. This is too little for servos, and the
-/// firmware must say so.
+/// A HEX file does not contain the supply voltage, so simavr assumes 3.3 V. This is too low for servos, and the
+/// firmware must report it.
 #[test]
 fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     let folder = tempfile::tempdir().expect("the folder is writable");
     let folder = folder.path();
-    let elf = FirmwareBench::elf();
+    let elf = FirmwareBench::elf_path();
     fs::copy(elf.with_extension("hex"), folder.join("firmware.hex"))
         .expect("`make firmware` has built the firmware");
     let image = lizard_upload::Image::new(FirmwareBench::image().flash())
@@ -247,7 +247,7 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
             folder,
             |output_text| output_text.contains("3.30 V"),
         );
-        let name = lizard_host::firmware::robot_label(robot().firmware());
+        let name = lizard_host::firmware::format_robot_label(robot().firmware());
         assert!(
             output_text.contains(&format!("robot {name},")),
             "{file}: {output_text}"

@@ -1,4 +1,4 @@
-//! Tests of `stop`, `rest` and waking: the lines are sent at many moments, and the pulses are checked frame by frame.
+//! Tests of `stop`, `rest` and waking. The lines are sent at many times, and the pulses are checked frame by frame.
 
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame, group_frames, servo_pins};
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, gait_commands, robot};
@@ -6,16 +6,16 @@ use lizard_robot::Servo;
 use simulated_uno::{CYCLES_PER_MS, Fidelity};
 
 use crate::{
-    boot_and_command, boot_standing, first_moving_gait, for_each_in_parallel, neutral_widths,
-    pose_command, run_in_both_simulations, widths,
+    boot_and_command, boot_to_stand, first_moving_gait, for_each_in_parallel, frame_widths,
+    neutral_widths, pose_command, run_in_both_simulations,
 };
 
-/// Cycles between the interruptions of a gait. Not a multiple of a frame, so that the interruptions cover many
-/// phases of gait and frame.
+/// Cycles between the interruptions of a gait. This is not a multiple of a frame, so the interruptions cover many
+/// phases of the gait and of the frame.
 const INTERRUPTION_INTERVAL_CYCLES: u64 = 1_237_331;
 
-/// Runs `gait` for a second and `extra_cycles` more, sends a line, and returns the bench and the cycle at which the
-/// last byte of the line has arrived.
+/// Runs `gait` for a second plus `extra_cycles`, sends a line, and returns the bench and the cycle at which the line's
+/// last byte has arrived.
 fn interrupt_gait(
     gait: &str,
     line: &str,
@@ -33,7 +33,7 @@ fn interrupt_gait(
 }
 
 #[test]
-fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
+fn stop_freezes_the_robot_within_one_frame_in_any_phase_of_a_gait() {
     run_in_both_simulations(|fidelity| {
         for gait in gait_commands().iter().skip(1).take(4) {
             for n in 0..12 {
@@ -55,7 +55,7 @@ fn stop_freezes_within_one_frame_from_any_phase_of_a_gait() {
 }
 
 #[test]
-fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
+fn rest_ends_the_pulses_within_two_frames_without_cutting_one_short() {
     let cases: Vec<(Fidelity, u64)> = [Fidelity::Stock, Fidelity::DataSheet]
         .into_iter()
         .flat_map(|fidelity| (0..12).map(move |n| (fidelity, n * INTERRUPTION_INTERVAL_CYCLES)))
@@ -64,7 +64,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.uno.run_cycles(extra_cycles);
         let first_frame = bench.run_for_frames(1)[0];
-        // The recorded edges still contain this frame; later edges are appended.
+        // The recorded edges still contain this frame; later edges follow.
         bench.uno.run_cycles(extra_cycles % FRAME_CYCLES);
         bench.send("rest");
         bench.run_ms(100);
@@ -78,7 +78,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
                 .count();
             assert_eq!(pulses.len(), rise_count, "A{} is left high", servo + 1);
             for pulse in &pulses {
-                // Complete pulses, within the servo's travel.
+                // Each pulse is complete and within the servo's travel.
                 let us = pulse.width as f64 / CYCLES_PER_US;
                 let Servo { min_us, max_us, .. } = robot().servos()[servo];
                 assert!(
@@ -105,7 +105,7 @@ fn rest_ends_the_pulses_within_two_frames_and_cuts_none_short() {
 
 #[test]
 fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
-    let wake_frames_of = |frames: &[Frame]| -> [usize; 4] {
+    let find_wake_frames = |frames: &[Frame]| -> [usize; 4] {
         std::array::from_fn(|servo| {
             let first_index = frames
                 .iter()
@@ -130,17 +130,17 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         let first_rise = bench.uno.pulses(pins[0])[0].start;
         assert!(first_rise < 300 * CYCLES_PER_MS);
         let frames = group_frames(&bench.uno.edges(), pins, first_rise, 40);
-        assert_eq!(wake_frames_of(&frames), [0, 5, 10, 15]);
+        assert_eq!(find_wake_frames(&frames), [0, 5, 10, 15]);
 
         let mut bench = boot_and_command(&first_moving_gait(), fidelity);
         bench.say("stop");
         bench.run_ms(100);
-        let pose = widths(&bench.run_for_frames(1))[0];
+        let pose = frame_widths(&bench.run_for_frames(1))[0];
         bench.say("rest");
         bench.run_ms(100);
         bench.send("stand");
         let frames = bench.run_for_frames(100);
-        let [a1, a2, a3, a4] = wake_frames_of(&frames);
+        let [a1, a2, a3, a4] = find_wake_frames(&frames);
         assert_eq!([a2 - a1, a3 - a2, a4 - a3], [5, 5, 5]);
         // The servos wake in the pose in which they rested, and move to `stand` from this pose.
         for (servo, frame) in [a1, a2, a3, a4].into_iter().enumerate() {
@@ -150,13 +150,13 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
     });
 }
 
-/// Returns a sweep from neutral for each servo, all of different sizes, the largest `max_sweep_deg`.
-fn sweeps_up_to(max_sweep_deg: f64) -> [f64; 4] {
-    [-1.0, 0.25, 0.8, -0.6].map(|share| max_sweep_deg * share)
+/// Returns a sweep from neutral for each servo, all of different sizes, with a maximum of `max_sweep_deg`.
+fn scale_sweeps(max_sweep_deg: f64) -> [f64; 4] {
+    [-1.0, 0.25, 0.8, -0.6].map(|fraction| max_sweep_deg * fraction)
 }
 
 /// Returns the pulse width of a servo at a sweep from neutral, cycles.
-fn width_at(servo: usize, sweep_deg: f64) -> u64 {
+fn compute_width(servo: usize, sweep_deg: f64) -> u64 {
     let servo = robot().servos()[servo];
     (servo.pulse(servo.neutral + sweep_deg) * CYCLES_PER_US).round() as u64
 }
@@ -164,34 +164,35 @@ fn width_at(servo: usize, sweep_deg: f64) -> u64 {
 #[test]
 fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
     run_in_both_simulations(|fidelity| {
-        let mut bench = boot_standing(fidelity);
+        let mut bench = boot_to_stand(fidelity);
         // The pose is as far from neutral as the robot allows.
         let (size_deg, _) = [24.0, 16.0, 8.0, 4.0, 2.0]
-            .map(|size_deg| (size_deg, bench.say(&pose_command(sweeps_up_to(size_deg)))))
+            .map(|size_deg| (size_deg, bench.say(&pose_command(scale_sweeps(size_deg)))))
             .into_iter()
             .find(|(_, answer)| answer.starts_with("ok pose"))
-            .expect("a pose next to neutral is safe");
+            .expect("one of the poses is safe");
         bench.say("stand");
         bench.run_ms(3000);
         assert!(
             bench
-                .say(&pose_command(sweeps_up_to(size_deg)))
+                .say(&pose_command(scale_sweeps(size_deg)))
                 .starts_with("ok pose")
         );
-        let sent_widths = widths(&bench.run_for_frames(150));
-        let goal_widths: [u64; 4] = std::array::from_fn(|i| width_at(i, sweeps_up_to(size_deg)[i]));
+        let sent_widths = frame_widths(&bench.run_for_frames(150));
+        let goal_widths: [u64; 4] =
+            std::array::from_fn(|i| compute_width(i, scale_sweeps(size_deg)[i]));
         let end_widths = sent_widths[149];
         for (end, goal) in end_widths.into_iter().zip(goal_widths) {
             // Rounding to hundredths of a degree and rounding to steps of 1/65536 turn cost a cycle or two each.
-            assert!(end.abs_diff(goal) <= 4, "{end}, not {goal}");
+            assert!(end.abs_diff(goal) <= 4, "expected {goal} cycles, got {end}");
         }
-        // The path is a straight line: at any time, each servo has covered the same share of its sweep.
-        let sweep_of = |widths: [u64; 4]| -> [f64; 4] {
+        // The path is a straight line: at any time, each servo has covered the same fraction of its sweep.
+        let to_sweep = |widths: [u64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| widths[i] as f64 - neutral_widths()[i] as f64)
         };
-        let full_sweep = sweep_of(end_widths);
+        let full_sweep = to_sweep(end_widths);
         for widths in &sent_widths {
-            let covered_sweep = sweep_of(*widths);
+            let covered_sweep = to_sweep(*widths);
             for (covered, full) in covered_sweep.into_iter().zip(full_sweep) {
                 let error = covered - covered_sweep[0] / full_sweep[0] * full;
                 assert!(error.abs() <= 8.0, "{widths:?}");
@@ -202,7 +203,11 @@ fn all_servos_reach_a_pose_together_and_within_the_slew_limit() {
                 let max_step =
                     robot().speed_limits().slew / 50.0 * CYCLES_PER_US * servo.us_per_degree.abs();
                 let step = pair[0][i].abs_diff(pair[1][i]) as f64;
-                assert!(step <= max_step + 2.0, "A{} by {step} cycles", i + 1);
+                assert!(
+                    step <= max_step + 2.0,
+                    "A{}: a step of {step} cycles",
+                    i + 1
+                );
             }
         }
     });

@@ -1,19 +1,19 @@
-//! Tests of the measured supply voltage and of the robot's reactions while the supply sinks and recovers.
+//! Tests of the measured supply voltage, and of the robot's reactions while the supply falls and recovers.
 
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Rail;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin};
 
-use crate::measurements::{count_flashes, measure_widths, run_for_pulses};
-use crate::{Status, boot_and_command, boot_standing, first_moving_gait};
+use crate::measurements::{count_flashes, measure_widths, run_and_record_pulses};
+use crate::{Status, boot_and_command, boot_to_stand, first_moving_gait};
 
-/// The largest error of a printed board supply, V: one converter step at 5.5 V and the rounding to two decimals.
+/// The largest error of a printed board supply, V: one converter step at 5.5 V, and the rounding to two decimals.
 const MAX_BOARD_ERROR_V: f64 = 0.04;
 
-/// The first pin that can measure a rail, by its Arduino number.
+/// The Arduino number of the first pin that can measure a rail.
 const FIRST_ANALOGUE_PIN: u8 = 14;
 
-/// Returns the reaction and the voltage, V, of each note about the supply from line `first_line` on.
+/// Returns the reaction and the voltage (V) in each note about the supply, from line `first_line` on.
 fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(String, f64)> {
     let lines = &bench.lines()[first_line..];
     let notes = lines
@@ -33,7 +33,7 @@ fn read_supply_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<(Strin
 
 #[test]
 fn status_reports_the_supply_within_thirty_millivolts() {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     let mut max_error = 0f64;
     for mv in (2_700..=5_500).step_by(35) {
         bench.uno.set_supply_mv(f64::from(mv));
@@ -44,9 +44,9 @@ fn status_reports_the_supply_within_thirty_millivolts() {
     assert!(max_error <= 0.030, "{max_error} V");
 }
 
-/// Lowers a supply through its three thresholds, V, and asserts that the robot reports its reaction at each threshold,
-/// and the voltage to within `tolerance`, V.
-fn assert_reacts_at(
+/// Lowers a supply through its three thresholds (V), and asserts that the robot reports its reaction at each threshold,
+/// and the voltage with an error of at most `tolerance` (V).
+fn lower_supply_and_check_reactions(
     bench: &mut FirmwareBench,
     thresholds: [f64; 3],
     tolerance: f64,
@@ -68,14 +68,14 @@ fn assert_reacts_at(
         .iter()
         .map(|(reaction, _)| reaction.as_str())
         .collect();
-    let pace = robot().supplies().slow_pace;
-    let low_reaction = format!("low: no saving, speed up to {pace}");
+    let pace = robot().supplies().slow_pace_percent;
+    let low_reaction = format!("low: no saving, speed at most {pace}");
     assert_eq!(
         reactions,
         [
             low_reaction.as_str(),
             "too low to move: stopped",
-            "too low to hold: pulses ended"
+            "too low to hold: pulses off"
         ]
     );
     for ((actual, (_, printed_volts)), threshold) in
@@ -83,11 +83,11 @@ fn assert_reacts_at(
     {
         assert!(
             (actual - threshold).abs() <= tolerance,
-            "{actual}, {threshold}"
+            "reaction at {actual} V, threshold {threshold} V"
         );
         assert!(
             (printed_volts - actual).abs() <= tolerance,
-            "{printed_volts}, {actual}"
+            "printed {printed_volts} V, actual {actual} V"
         );
     }
 }
@@ -95,9 +95,9 @@ fn assert_reacts_at(
 #[test]
 fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    assert_reacts_at(
+    lower_supply_and_check_reactions(
         &mut bench,
-        robot().supplies().board,
+        robot().supplies().board_thresholds,
         MAX_BOARD_ERROR_V,
         |bench, volts| {
             bench.uno.set_supply_mv(1000.0 * volts);
@@ -105,7 +105,11 @@ fn a_sinking_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     );
     let status = Status::read(&mut bench);
     assert_eq!(status.texts(["gait", "fault"]), ["rest", "supply"]);
-    assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
+    assert!(
+        run_and_record_pulses(&mut bench, 200)
+            .iter()
+            .all(Vec::is_empty)
+    );
     let flashes = count_flashes(&mut bench, 10);
     assert!(
         flashes.len() >= 3 && flashes.iter().all(|count| *count == 2),
@@ -122,7 +126,7 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
         (Status::read(bench).number("phase") - phase_before).rem_euclid(1.0)
     };
     let full_pace = measure_pace(&mut bench);
-    let [slow_volts, stop_volts, _] = robot().supplies().board;
+    let [slow_volts, stop_volts, _] = robot().supplies().board_thresholds;
     bench.uno.set_supply_mv((slow_volts + stop_volts) * 500.0);
     bench.run_ms(500);
     let operations_before = bench.uno.eeprom_operations().len();
@@ -132,25 +136,25 @@ fn a_low_supply_limits_the_pace_and_prevents_saving() {
         "{refusal}"
     );
     let slow_pace = measure_pace(&mut bench);
-    let expected = f64::from(robot().supplies().slow_pace) / 100.0;
+    let expected = f64::from(robot().supplies().slow_pace_percent) / 100.0;
     assert!(full_pace > 0.0, "the robot does not walk");
     assert!(
         (slow_pace / full_pace - expected).abs() < 0.1,
-        "{slow_pace} of {full_pace}, not {expected}"
+        "slow pace {slow_pace} of {full_pace}, expected a ratio of {expected}"
     );
     bench.say("rest");
     bench.run_ms(400);
     assert_eq!(
         bench.uno.eeprom_operations().len(),
         operations_before,
-        "`rest` has saved the pose"
+        "`rest` saved the pose"
     );
 }
 
 #[test]
 fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let [slow_volts, stop_volts, _] = robot().supplies().board;
+    let [slow_volts, stop_volts, _] = robot().supplies().board_thresholds;
     bench.uno.set_supply_mv(stop_volts * 1000.0 - 60.0);
     bench.run_ms(500);
     assert_eq!(Status::read(&mut bench).text("gait"), "stop");
@@ -173,13 +177,13 @@ fn a_recovered_supply_allows_commands_again_and_starts_nothing() {
     let good_volts = good_volts.expect("the supply is reported as good");
     assert!(
         (good_volts - slow_volts - 0.150).abs() <= MAX_BOARD_ERROR_V,
-        "{good_volts} V, not 150 mV above {slow_volts} V"
+        "good at {good_volts} V, expected 150 mV above {slow_volts} V"
     );
-    assert_eq!(measure_widths(&mut bench), held_widths, "a servo has moved");
+    assert_eq!(measure_widths(&mut bench), held_widths, "a servo moved");
     assert_eq!(
         Status::read(&mut bench).text("fault"),
         "supply",
-        "the fault ends before the robot moves"
+        "the fault ended before the robot moved"
     );
     bench.expect_ok(&first_moving_gait());
     bench.run_ms(500);
@@ -200,7 +204,7 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
     }
     assert!(read_supply_notes(&mut bench, line_count).is_empty());
     // The supply alternates around the threshold for half a minute.
-    let slow_mv = robot().supplies().board[0] * 1000.0;
+    let slow_mv = robot().supplies().board_thresholds[0] * 1000.0;
     for n in 0..100 {
         bench
             .uno
@@ -213,11 +217,11 @@ fn short_dips_cause_no_note_and_a_wavering_supply_causes_one() {
 
 /// Sets the rail's pin to the voltage behind the divider for a rail of `volts`.
 fn set_rail(bench: &mut FirmwareBench, rail: &Rail, volts: f64) {
-    let mv = (1000.0 * volts / rail.ratio).round() as u16;
+    let mv = (1000.0 * volts / rail.divider_ratio).round() as u16;
     bench.uno.set_analog_mv(Pin::arduino(rail.pin), mv);
 }
 
-/// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage of a free pin has no
+/// Checks that a robot without a rail pin in robot.toml reports no rail, and that the voltage at a free pin has no
 /// effect.
 fn assert_no_rail() {
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
@@ -246,7 +250,7 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
         return assert_no_rail();
     };
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
-    let max_volts = 5.0 * rail.ratio;
+    let max_volts = 5.0 * rail.divider_ratio;
     for step in 1..=40 {
         let volts = max_volts * f64::from(step) / 41.0;
         set_rail(&mut bench, &rail, volts);
@@ -255,15 +259,15 @@ fn status_reports_the_servos_rail_if_robot_toml_names_its_pin() {
         let tolerance = rail_tolerance(&rail, volts);
         assert!(
             (printed_volts - volts).abs() <= tolerance,
-            "{printed_volts}, {volts}"
+            "printed {printed_volts} V, actual {volts} V"
         );
     }
 }
 
-/// Returns the largest error of a printed rail voltage, V: one converter step each for the rail and for the reference,
-/// and the rounding to two decimals.
+/// Returns the largest error of a printed rail voltage, V: one converter step each for the rail and the reference, and
+/// the rounding to two decimals.
 fn rail_tolerance(rail: &Rail, volts: f64) -> f64 {
-    0.01 + rail.ratio * 5.0 / 1024.0 + volts / 225.0
+    0.01 + rail.divider_ratio * 5.0 / 1024.0 + volts / 225.0
 }
 
 #[test]
@@ -273,9 +277,13 @@ fn a_sinking_rail_slows_stops_and_rests_the_robot_with_a_good_board_supply() {
     };
     let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
     let tolerance = rail_tolerance(&rail, rail.thresholds[0]);
-    assert_reacts_at(&mut bench, rail.thresholds, tolerance, |bench, volts| {
+    lower_supply_and_check_reactions(&mut bench, rail.thresholds, tolerance, |bench, volts| {
         set_rail(bench, &rail, volts);
     });
-    assert!(run_for_pulses(&mut bench, 200).iter().all(Vec::is_empty));
+    assert!(
+        run_and_record_pulses(&mut bench, 200)
+            .iter()
+            .all(Vec::is_empty)
+    );
     assert!((Status::read(&mut bench).number("vcc") - 5.0).abs() <= MAX_BOARD_ERROR_V);
 }

@@ -1,6 +1,6 @@
-//! Test that the core computes the same widths and lines on the AVR and on the host, for a script of ten minutes.
+//! Test that the core computes the same widths and lines on the AVR and on the host, with a script of ten minutes.
 
-use crate::comparable_line;
+use crate::to_comparable_line;
 use lizard_host::sim::core_run;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host::sim::script::{Script, Step};
@@ -9,8 +9,8 @@ use lizard_host::sim::supplies;
 use lizard_host_tests::{FirmwareBench, robot};
 use simulated_uno::{Fidelity, State, Uno};
 
-/// Returns a script of ten minutes with every kind of line, accepted or refused, one line every `interval_ms`.
-fn script_of_all_lines(interval_ms: u64) -> Script {
+/// Builds a script of ten minutes with every kind of line, accepted or refused, one line every `interval_ms`.
+fn build_script(interval_ms: u64) -> Script {
     let gaits = robot().gaits().iter().map(|gait| gait.command());
     let mut lines: Vec<String> = gaits.collect();
     lines.extend(
@@ -66,18 +66,18 @@ fn record_script(script: &Script, fidelity: Fidelity) -> (Recording, Vec<String>
 #[test]
 fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_host() {
     for (fidelity, interval_ms) in [(Fidelity::DataSheet, 707), (Fidelity::Stock, 1307)] {
-        let mut script = script_of_all_lines(interval_ms);
+        let mut script = build_script(interval_ms);
         let (mut recording, mut lines) = record_script(&script, fidelity);
         let first_rise = recording.frames.first_start;
         let undecided_lines: Vec<usize> =
-            core_run::undecided_lines(&recording.received_by_uno, first_rise).collect();
+            core_run::find_undecided_lines(&recording.received_by_uno, first_rise).collect();
         if !undecided_lines.is_empty() {
             for &line in &undecided_lines {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = record_script(&script, fidelity);
             let undecided_count =
-                core_run::undecided_lines(&recording.received_by_uno, first_rise).count();
+                core_run::find_undecided_lines(&recording.received_by_uno, first_rise).count();
             assert_eq!(undecided_count, 0, "some lines still end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
@@ -92,14 +92,13 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
             assert_eq!(measured, command, "{fidelity:?}, frame {n}");
         }
-        // Reports are not compared, since the frame that a report describes also depends on the cycle in which the
-        // serial buffer has room for it.
+        // Reports are not compared, because a report's frame also depends on the free space in the serial buffer.
         let is_report = |line: &str| line.starts_with("# t=");
         let host_lines = commands.text.lines().filter(|line| !is_report(line));
         let host_lines: Vec<&str> = host_lines.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();
-        let to_comparable = |line: &str| comparable_line(line, fidelity);
+        let to_comparable = |line: &str| to_comparable_line(line, fidelity);
         for (n, (host_line, avr_line)) in host_lines.iter().zip(&lines).enumerate() {
             assert_eq!(
                 to_comparable(host_line),
@@ -107,25 +106,25 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
                 "{fidelity:?}, line {n}"
             );
         }
-        // At the end of the run, the UNO has not sent everything yet (255 bytes in the ring buffer, two in the
-        // transmitter, a part of a line), and the core on the host has not run since the last complete frame.
+        // At the end of the run, the UNO has not yet sent everything (255 bytes in the ring buffer, two in the
+        // transmitter, part of a line), and the core on the host has not run since the last complete frame.
         let common_count = host_lines.len().min(lines.len());
-        let byte_count_of = |line: &str| line.len() + 2;
-        let avr_byte_counts = lines[common_count..].iter().map(|line| byte_count_of(line));
+        let byte_count = |line: &str| line.len() + 2;
+        let avr_byte_counts = lines[common_count..].iter().map(|line| byte_count(line));
         let unmatched_bytes: usize = host_lines[common_count..]
             .iter()
-            .map(|line| byte_count_of(line))
+            .map(|line| byte_count(line))
             .chain(avr_byte_counts)
             .sum();
         assert!(
             common_count > 400 && unmatched_bytes <= 257 + 192,
-            "{common_count} common lines, then {unmatched_bytes} bytes of one side only"
+            "{common_count} common lines, then {unmatched_bytes} bytes from only one side"
         );
         let answers = recording.answers.iter().flatten();
         assert_eq!(
             answers.count(),
             script.steps.len(),
-            "some commands are not answered"
+            "some commands got no answer"
         );
     }
 }

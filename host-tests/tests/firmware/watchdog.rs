@@ -1,27 +1,28 @@
-//! Tests of resets: a program that hangs restarts without a wrong pulse, and every cause of a reset is reported
+//! Tests of resets: a program that hangs restarts without a wrong pulse, and the cause of every reset is reported
 //! correctly.
 
 use lizard_host_tests::FirmwareBench;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, ResetCause, Uno};
 
 use crate::measurements::{
-    count_flashes, measure_widths, power_cycle, recorded_pulses, run_for_pulses, slew_limit,
+    count_flashes, measure_widths, power_cycle, recorded_pulses, run_and_record_pulses,
+    servo_slew_limit,
 };
 use crate::{
-    Status, boot_and_command, boot_standing, first_moving_gait, neutral_widths, pose_command,
+    Status, boot_and_command, boot_to_stand, first_moving_gait, neutral_widths, pose_command,
 };
 
 /// Data addresses of Timer1's registers.
 const TCCR1B: u16 = 0x81;
 const TIMSK1: u16 = 0x6f;
 
-/// The longest time until the watchdog resets a program that hangs, ms: two stages of 125 ms each, and the frame in
-/// which the watchdog was fed last.
+/// The longest time until the watchdog resets a program that hangs, ms: two stages of 125 ms each, plus the frame in
+/// which main last reset the watchdog.
 const MAX_TIMEOUT_MS: u64 = 250 + 20;
 
-/// Moves the robot to a pose other than the neutral one, and returns its bench and the pulse widths of that pose.
+/// Moves the robot to a pose other than neutral, and returns its bench and the pulse widths of this pose.
 fn hold_pose() -> (FirmwareBench, [u64; 4]) {
-    let mut bench = boot_standing(Fidelity::DataSheet);
+    let mut bench = boot_to_stand(Fidelity::DataSheet);
     bench.say(&pose_command([5.0, -4.0, 3.0, -2.0]));
     bench.run_ms(1000);
     let widths = measure_widths(&mut bench);
@@ -44,7 +45,7 @@ fn run_until_reset(bench: &mut FirmwareBench) -> u64 {
 }
 
 #[test]
-fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
+fn a_main_loop_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
     let (mut bench, widths) = hold_pose();
     for round in 0..40u64 {
         // In each round, the main loop stops at a different time in the frame.
@@ -52,7 +53,10 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         bench.uno.take_edges();
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         let cycles = run_until_reset(&mut bench);
-        assert!(cycles > 200 * CYCLES_PER_MS, "{cycles}: too early");
+        assert!(
+            cycles > 200 * CYCLES_PER_MS,
+            "reset too early, after {cycles} cycles"
+        );
         bench.uno.run_ms(300);
         for (servo, pulses) in recorded_pulses(&bench).iter().enumerate() {
             for pulse in pulses {
@@ -67,12 +71,12 @@ fn a_main_that_hangs_is_reset_and_the_robot_held_without_a_wrong_pulse() {
         assert_eq!(status.texts(["reset", "fault"]), ["watchdog"; 2]);
         assert_eq!(status.number("resets"), (round + 1) as f64);
     }
-    let fault_line = "# fault: the program hung and began anew".to_owned();
-    assert!(bench.texts_since(0).contains(&fault_line));
+    let fault_line = "# fault: the program hung and was restarted".to_owned();
+    assert!(bench.texts_from(0).contains(&fault_line));
 }
 
 #[test]
-fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
+fn a_hang_during_a_walk_holds_the_last_pose_until_a_command() {
     for hang_ms in [3, 137, 411, 893] {
         let mut bench = boot_and_command(&first_moving_gait(), Fidelity::DataSheet);
         bench.run_ms(hang_ms);
@@ -80,13 +84,13 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
         bench.uno.stall_main(2_000 * CYCLES_PER_MS);
         run_until_reset(&mut bench);
         bench.uno.run_ms(60);
-        let pulses = run_for_pulses(&mut bench, 5000);
+        let pulses = run_and_record_pulses(&mut bench, 5000);
         for servo in 0..4 {
             let first_width = pulses[servo][0].width;
             assert!(pulses[servo].iter().all(|pulse| pulse.width == first_width));
-            // The last frame may have been computed without being played.
+            // The last computed frame may not have been sent.
             assert!(
-                first_width.abs_diff(widths_before[servo]) <= 2 * slew_limit(servo),
+                first_width.abs_diff(widths_before[servo]) <= 2 * servo_slew_limit(servo),
                 "A{}",
                 servo + 1
             );
@@ -106,7 +110,7 @@ fn a_hang_in_a_walk_ends_in_the_pose_of_the_last_frame_until_an_order() {
 fn a_stopped_timer_or_disabled_interrupts_are_detected() {
     for (register, value) in [(TCCR1B, 0), (TIMSK1, 0), (TIMSK1, 0x02), (TIMSK1, 0x04)] {
         let (mut bench, widths) = hold_pose();
-        // Runs to the tick's slot, where no pin is high.
+        // Runs to the tick's slot, in which no pin is high.
         bench.run_for_frames(1);
         let pins = bench.pins();
         assert!(pins.iter().all(|pin| !bench.uno.is_high(*pin)));
@@ -122,7 +126,7 @@ fn a_stopped_timer_or_disabled_interrupts_are_detected() {
 #[test]
 fn disabled_interrupts_are_detected_and_reported_as_a_watchdog_reset() {
     let (mut bench, widths) = hold_pose();
-    // SREG's I bit.
+    // The data address of SREG, whose highest bit enables interrupts.
     let sreg = 0x5f;
     let is_blocked = |uno: &Uno| uno.peek(sreg) & 0x80 == 0;
     assert!(bench.uno.run_until(CYCLES_PER_MS, 1, is_blocked));
@@ -168,8 +172,8 @@ fn every_cause_of_a_reset_is_reported_and_resets_are_counted() {
         bench.uno.set_supply_mv(2_400.0);
         bench.uno.run_ms(5);
         bench.uno.set_supply_mv(5_000.0);
-        // The boot loader clears the chip's record of the cause, and the RAM has kept its contents, so the firmware
-        // cannot distinguish the dip from an external reset.
+        // The boot loader clears the chip's record of the cause, and RAM keeps its contents, so the firmware cannot
+        // distinguish the dip from an external reset.
         let dip_cause = ["brownout", "external"][usize::from(has_boot_loader)];
         assert_reported(&mut bench, dip_cause, 3.0);
         bench.uno.reset();
@@ -207,7 +211,7 @@ fn resets_are_counted_up_to_255_and_no_further() {
 }
 
 #[test]
-fn power_on_is_recognised_whatever_noise_the_ram_holds() {
+fn power_on_is_recognised_whatever_the_ram_contains() {
     let mut bench = boot_with_or_without_loader(true);
     for seed in 0..300 {
         bench.uno.set_noise_seed(seed);
@@ -235,7 +239,7 @@ fn a_hang_that_ends_by_itself_is_reset_like_any_other() {
         bench.uno.stall_main(ms * CYCLES_PER_MS);
         bench.uno.run_ms(ms + 150);
         let was_reset = bench.uno.watchdog_resets() > resets_before;
-        let servo_pulses = run_for_pulses(&mut bench, 200);
+        let servo_pulses = run_and_record_pulses(&mut bench, 200);
         for (servo, pulses) in servo_pulses.iter().enumerate() {
             let is_steady =
                 pulses.len() >= 9 && pulses.iter().all(|pulse| pulse.width == widths[servo]);
@@ -266,13 +270,13 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
             bench.uno.stall_main(ms * CYCLES_PER_MS);
             bench.uno.run_ms(ms + 150);
             assert!(bench.uno.watchdog_resets() > resets_before);
-            let pulses = run_for_pulses(&mut bench, 6000);
+            let pulses = run_and_record_pulses(&mut bench, 6000);
             assert!(pulses.iter().all(Vec::is_empty), "{ms} ms: {pulses:?}");
             let status = Status::read(&mut bench);
             let reported = [status.text("gait"), status.text("fault")];
             assert_eq!(reported, ["rest", "watchdog"]);
             let answer = bench.say(&first_moving_gait());
-            assert_eq!(answer, "err 7 servos are resting, send stand first");
+            assert_eq!(answer, "err 7 the servos are resting; send stand first");
             assert_eq!(bench.say("stand"), "ok stand");
             bench.run_ms(2000);
             assert_eq!(measure_widths(&mut bench), neutral_widths());
@@ -281,23 +285,23 @@ fn a_resting_robot_that_hangs_restarts_without_a_pulse() {
 }
 
 #[test]
-fn a_robot_that_rests_and_is_reset_rests_until_boot_or_an_order() {
+fn a_resting_robot_rests_after_a_reset_until_boot_or_a_command() {
     let (mut bench, _) = hold_pose();
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
-    // `boot` starts `stand` unless a byte arrives; here none does.
-    let pulses = run_for_pulses(&mut bench, 2_900);
+    // `boot` starts `stand`, because no byte arrives.
+    let pulses = run_and_record_pulses(&mut bench, 2_900);
     assert!(pulses.iter().all(Vec::is_empty), "{pulses:?}");
     bench.uno.run_ms(2_500);
     assert_eq!(measure_widths(&mut bench), neutral_widths());
-    assert!(bench.texts_since(0).contains(&"# boot: stand".to_owned()));
+    assert!(bench.texts_from(0).contains(&"# boot: stand".to_owned()));
     bench.say("rest");
     bench.run_ms(300);
     bench.uno.reset();
     bench.uno.run_ms(1000);
     bench.uno.send(b"\r");
-    let pulses = run_for_pulses(&mut bench, 5_000);
+    let pulses = run_and_record_pulses(&mut bench, 5_000);
     let is_silent = pulses.iter().all(Vec::is_empty);
-    assert!(is_silent, "a byte has not cancelled `boot`");
+    assert!(is_silent, "a byte did not cancel `boot`");
 }

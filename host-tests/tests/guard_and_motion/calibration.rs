@@ -1,4 +1,4 @@
-//! Tests of each servo's numbers in the core (neutral angle, gain, travel and pin), and of the speed limit of a move.
+//! Tests of each servo's numbers in the core (neutral angle, scale, travel and pin), and of the speed limit of moves.
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
@@ -7,7 +7,7 @@ use lizard_robot::STEPS_PER_DEGREE;
 use crate::truth::to_degrees;
 
 #[test]
-fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
+fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
     for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
         assert_eq!(
@@ -39,7 +39,7 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
                 );
                 pulse_count += 1;
             }
-            // More than half of all sweeps have a pulse width.
+            // More than half of all sweeps must have a pulse width.
             assert!(
                 pulse_count > 65_536 / 17 / 2,
                 "{name}: A{}: {pulse_count} pulses",
@@ -50,7 +50,7 @@ fn each_servo_has_the_neutral_angle_the_gain_and_the_pin_of_the_robot_file() {
 }
 
 #[test]
-fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
+fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
     for NamedRobot { name, robot } in robots() {
         for (index, servo) in robot.servos().iter().enumerate() {
             let calibration = robot.firmware().calibration()[index];
@@ -92,7 +92,7 @@ fn each_servos_travel_ends_at_the_last_step_within_its_range_of_pulses() {
 }
 
 #[test]
-fn a_move_is_as_fast_as_the_robot_file_allows_and_no_faster() {
+fn a_move_is_exactly_as_fast_as_the_robot_file_allows() {
     for NamedRobot { name, robot } in robots() {
         let max_speed = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
         let limit = robot.speed_limits().slew;

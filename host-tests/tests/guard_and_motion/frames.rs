@@ -1,4 +1,5 @@
-//! A robot that runs the core, commanded by the tests through its console. Every frame that the robot sends is checked.
+//! A robot that runs the core and that the tests command through its console. Every frame that the robot sends is
+//! checked.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -26,15 +27,15 @@ const ACCELERATION_FRAMES: f64 = 7.0;
 /// Maximum rounding error of a speed change, angle steps per frame.
 const SPEED_CHANGE_ERROR_STEPS: f64 = 4.0;
 
-/// Returns the largest allowed change of a servo's speed from one frame to the next, deg/s. This limit does not apply
+/// Returns the largest allowed change in a servo's speed from one frame to the next, deg/s. This limit does not apply
 /// to `stop`, `rest` and the guard, which stop a servo at once.
 ///
-/// Of all moves to a pose, the shortest move has the largest change of speed, at its start and its end. The shortest
-/// move has eight frames and a mean speed of 2/3 of the slew limit, so its speed changes by `6 distance / 8^2` per
-/// frame: half the slew limit. This also holds where one move ends and the next turns the servo back. In a gait, the
-/// waveforms change the servos' speeds, and a change of pace adds to these changes.
+/// Among moves to a pose, the shortest move has the largest speed change, at its start and its end. This move has eight
+/// frames and a mean speed of 2/3 of the slew limit, so its speed changes by `6 distance / 8^2` per frame: half the
+/// slew limit. The same holds if one move ends and the next move turns the servo back. In a gait, the waveforms change
+/// the servos' speeds, and a change of pace adds to these changes.
 ///
-/// The value is computed once for each robot and cached by the hash of the robot's numbers.
+/// The value is computed once for each robot and cached under the hash of the robot's numbers.
 pub fn max_speed_change(robot: &Robot) -> f64 {
     static CACHE: Mutex<BTreeMap<u32, f64>> = Mutex::new(BTreeMap::new());
     let mut cache = CACHE.lock().expect("no thread has panicked");
@@ -46,16 +47,16 @@ pub fn max_speed_change(robot: &Robot) -> f64 {
 fn compute_max_speed_change(robot: &Robot) -> f64 {
     let move_change = robot.speed_limits().slew / 2.0;
     let gaits = GaitId::all(robot.gaits().len()).map(|id| {
-        let (speed, change) = max_speed_and_change(robot, id);
+        let (speed, change) = compute_max_speed_and_change(robot, id);
         change.max(speed / ACCELERATION_FRAMES + robot.speed_limits().slew / 4.0)
             + speed / ACCELERATION_FRAMES
     });
     gaits.fold(move_change, f64::max) + SPEED_CHANGE_ERROR_STEPS * STEP_SPEED_DEG_PER_S
 }
 
-/// Returns the largest servo speed in a gait at full pace, and the largest change of a servo's speed from one frame to
+/// Computes the largest servo speed in a gait at full pace, and the largest change in a servo's speed from one frame to
 /// the next, deg/s.
-fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
+fn compute_max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     let firmware = robot.firmware();
     let gait = firmware.gait(id);
     let sweeps_at = |phase: u32| {
@@ -79,8 +80,8 @@ fn max_speed_and_change(robot: &Robot, id: GaitId) -> (f64, f64) {
     )
 }
 
-/// Returns an upper bound of the number of frames that a command takes: for waking the servos, braking, the longest
-/// move at the slew limit, and acceleration.
+/// Returns an upper bound of the number of frames that a command takes, which includes waking the servos, braking, the
+/// longest move at the slew limit, and acceleration.
 pub fn settling_frames(robot: &Robot) -> u32 {
     let calibration = robot.firmware().calibration();
     let ranges =
@@ -91,46 +92,46 @@ pub fn settling_frames(robot: &Robot) -> u32 {
     WAKING_FRAMES + 30 + (1.05 * longest_move_frames) as u32
 }
 
-/// A robot each of whose frames is checked when it is sent.
+/// A robot whose frames are checked when they are sent.
 pub struct CheckedRobot<'a> {
     name: &'a str,
     robot: &'a Robot,
-    running: RunningRobot,
+    running_robot: RunningRobot,
     /// The speed of each servo in the last frame, deg/s.
     speeds: [f64; 4],
     /// True if the servos may stop at once in the next frame, without braking.
-    may_stop_at_once: bool,
-    /// The largest allowed change of a servo's speed from one frame to the next, deg/s.
+    can_stop_at_once: bool,
+    /// The largest allowed change in a servo's speed from one frame to the next, deg/s.
     max_speed_change: f64,
-    /// The largest change of a servo's speed so far, deg/s.
+    /// The largest change in a servo's speed so far, deg/s.
     pub largest_speed_change: f64,
 }
 
 impl<'a> CheckedRobot<'a> {
-    /// Powers a robot on and reads its banner.
-    pub fn new(NamedRobot { name, robot }: &'a NamedRobot) -> Self {
-        let mut walker = Self {
+    /// Powers on a robot and reads its banner.
+    pub fn power_on(NamedRobot { name, robot }: &'a NamedRobot) -> Self {
+        let mut checked_robot = Self {
             name,
             robot,
-            running: RunningRobot::power_on(*robot.firmware()),
+            running_robot: RunningRobot::power_on(*robot.firmware()),
             speeds: [0.0; 4],
-            may_stop_at_once: false,
+            can_stop_at_once: false,
             max_speed_change: max_speed_change(robot),
             largest_speed_change: 0.0,
         };
-        walker.take_output_lines();
-        walker
+        checked_robot.take_output_lines();
+        checked_robot
     }
 
-    /// Powers a robot on and waits until it stands.
-    pub fn standing(named: &'a NamedRobot) -> Self {
-        let mut walker = Self::new(named);
-        walker.run_frames(WAKING_FRAMES + 1);
-        walker
+    /// Powers on a robot and waits until it stands.
+    pub fn power_on_and_stand(named: &'a NamedRobot) -> Self {
+        let mut checked_robot = Self::power_on(named);
+        checked_robot.run_frames(WAKING_FRAMES + 1);
+        checked_robot
     }
 
     pub fn motion(&self) -> &Motion {
-        self.running.motion()
+        self.running_robot.motion()
     }
 
     pub fn pose(&self) -> Pose {
@@ -139,14 +140,14 @@ impl<'a> CheckedRobot<'a> {
 
     /// Takes the lines that the console has printed since the last call.
     pub fn take_output_lines(&mut self) -> Vec<String> {
-        self.running.read_lines()
+        self.running_robot.read_lines()
     }
 
     /// Sends a line and returns its answer.
     pub fn say(&mut self, line: &str) -> String {
-        let answer = self.running.send_line(line);
+        let answer = self.running_robot.send_line(line);
         if ["stop", "rest"].contains(&line) {
-            self.may_stop_at_once = true;
+            self.can_stop_at_once = true;
         }
         answer
     }
@@ -164,8 +165,8 @@ impl<'a> CheckedRobot<'a> {
         self.motion().hazard().is_none()
     }
 
-    /// Returns the command for a pose. The console takes hundredths of a degree, so an angle of the commanded pose may
-    /// be one step of 1/65536 turn away.
+    /// Returns the command for a pose. The command has hundredths of a degree, so the commanded pose may differ by one
+    /// step of 1/65536 turn.
     pub fn pose_command(&self, pose: &Pose) -> String {
         pose_command(chassis_angles_deg(self.robot.firmware(), pose))
     }
@@ -176,14 +177,14 @@ impl<'a> CheckedRobot<'a> {
         }
     }
 
-    /// Runs a frame, checks its safety, its pulses and the servos' speeds, and returns the pulses.
+    /// Runs a frame, checks the safety, the pulses and the servos' speeds, and returns the pulses.
     pub fn run_frame(&mut self) -> Pulses {
         let (name, robot) = (self.name, self.robot);
         let previous_pose = self.pose();
         let was_held = self.motion().hazard().is_some();
-        self.running.run_frame();
-        let pulses = self.running.board.submitted_pulses();
-        let (pose, motion) = (self.pose(), self.running.motion());
+        self.running_robot.run_frame();
+        let pulses = self.running_robot.board.submitted_pulses();
+        let (pose, motion) = (self.pose(), self.running_robot.motion());
 
         let is_stopped_by_guard = !was_held && motion.hazard().is_some();
         if is_stopped_by_guard {
@@ -198,7 +199,7 @@ impl<'a> CheckedRobot<'a> {
             "{name}: {chassis_angles:?}"
         );
         assert_ne!(
-            Verdict::of(robot, chassis_angles),
+            Verdict::compute(robot, chassis_angles),
             Verdict::Unsafe,
             "{name}: {chassis_angles:?}"
         );
@@ -229,20 +230,20 @@ impl<'a> CheckedRobot<'a> {
         });
         for (speed, previous_speed) in speeds.iter().zip(&self.speeds) {
             let speed_change = (speed - previous_speed).abs();
-            if !(self.may_stop_at_once || is_stopped_by_guard) {
+            if !(self.can_stop_at_once || is_stopped_by_guard) {
                 assert!(
                     speed_change <= self.max_speed_change,
-                    "{name}: {previous_speed} and then {speed} deg/s"
+                    "{name}: the speed was {previous_speed} deg/s, then {speed} deg/s"
                 );
                 self.largest_speed_change = self.largest_speed_change.max(speed_change);
             }
         }
         self.speeds = speeds;
-        self.may_stop_at_once = false;
+        self.can_stop_at_once = false;
         pulses
     }
 
-    /// Checks that the pulses agree with robot.toml for the pose, and lie within each servo's travel.
+    /// Checks that the pulses match the pose according to robot.toml, and are within each servo's travel.
     fn check_pulses(&self, pose: &Pose, pulses: Pulses) {
         for (index, (servo, width)) in self.robot.servos().iter().zip(pulses.0).enumerate() {
             if width.0 == 0 {
@@ -253,7 +254,7 @@ impl<'a> CheckedRobot<'a> {
                 CYCLES_PER_US * (servo.neutral_us + servo.us_per_degree * sweep_deg);
             let error_cycles = f64::from(width.0) - expected_cycles;
             // The rounding errors are half a cycle for the neutral pulse, half a cycle for the product, and one cycle
-            // for the gain at a sweep of half a turn.
+            // for the scale at a sweep of half a turn.
             assert!(
                 error_cycles.abs() <= 2.0,
                 "{}: A{} is {error_cycles} cycles off",
@@ -272,17 +273,17 @@ impl<'a> CheckedRobot<'a> {
     }
 }
 
-/// Returns the command for a pose, given by its angles in the chassis frame.
+/// Returns the command for a pose with these angles in the chassis frame.
 pub fn pose_command(angles_deg: [f64; 4]) -> String {
     let [a1, a2, a3, a4] = angles_deg;
     format!("pose {a1:.2} {a2:.2} {a3:.2} {a4:.2}")
 }
 
-/// Returns a random command that moves a robot, stops it or sets its speed.
+/// Returns a random command that moves a robot, stops the robot or sets its speed.
 pub fn random_command(rng: &mut Rng, robot: &Robot) -> String {
-    let pose_line = |rng: &mut Rng, share: f64| {
+    let pose_line = |rng: &mut Rng, fraction: f64| {
         let firmware = robot.firmware();
-        let pose = random_pose_within(rng, &firmware.calibration(), share);
+        let pose = random_pose_within(rng, &firmware.calibration(), fraction);
         pose_command(chassis_angles_deg(firmware, &pose))
     };
     match rng.u8(..20) {
@@ -302,7 +303,7 @@ pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
         .gaits()
         .iter()
         .position(|gait| gait.command() == command);
-    let activity_of = |index: usize| {
+    let to_activity = |index: usize| {
         GaitId::all(robot.gaits().len())
             .nth(index)
             .map(Activity::Gait)
@@ -311,6 +312,6 @@ pub fn final_activity(robot: &Robot, command: &str) -> Option<Activity> {
         "stop" => Some(Activity::Stop),
         "rest" => Some(Activity::Rest),
         _ if command.starts_with("pose") => Some(Activity::Pose),
-        _ => gait_index.and_then(activity_of),
+        _ => gait_index.and_then(to_activity),
     }
 }

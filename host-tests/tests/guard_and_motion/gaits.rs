@@ -1,5 +1,4 @@
-//! Tests of the gaits of every robot in the core, compared with the gaits in floating point and with their description
-//! in robot.toml.
+//! Tests that the core's gaits match the gaits in floating point and robot.toml, for every robot.
 
 use lizard_core::numbers::gaits::{Gait, GaitId};
 use lizard_core::numbers::pose::Pose;
@@ -11,14 +10,14 @@ use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
 use crate::truth::is_safe;
 
-/// Number of phases that the wave tables distinguish in a cycle.
+/// Number of phases per cycle that the wave tables distinguish.
 const PHASE_COUNT: u32 = 65_536;
-/// The pace of a gait at full speed, in 1/1024.
+/// A gait's pace at full speed, in units of 1/1024.
 pub const FULL_PACE: u16 = 1024;
-/// Maximum error of the wave tables that the documentation promises, deg.
+/// Documented maximum error of the wave tables, deg.
 const TABLE_ERROR_DEG: f64 = 0.50;
 
-/// Returns every gait of every robot, in floating point and in the core's form.
+/// Returns every gait of every robot, in floating point and in fixed point.
 pub fn all_gaits() -> impl Iterator<Item = (&'static NamedRobot, &'static CheckedGait, Gait)> {
     robots().iter().flat_map(|named| {
         let ids = GaitId::all(named.robot.gaits().len());
@@ -27,25 +26,25 @@ pub fn all_gaits() -> impl Iterator<Item = (&'static NamedRobot, &'static Checke
     })
 }
 
-/// Returns the gait with this name in the core's form; `None` if the robot has no such gait.
+/// Returns the gait with this name in fixed point; `None` if the robot has no such gait.
 fn core_gait(robot: &Robot, name: &str) -> Option<Gait> {
     let index = robot.gait(name)?.index();
     let id = GaitId::all(robot.gaits().len()).nth(index)?;
     Some(robot.firmware().gait(id))
 }
 
-/// Returns every phase that the wave tables distinguish, in the core's units.
-fn phases() -> impl Iterator<Item = u32> {
+/// Returns all phases that the wave tables distinguish, in the core's units.
+fn all_phases() -> impl Iterator<Item = u32> {
     (0..PHASE_COUNT).map(|phase| phase << 8)
 }
 
-/// Returns the mirrored pose: left and right exchanged, every sweep negated.
+/// Mirrors a pose: exchanges left and right, and negates every sweep.
 fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE_SERVO.map(|servo| Sweep(-pose.0[servo].0)))
 }
 
 #[test]
-fn the_core_has_the_gaits_of_the_file_in_the_same_order() {
+fn the_core_has_the_files_gaits_in_the_same_order() {
     for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
         let names: Vec<String> = GaitId::all(firmware.gait_count())
@@ -57,16 +56,16 @@ fn the_core_has_the_gaits_of_the_file_in_the_same_order() {
 }
 
 #[test]
-fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() {
+fn the_tables_of_every_gait_are_accurate_and_safe_at_every_phase() {
     let mut max_error_deg = 0.0f64;
     for (gait_index, (NamedRobot { name, robot }, float_gait, gait)) in all_gaits().enumerate() {
-        // A random robot is tested only at every 13th phase. The first phase differs from gait to gait.
+        // Random robots are tested only at every 13th phase. The first phase depends on the gait.
         let (first_phase, step) = if name.contains("random") {
             (gait_index % 13, 13)
         } else {
             (0, 1)
         };
-        for phase in phases().skip(first_phase).step_by(step) {
+        for phase in all_phases().skip(first_phase).step_by(step) {
             let pose = gait.pose(robot.firmware().waves(), phase);
             let pose_with_low_bits = gait.pose(robot.firmware().waves(), phase | 0xff);
             assert_eq!(
@@ -91,11 +90,11 @@ fn tables_are_within_the_promised_error_of_every_gait_and_safe_at_every_phase() 
             );
         }
     }
-    println!("the largest error of the tables is {max_error_deg:.4} deg");
+    println!("the largest table error is {max_error_deg:.4} deg");
 }
 
 #[test]
-fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_rest_of_the_cycle() {
+fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_remaining_cycle() {
     let mut leg_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         for (servo, stride) in float_gait.strides().iter().enumerate() {
@@ -106,29 +105,30 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_rest_of_the_cyc
                 continue;
             }
             leg_count += 1;
-            // The leg's angle, positive forward, at a share of the cycle after the start of the stroke.
-            let leg_angle_deg = |cycle_share: f64| {
-                let phase = (stride.start + cycle_share).rem_euclid(1.0) * f64::from(CYCLE);
+            // The leg's angle, positive forward, at a fraction of the cycle after the stroke starts.
+            let leg_angle_deg = |cycle_fraction: f64| {
+                let phase = (stride.start + cycle_fraction).rem_euclid(1.0) * f64::from(CYCLE);
                 let pose = gait.pose(robot.firmware().waves(), phase as u32);
                 FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
             let leg_name = format!("{name}: {} {}", float_gait.name(), LEG_NAMES[servo]);
-            // In a stroke the leg moves back at constant speed, from an angle in front to the same angle behind. Then
-            // it returns.
+            // In a stroke, the leg moves back at constant speed, from an angle in front to the same angle behind. The
+            // leg then returns.
             let front_angle_deg = leg_angle_deg(0.0);
-            let share = front_angle_deg / stride.amplitude;
+            let fraction = front_angle_deg / stride.amplitude;
             assert!(
-                (0.5..1.01).contains(&share),
+                (0.5..1.01).contains(&fraction),
                 "{leg_name} begins at {front_angle_deg} deg"
             );
             let stroke_points = [(0.25, 0.5), (0.5, 0.0), (0.75, -0.5), (1.0, -1.0)];
-            let stroke_points = stroke_points.map(|(duty_share, share)| (duty_share * duty, share));
+            let stroke_points =
+                stroke_points.map(|(duty_fraction, fraction)| (duty_fraction * duty, fraction));
             let return_point = (0.5 * (1.0 + duty), 0.0);
-            for (cycle_share, share) in stroke_points.into_iter().chain([return_point]) {
-                let error_deg = leg_angle_deg(cycle_share) - share * front_angle_deg;
+            for (cycle_fraction, fraction) in stroke_points.into_iter().chain([return_point]) {
+                let error_deg = leg_angle_deg(cycle_fraction) - fraction * front_angle_deg;
                 assert!(
                     error_deg.abs() <= 2.0 * TABLE_ERROR_DEG,
-                    "{leg_name}: {error_deg} deg at {cycle_share}"
+                    "{leg_name}: {error_deg} deg at {cycle_fraction}"
                 );
             }
         }
@@ -137,7 +137,7 @@ fn a_wave_leg_pushes_back_for_its_duty_factor_and_returns_in_the_rest_of_the_cyc
 }
 
 #[test]
-fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
+fn the_legs_of_a_held_gait_return_in_the_gaits_order() {
     let mut gait_count = 0;
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         let swing_indices = float_gait
@@ -157,15 +157,15 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
                 let pose = gait.pose(robot.firmware().waves(), (phase * f64::from(CYCLE)) as u32);
                 FORWARD_TURN_SIGN[servo] * f64::from(pose.0[servo].0) / STEPS_PER_DEGREE
             };
-            // The common stroke takes the first fifth of the cycle. Then each leg returns in one fifth.
+            // The common stroke takes the first fifth of the cycle. Then the legs return, each in a fifth of the cycle.
             let return_start = 0.2 * (1.0 + swing_index as f64);
-            for (phase, share) in [
+            for (phase, fraction) in [
                 (0.2, -1.0),
                 (return_start, -1.0),
                 (return_start + 0.2, 1.0),
                 (1.0 - 1e-6, 1.0),
             ] {
-                let error_deg = leg_angle_deg(phase.min(1.0 - 1e-6)) - share * amplitude;
+                let error_deg = leg_angle_deg(phase.min(1.0 - 1e-6)) - fraction * amplitude;
                 assert!(
                     error_deg.abs() <= TABLE_ERROR_DEG,
                     "{name}: {} at {phase}: {error_deg} deg",
@@ -174,12 +174,13 @@ fn the_legs_of_a_held_gait_return_one_after_another_in_its_order() {
             }
         }
     }
-    assert!(gait_count > 10, "{gait_count}");
+    assert!(gait_count > 10, "only {gait_count} held gaits");
 }
 
 #[test]
-fn a_path_moves_only_its_own_end_and_around_its_centre() {
-    // In the gaits `look` and `wag` of random robots, a path's centre is the end point's position in the neutral pose.
+fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
+    // In the gaits `look` and `wag` of random robots, the path's centre is the end point's position in the neutral
+    // pose.
     let mut path_count = 0;
     for NamedRobot { name, robot } in robots()
         .iter()
@@ -231,7 +232,7 @@ fn a_path_moves_only_its_own_end_and_around_its_centre() {
             );
         }
     }
-    assert!(path_count > 10, "{path_count}");
+    assert!(path_count > 10, "only {path_count} paths");
 }
 
 #[test]
@@ -252,7 +253,7 @@ fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
             pair_count += 1;
             assert!(original.increment > 0, "{name}");
             assert_eq!(reversed.increment, sign * original.increment, "{name}");
-            for phase in phases().step_by(64) {
+            for phase in all_phases().step_by(64) {
                 let poses =
                     [&original, &reversed].map(|gait| gait.pose(robot.firmware().waves(), phase));
                 assert_eq!(poses[0], poses[1], "{name}");
@@ -263,7 +264,7 @@ fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
 }
 
 #[test]
-fn a_mirrored_gait_is_its_original_with_left_and_right_exchanged() {
+fn a_mirrored_gait_matches_its_original_with_left_and_right_exchanged() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
         for (original_name, mirrored_name) in [
@@ -279,9 +280,9 @@ fn a_mirrored_gait_is_its_original_with_left_and_right_exchanged() {
             };
             pair_count += 1;
             assert_eq!(original.increment, mirrored.increment, "{name}");
-            for phase in phases() {
+            for phase in all_phases() {
                 let pose = mirror(original.pose(robot.firmware().waves(), phase));
-                // A half is rounded up for both signs, and gains are rounded, so a mirrored sweep may differ by a step.
+                // Halves round up for either sign, and gains are rounded, so a mirrored sweep may differ by a step.
                 let deviation =
                     pose.largest_turn_to(&mirrored.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
@@ -292,13 +293,16 @@ fn a_mirrored_gait_is_its_original_with_left_and_right_exchanged() {
 }
 
 #[test]
-fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
+fn phase_wraparound_is_as_smooth_as_the_rest_of_the_cycle() {
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         let pose_at = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
-        // The largest turn of a servo from one phase to the next. The phase after the last is 0.
+        // The largest turn of a servo from one phase to the next. After the last phase, the next phase is 0.
         let turn_from = |phase: u32| pose_at(phase).largest_turn_to(&pose_at(phase + (1 << 8)));
-        let largest_turn = phases().step_by(7).map(turn_from).max();
-        let largest_turn_at_wrap = phases().skip(PHASE_COUNT as usize - 4).map(turn_from).max();
+        let largest_turn = all_phases().step_by(7).map(turn_from).max();
+        let largest_turn_at_wrap = all_phases()
+            .skip(PHASE_COUNT as usize - 4)
+            .map(turn_from)
+            .max();
         assert!(
             largest_turn_at_wrap <= largest_turn.map(|turn| turn + 1),
             "{name}: {}",
@@ -308,10 +312,10 @@ fn the_wrap_of_the_phase_is_as_smooth_as_the_rest_of_the_cycle() {
 }
 
 #[test]
-fn the_papers_symmetric_gaits_are_mirrored_half_a_cycle_later() {
+fn the_papers_symmetric_gaits_equal_their_mirror_half_a_cycle_later() {
     for name in ["walk", "trot"] {
         let gait = core_gait(paper_robot(), name).expect("the paper's robot has this gait");
-        for phase in phases() {
+        for phase in all_phases() {
             let opposite_pose = gait.pose(
                 paper_robot().firmware().waves(),
                 (phase + CYCLE / 2) % CYCLE,

@@ -1,4 +1,4 @@
-//! Tests of the guard's limits, exact to the last bit.
+//! Tests that the guard's limits are exact to the last bit.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
@@ -9,7 +9,7 @@ use lizard_robot::Robot;
 
 use crate::truth::{MARGINS, steps_per_mm, to_sine};
 
-/// Returns the limit of each of the ten margins, from robot.toml.
+/// Returns the limits of the ten margins from robot.toml.
 fn margin_limits(robot: &Robot) -> [f64; 10] {
     let limits = robot.limits();
     std::array::from_fn(|index| match index {
@@ -24,7 +24,7 @@ fn round_up_to_q15(limit: f64) -> i16 {
     (limit * 32768.0 - 1e-6).ceil() as i16
 }
 
-/// Returns a clearance with every margin exactly at its limit and both sliders at their maximum length.
+/// Returns a clearance with every margin exactly at its limit, and both sliders at their maximum length.
 fn clearance_at_limit(robot: &Robot) -> Clearance {
     Clearance {
         margins: margin_limits(robot).map(|limit| Sine(round_up_to_q15(limit))),
@@ -36,7 +36,7 @@ fn clearance_at_limit(robot: &Robot) -> Clearance {
 }
 
 #[test]
-fn a_margin_at_its_limit_is_safe_and_the_next_smaller_one_is_a_hazard() {
+fn a_margin_at_its_limit_is_safe_and_the_next_smaller_margin_is_a_hazard() {
     for NamedRobot { name, robot } in robots() {
         let firmware = robot.firmware();
         assert_eq!(
@@ -78,7 +78,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_the_next_length_beyond_is_a_haza
                 assert_eq!(
                     reported_side,
                     (!is_safe).then_some(side),
-                    "{name}: {length_sq}"
+                    "{name}: squared length {length_sq}"
                 );
             }
         }
@@ -86,7 +86,7 @@ fn a_slider_at_an_end_of_its_stroke_is_safe_and_the_next_length_beyond_is_a_haza
 }
 
 #[test]
-fn the_guards_limits_are_those_of_the_robot_file_rounded_to_the_safe_side() {
+fn the_guards_limits_match_the_robot_file_rounded_to_the_safe_side() {
     for NamedRobot { name, robot } in robots() {
         let core_limits = robot.firmware().limits();
         let file_limits = robot.limits();

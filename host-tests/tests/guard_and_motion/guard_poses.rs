@@ -1,4 +1,4 @@
-//! Tests of the guard's decisions at poses anywhere in the servos' travel.
+//! Tests of the guard's decisions for poses in the entire travel of the servos.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -12,18 +12,18 @@ use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::Robot;
 
 use crate::truth::{
-    ErrorStatistics, ExactConditions, FIVE_BAR_OF_MARGIN, MARGINS, MIN_TYPE2_LIMIT,
-    chassis_angles_deg, index_of_unclosed_five_bar, is_safe, random_pose, random_pose_within,
+    ErrorStatistics, ExactConditions, MARGIN_FIVE_BARS, MARGINS, MIN_TYPE2_LIMIT,
+    chassis_angles_deg, find_unclosed_five_bar, is_safe, random_pose, random_pose_within,
     steps_per_mm, to_sine,
 };
 
-/// Number of poses tested on each robot.
+/// Number of poses tested for each robot.
 const POSE_COUNT: usize = 40_000;
-/// Number of pairs of neighbouring poses, one on each side of a limit, tested on each robot.
+/// Number of pairs of neighbouring poses, one on each side of a limit, tested for each robot.
 const PAIR_COUNT: usize = 1500;
 
-/// The guard's errors and decisions at many poses of one robot. The band of a condition is the largest error that the
-/// guard may have in this condition.
+/// The guard's errors and decisions for many poses of one robot. A condition's band is the guard's largest allowed
+/// error in this condition.
 #[derive(Default)]
 struct Findings {
     type2: ErrorStatistics,
@@ -35,7 +35,7 @@ struct Findings {
     max_margin_error_bands: [f64; 10],
     safe_count: usize,
     refused_count: usize,
-    /// The number of poses where the guard and floating point decide differently.
+    /// The number of poses for which the guard and floating point decide differently.
     disagreement_count: usize,
     /// The largest distance of a pose with a disagreement from its nearest limit, in bands.
     max_disagreement_bands: f64,
@@ -44,10 +44,10 @@ struct Findings {
 }
 
 impl Findings {
-    /// Adds the guard's errors and decision at a pose, and asserts that the decision is right outside the bands.
+    /// Adds the guard's errors and decision for a pose, and asserts that the decision is correct outside the bands.
     fn add_pose(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
-        let clearance = Clearance::of(firmware, pose);
+        let clearance = Clearance::measure(firmware, pose);
         let hazard = clearance.first_hazard(firmware);
         let hazard_index = hazard.map(condition_index);
         match hazard_index {
@@ -57,13 +57,13 @@ impl Findings {
                 self.hazard_counts[index] += 1;
             }
         }
-        let truth = match ExactConditions::of(robot, chassis_angles_deg(firmware, pose)) {
+        let truth = match ExactConditions::compute(robot, chassis_angles_deg(firmware, pose)) {
             Ok(truth) => truth,
             Err(error) => {
-                // Index 0 is the head's type-2 margin, 1 the tail's. If the tail does not close, the guard may name the
-                // head.
-                let unclosed_five_bar_index = index_of_unclosed_five_bar(&error)
-                    .expect("the sides of these robots always close");
+                // Index 0 is the head's type-2 margin, and index 1 is the tail's. If the tail does not close, the guard
+                // may name the head.
+                let unclosed_five_bar_index =
+                    find_unclosed_five_bar(&error).expect("the sides of these robots always close");
                 assert!(
                     hazard_index.is_some_and(|index| index <= unclosed_five_bar_index),
                     "{pose:?}: {error}, {hazard:?}"
@@ -105,14 +105,14 @@ impl Findings {
         );
     }
 
-    /// Compares the guard's margins and strokes with those in floating point, and records the errors.
+    /// Compares the guard's margins and strokes with floating point, and records the errors.
     fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
         for (index, (value, expected)) in clearance.margins.iter().zip(truth.margins).enumerate() {
-            let five_bar = FIVE_BAR_OF_MARGIN.get(index).copied();
+            let five_bar = MARGIN_FIVE_BARS.get(index).copied();
             if let Some(five_bar) = five_bar
                 && (truth.margins[five_bar] < MIN_TYPE2_LIMIT || truth.is_at_crossing(five_bar))
             {
-                // This close to a type-2 singularity, the guard only has to detect that the margin is small.
+                // This close to a type-2 singularity, the guard must only detect that the margin is small.
                 let max_margin = MIN_TYPE2_LIMIT + truth.bands[five_bar];
                 assert!(
                     truth.is_at_crossing(five_bar)
@@ -172,7 +172,7 @@ impl Findings {
         );
         assert!(
             self.safe_count > 0 && self.refused_count > 0,
-            "{name}: all poses are safe, or none"
+            "{name}: all poses are safe, or all are refused"
         );
     }
 }
@@ -189,16 +189,21 @@ fn condition_index(hazard: Hazard) -> usize {
     }
 }
 
-/// Returns random poses: some in the full travel, others nearer to neutral, where the limits of the safe poses lie.
+/// Returns random poses, some in the full travel, others closer to neutral and to the limits of the safe poses.
 fn random_poses(rng: &mut Rng, robot: &Robot) -> impl Iterator<Item = Pose> {
     let calibration = robot.firmware().calibration();
-    let travel_shares = [1.0, 0.7, 0.4, 0.2];
-    (0..POSE_COUNT)
-        .map(move |n| random_pose_within(rng, &calibration, travel_shares[n % travel_shares.len()]))
+    let travel_fractions = [1.0, 0.7, 0.4, 0.2];
+    (0..POSE_COUNT).map(move |n| {
+        random_pose_within(
+            rng,
+            &calibration,
+            travel_fractions[n % travel_fractions.len()],
+        )
+    })
 }
 
 #[test]
-fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
+fn the_guards_margins_and_decisions_match_floating_point() {
     let mut hazard_counts = [0; 12];
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut findings = Findings::default();
@@ -217,7 +222,7 @@ fn the_guard_measures_every_margin_and_decides_as_floating_point_does() {
 }
 
 #[test]
-fn the_guards_decision_changes_at_the_limit_computed_in_floating_point() {
+fn the_guards_decision_changes_at_the_floating_point_limit() {
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut rng = rng(200 + robot_index as u64);
         let firmware = robot.firmware();
@@ -227,7 +232,7 @@ fn the_guards_decision_changes_at_the_limit_computed_in_floating_point() {
             if is_safe(firmware, &unsafe_pose) {
                 continue;
             }
-            for pose in straddling_poses(robot, unsafe_pose) {
+            for pose in find_straddling_poses(robot, unsafe_pose) {
                 findings.add_pose(robot, &pose);
             }
         }
@@ -235,26 +240,26 @@ fn the_guards_decision_changes_at_the_limit_computed_in_floating_point() {
     }
 }
 
-/// Returns two neighbouring poses on the path from neutral to an unsafe pose: a safe pose, then an unsafe pose. Shares
-/// of the path are in 1/65536.
-fn straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
-    let pose_at = |share: u32| {
+/// Finds two neighbouring poses on the path from neutral to an unsafe pose, first a safe pose and then an unsafe pose.
+/// Fractions of the path are in units of 1/65536.
+fn find_straddling_poses(robot: &Robot, unsafe_pose: Pose) -> [Pose; 2] {
+    let pose_at = |fraction: u32| {
         Pose(
             unsafe_pose
                 .0
-                .map(|sweep| Sweep(((i64::from(sweep.0) * i64::from(share)) >> 16) as i16)),
+                .map(|sweep| Sweep(((i64::from(sweep.0) * i64::from(fraction)) >> 16) as i16)),
         )
     };
-    let (mut safe_share, mut unsafe_share) = (0, 1 << 16);
-    while unsafe_share - safe_share > 1 {
-        let middle_share = (safe_share + unsafe_share) / 2;
-        *(if is_safe(robot.firmware(), &pose_at(middle_share)) {
-            &mut safe_share
+    let (mut safe_fraction, mut unsafe_fraction) = (0, 1 << 16);
+    while unsafe_fraction - safe_fraction > 1 {
+        let middle_fraction = (safe_fraction + unsafe_fraction) / 2;
+        *(if is_safe(robot.firmware(), &pose_at(middle_fraction)) {
+            &mut safe_fraction
         } else {
-            &mut unsafe_share
-        }) = middle_share;
+            &mut unsafe_fraction
+        }) = middle_fraction;
     }
-    [pose_at(safe_share), pose_at(unsafe_share)]
+    [pose_at(safe_fraction), pose_at(unsafe_fraction)]
 }
 
 #[test]
@@ -262,7 +267,7 @@ fn a_hazard_contains_the_value_that_violates_the_limit() {
     let (mut margin_count, mut stroke_count) = (0, 0);
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         for pose in random_poses(&mut rng(300 + robot_index as u64), robot).take(2000) {
-            let clearance = Clearance::of(robot.firmware(), &pose);
+            let clearance = Clearance::measure(robot.firmware(), &pose);
             match clearance.first_hazard(robot.firmware()) {
                 None => {}
                 Some(Hazard::Margin { margin, value }) => {
@@ -293,7 +298,7 @@ fn a_hazard_contains_the_value_that_violates_the_limit() {
 }
 
 #[test]
-fn the_smallest_margin_agrees_with_kinematics() {
+fn the_smallest_margin_matches_kinematics() {
     for (robot_index, NamedRobot { name, robot }) in robots().iter().enumerate() {
         let mut safe_count = 0;
         for pose in random_poses(&mut rng(400 + robot_index as u64), robot).take(10_000) {
@@ -302,11 +307,11 @@ fn the_smallest_margin_agrees_with_kinematics() {
             }
             safe_count += 1;
             let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-            let truth =
-                ExactConditions::of(robot, chassis_angles).expect("a safe pose closes all loops");
+            let truth = ExactConditions::compute(robot, chassis_angles)
+                .expect("a safe pose closes all loops");
             let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let error =
-                to_sine(Clearance::of(robot.firmware(), &pose).smallest_margin()) - smallest_margin;
+            let error = to_sine(Clearance::measure(robot.firmware(), &pose).smallest_margin())
+                - smallest_margin;
             let largest_band = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(
                 error.abs() <= largest_band,

@@ -1,8 +1,8 @@
-//! Tests of the core's guard, gaits and motion on this machine, compared with floating point. The tested robots are the
-//! robot under test, every file of robots/ and random robots without symmetry.
+//! Tests of the core's guard, gaits and motion on this machine, compared with floating point. The tests use the robot
+//! under test, every robot in robots/, and random robots without symmetry.
 //!
-//! `truth` computes the expected values without the core. `frames` drives a robot through its console and checks every
-//! frame that the robot sends.
+//! `truth` computes the expected values without the core. `frames` commands a robot through its console and checks
+//! every frame that the robot sends.
 
 mod calibration;
 mod frames;

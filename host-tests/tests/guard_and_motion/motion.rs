@@ -1,4 +1,4 @@
-//! Tests of the transitions between all motions, for every robot. Every frame must stay within the limits, and every
+//! Tests of the transitions between all motions, for every robot. Every frame must be within the limits, and every
 //! command must complete.
 
 use lizard_core::motion::Activity;
@@ -15,22 +15,22 @@ use crate::truth::random_safe_pose;
 const DIALOGUE_COUNT: u64 = 30;
 
 #[test]
-fn no_sequence_of_commands_makes_a_frame_unsafe_too_fast_or_too_sudden() {
+fn no_command_sequence_makes_a_frame_unsafe_too_fast_or_too_sudden() {
     for (robot_index, named) in robots().iter().enumerate() {
         let mut rng = rng(1000 + robot_index as u64);
         let (mut accepted_count, mut refused_count, mut largest_change) = (0, 0, 0.0f64);
         for _ in 0..DIALOGUE_COUNT {
-            let mut walker = CheckedRobot::new(named);
+            let mut checked_robot = CheckedRobot::power_on(named);
             for _ in 0..12 {
-                let answer = walker.say(&random_command(&mut rng, &named.robot));
+                let answer = checked_robot.say(&random_command(&mut rng, &named.robot));
                 *(if answer.starts_with("ok") {
                     &mut accepted_count
                 } else {
                     &mut refused_count
                 }) += 1;
-                walker.run_frames(rng.u32(..120));
+                checked_robot.run_frames(rng.u32(..120));
             }
-            largest_change = largest_change.max(walker.largest_speed_change);
+            largest_change = largest_change.max(checked_robot.largest_speed_change);
         }
         println!(
             "{}: {accepted_count} commands accepted, {refused_count} refused; \
@@ -49,29 +49,29 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
         let mut rng = rng(2000 + robot_index as u64);
         let mut completed_count = 0;
         for _ in 0..3 * DIALOGUE_COUNT {
-            let mut walker = CheckedRobot::new(named);
+            let mut checked_robot = CheckedRobot::power_on(named);
             for _ in 0..3 {
-                walker.say(&random_command(&mut rng, robot));
-                walker.run_frames(rng.u32(..60));
+                checked_robot.say(&random_command(&mut rng, robot));
+                checked_robot.run_frames(rng.u32(..60));
             }
-            walker.say("stand");
+            checked_robot.say("stand");
             let last_command = random_command(&mut rng, robot);
-            let answer = walker.say(&last_command);
-            walker.run_frames(2 * settling_frames(robot));
-            if walker.motion().hazard().is_some() {
+            let answer = checked_robot.say(&last_command);
+            checked_robot.run_frames(2 * settling_frames(robot));
+            if checked_robot.motion().hazard().is_some() {
                 assert_eq!(
-                    walker.motion().activity(),
+                    checked_robot.motion().activity(),
                     Activity::Stop,
                     "{name}: {last_command}"
                 );
                 continue;
             }
-            let activity = walker.motion().activity();
+            let activity = checked_robot.motion().activity();
             match final_activity(robot, &last_command) {
                 Some(expected) if answer.starts_with("ok") => {
                     assert_eq!(activity, expected, "{name}: {last_command}")
                 }
-                // After a `speed` or a refused pose, the robot still stands or walks.
+                // After a `speed` command or a refused pose, the robot still stands or walks.
                 _ => assert!(
                     matches!(activity, Activity::Gait(_)),
                     "{name}: {last_command}"
@@ -81,14 +81,14 @@ fn every_command_completes_unless_the_guard_reports_a_hazard() {
                 let firmware = robot.firmware();
                 let pose = firmware
                     .gait(id)
-                    .pose(firmware.waves(), walker.motion().phase());
-                assert_eq!(walker.pose(), pose, "{name}: {last_command}");
+                    .pose(firmware.waves(), checked_robot.motion().phase());
+                assert_eq!(checked_robot.pose(), pose, "{name}: {last_command}");
             }
             completed_count += 1;
         }
         assert!(
             completed_count > DIALOGUE_COUNT,
-            "{name}: only {completed_count} commands have completed"
+            "{name}: only {completed_count} commands completed"
         );
     }
 }
@@ -100,7 +100,7 @@ fn a_refused_command_changes_nothing() {
         let mut refused_count = 0;
         for _ in 0..DIALOGUE_COUNT {
             let (mut tested_robot, mut reference_robot) =
-                (CheckedRobot::new(named), CheckedRobot::new(named));
+                (CheckedRobot::power_on(named), CheckedRobot::power_on(named));
             for _ in 0..8 {
                 let command = random_command(&mut rng, &named.robot);
                 let frame_count = rng.u32(..60);
@@ -129,25 +129,28 @@ fn a_refused_command_changes_nothing() {
 }
 
 #[test]
-fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
+fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
     for (robot_index, named) in robots().iter().enumerate() {
         let mut rng = rng(4000 + robot_index as u64);
         let mut arrived_count = 0;
         for _ in 0..DIALOGUE_COUNT {
             let goal = random_safe_pose(&mut rng, named.robot.firmware());
-            let mut walker = CheckedRobot::standing(named);
-            if !walker.say(&walker.pose_command(&goal)).starts_with("ok") {
-                continue; // the command rounds the pose to hundredths of a degree, here beyond a limit
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            if !checked_robot
+                .say(&checked_robot.pose_command(&goal))
+                .starts_with("ok")
+            {
+                continue; // rounding to hundredths of a degree moves the pose beyond a limit
             }
-            let mut poses = vec![walker.pose()];
-            while walker.motion().activity() == Activity::Pose && poses.len() < 1000 {
-                walker.run_frames(1);
-                poses.push(walker.pose());
+            let mut poses = vec![checked_robot.pose()];
+            while checked_robot.motion().activity() == Activity::Pose && poses.len() < 1000 {
+                checked_robot.run_frames(1);
+                poses.push(checked_robot.pose());
                 if poses[poses.len() - 1] == poses[poses.len() - 2] && poses.len() > 30 {
                     break;
                 }
             }
-            if walker.motion().hazard().is_some() {
+            if checked_robot.motion().hazard().is_some() {
                 continue;
             }
             let end_pose = poses[poses.len() - 1];
@@ -155,9 +158,9 @@ fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
             arrived_count += 1;
             let longest_turn = f64::from(Pose::NEUTRAL.largest_turn_to(&end_pose));
             for pose in &poses {
-                let share = 1.0 - f64::from(pose.largest_turn_to(&end_pose)) / longest_turn;
+                let fraction = 1.0 - f64::from(pose.largest_turn_to(&end_pose)) / longest_turn;
                 for (sweep, end_sweep) in pose.0.iter().zip(&end_pose.0) {
-                    let error = f64::from(sweep.0) - share * f64::from(end_sweep.0);
+                    let error = f64::from(sweep.0) - fraction * f64::from(end_sweep.0);
                     assert!(
                         error.abs() <= 4.0,
                         "{}: {pose:?} to {end_pose:?}",
@@ -171,25 +174,25 @@ fn in_a_move_all_servos_have_turned_by_the_same_share_and_arrive_together() {
 }
 
 #[test]
-fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
+fn servos_wake_one_by_one_in_the_pose_before_the_rest() {
     for (robot_index, named) in robots().iter().enumerate() {
         let calibration = named.robot.firmware().calibration();
-        let mut walker = CheckedRobot::new(named);
+        let mut checked_robot = CheckedRobot::power_on(named);
         for pose_before_rest in [
             Pose::NEUTRAL,
             random_safe_pose(&mut rng(5000 + robot_index as u64), named.robot.firmware()),
         ] {
             if pose_before_rest != Pose::NEUTRAL {
-                walker.say(&walker.pose_command(&pose_before_rest));
-                walker.run_frames(settling_frames(&named.robot));
-                walker.expect_ok("rest");
-                walker.run_frames(10);
-                walker.expect_ok("stand");
+                checked_robot.say(&checked_robot.pose_command(&pose_before_rest));
+                checked_robot.run_frames(settling_frames(&named.robot));
+                checked_robot.expect_ok("rest");
+                checked_robot.run_frames(10);
+                checked_robot.expect_ok("stand");
             }
-            let held_pose = walker.pose();
+            let held_pose = checked_robot.pose();
             let mut first_pulse_frames = [0; 4];
             for frame in 1..=WAKING_FRAMES {
-                for (servo, width) in walker.run_frame().0.into_iter().enumerate() {
+                for (servo, width) in checked_robot.run_frame().0.into_iter().enumerate() {
                     if width.0 > 0 && first_pulse_frames[servo] == 0 {
                         first_pulse_frames[servo] = frame;
                     }
@@ -198,46 +201,46 @@ fn servos_wake_one_after_another_in_the_pose_before_the_rest() {
                     assert_eq!(
                         width.0 > 0,
                         first_pulse_frames[servo] > 0,
-                        "a servo has fallen asleep again"
+                        "a servo fell asleep again"
                     );
                 }
             }
             // The servos wake a tenth of a second apart.
             assert_eq!(first_pulse_frames, [5, 10, 15, 20], "{}", named.name);
-            walker.run_frames(settling_frames(&named.robot));
+            checked_robot.run_frames(settling_frames(&named.robot));
         }
     }
 }
 
 #[test]
-fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_start_again() {
+fn stop_freezes_and_rest_silences_the_next_frame_and_the_gait_can_restart() {
     for (robot_index, named) in robots().iter().enumerate() {
         let mut rng = rng(6000 + robot_index as u64);
         let robot = &named.robot;
         for _ in 0..DIALOGUE_COUNT {
-            let mut walker = CheckedRobot::standing(named);
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
             let gait_index = rng.usize(..robot.gaits().len());
-            walker.expect_ok(&robot.gaits()[gait_index].command());
-            walker.run_frames(rng.u32(..200));
-            let last_gait_pose = walker.pose();
+            checked_robot.expect_ok(&robot.gaits()[gait_index].command());
+            checked_robot.run_frames(rng.u32(..200));
+            let last_gait_pose = checked_robot.pose();
             let command = ["stop", "rest"][rng.usize(..2)];
-            walker.expect_ok(command);
+            checked_robot.expect_ok(command);
             for _ in 0..5 {
-                let is_silent = walker.run_frame().0.iter().all(|width| width.0 == 0);
+                let is_silent = checked_robot.run_frame().0.iter().all(|width| width.0 == 0);
                 assert_eq!(is_silent, command == "rest", "{}", named.name);
-                assert_eq!(walker.pose(), last_gait_pose, "{}", named.name);
-                assert_eq!(walker.motion().phase(), 0, "{}", named.name);
+                assert_eq!(checked_robot.pose(), last_gait_pose, "{}", named.name);
+                assert_eq!(checked_robot.motion().phase(), 0, "{}", named.name);
             }
-            walker.expect_ok("stand");
-            walker.expect_ok(&robot.gaits()[gait_index].command());
+            checked_robot.expect_ok("stand");
+            checked_robot.expect_ok(&robot.gaits()[gait_index].command());
             let firmware = robot.firmware();
             let id = GaitId::all(firmware.gait_count())
                 .nth(gait_index)
-                .expect("the index is that of a gait");
+                .expect("a gait has this index");
             let first_pose = firmware.gait(id).pose(firmware.waves(), 0);
             let has_begun = (0..2 * settling_frames(robot)).any(|_| {
-                walker.run_frames(1);
-                walker.motion().phase() == 0 && walker.pose() == first_pose
+                checked_robot.run_frames(1);
+                checked_robot.motion().phase() == 0 && checked_robot.pose() == first_pose
             });
             assert!(
                 has_begun,

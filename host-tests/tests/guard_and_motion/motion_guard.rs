@@ -1,4 +1,4 @@
-//! Tests of the guard during motion: moves between two safe poses with an unsafe pose on the path, and running gaits.
+//! Tests of the guard during moves between two safe poses with an unsafe pose on the path, and during gaits.
 
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
@@ -12,39 +12,40 @@ use lizard_robot::{CoreRobot, Robot};
 use crate::frames::{CheckedRobot, settling_frames};
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
-/// Number of random pairs of poses tried for each robot. Some robots have no unsafe path between safe poses.
-const TRY_COUNT: usize = 6000;
-/// Maximum number of unsafe paths tested for each robot.
+/// Number of random pairs of poses that are tried for each robot. Some robots have no unsafe path between safe poses.
+const ATTEMPT_COUNT: usize = 6000;
+/// Maximum number of unsafe paths that are tested for each robot.
 const MAX_PATH_COUNT: usize = 12;
 
-/// Returns up to [`MAX_PATH_COUNT`] pairs of safe poses whose straight path is unsafe in floating point.
-fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
+/// Finds up to [`MAX_PATH_COUNT`] pairs of safe poses whose straight path is unsafe in floating point.
+fn find_pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     let calibration = robot.firmware().calibration();
     let pose_near_limit = |rng: &mut Rng| {
-        // Two cranks of a five-bar or of a side are near a limit; the other two are at neutral.
+        // Two cranks of a five-bar or a side are near a limit; the other two are neutral.
         let [first_servo, second_servo] = [[0, 1], [2, 3], [0, 3], [1, 2]][rng.usize(..4)];
         let random_pose = random_pose_within(rng, &calibration, 1.0);
         let mut pose = Pose::NEUTRAL;
         (pose.0[first_servo], pose.0[second_servo]) =
             (random_pose.0[first_servo], random_pose.0[second_servo]);
-        let mut share_256 = 256;
-        while !is_safe(robot.firmware(), &scale_pose(&pose, share_256)) {
-            share_256 -= 4;
+        let mut fraction_256 = 256;
+        while !is_safe(robot.firmware(), &scale_pose(&pose, fraction_256)) {
+            fraction_256 -= 4;
         }
-        scale_pose(&pose, share_256)
+        scale_pose(&pose, fraction_256)
     };
     let mut pairs = Vec::new();
-    for _ in 0..TRY_COUNT {
+    for _ in 0..ATTEMPT_COUNT {
         let (start_pose, end_pose) = (pose_near_limit(rng), pose_near_limit(rng));
         let [start_sweeps, end_sweeps] =
             [start_pose, end_pose].map(|pose| pose.0.map(|sweep| f64::from(sweep.0)));
         let is_unsafe_at = |step: u32| {
-            let share = f64::from(step) / 50.0;
+            let fraction = f64::from(step) / 50.0;
             let pose = Pose(std::array::from_fn(|servo| {
-                let sweep = start_sweeps[servo] + share * (end_sweeps[servo] - start_sweeps[servo]);
+                let sweep =
+                    start_sweeps[servo] + fraction * (end_sweeps[servo] - start_sweeps[servo]);
                 Sweep(sweep as i16)
             }));
-            Verdict::of(robot, chassis_angles_deg(robot.firmware(), &pose)) == Verdict::Unsafe
+            Verdict::compute(robot, chassis_angles_deg(robot.firmware(), &pose)) == Verdict::Unsafe
         };
         if (1..50).step_by(4).any(is_unsafe_at) {
             pairs.push([start_pose, end_pose]);
@@ -56,11 +57,11 @@ fn pairs_with_unsafe_path(rng: &mut Rng, robot: &Robot) -> Vec<[Pose; 2]> {
     pairs
 }
 
-/// Returns a pose with every sweep multiplied by `share_256` / 256.
-fn scale_pose(pose: &Pose, share_256: i32) -> Pose {
+/// Returns a pose with every sweep multiplied by `fraction_256` / 256.
+fn scale_pose(pose: &Pose, fraction_256: i32) -> Pose {
     Pose(
         pose.0
-            .map(|sweep| Sweep((i32::from(sweep.0) * share_256 / 256) as i16)),
+            .map(|sweep| Sweep((i32::from(sweep.0) * fraction_256 / 256) as i16)),
     )
 }
 
@@ -70,35 +71,38 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     for (robot_index, named) in robots().iter().enumerate() {
         let NamedRobot { name, robot } = named;
         for [start_pose, end_pose] in
-            pairs_with_unsafe_path(&mut rng(7000 + robot_index as u64), robot)
+            find_pairs_with_unsafe_path(&mut rng(7000 + robot_index as u64), robot)
         {
-            let mut walker = CheckedRobot::standing(named);
-            // The command rounds the pose to hundredths of a degree, so the pose may be beyond a limit.
-            if !walker
-                .say(&walker.pose_command(&start_pose))
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            // Rounding to hundredths of a degree may move the pose beyond a limit.
+            if !checked_robot
+                .say(&checked_robot.pose_command(&start_pose))
                 .starts_with("ok")
             {
                 continue;
             }
-            walker.run_frames(settling_frames(robot));
-            if walker.motion().hazard().is_some()
-                || !walker
-                    .say(&walker.pose_command(&end_pose))
+            checked_robot.run_frames(settling_frames(robot));
+            if checked_robot.motion().hazard().is_some()
+                || !checked_robot
+                    .say(&checked_robot.pose_command(&end_pose))
                     .starts_with("ok")
             {
                 continue;
             }
-            let start_pose = walker.pose();
+            let start_pose = checked_robot.pose();
             // `run_frames` checks that every frame is safe.
-            walker.run_frames(settling_frames(robot));
+            checked_robot.run_frames(settling_frames(robot));
             // A fast move may cross a narrow unsafe region between two frames.
-            let Some(hazard) = walker.motion().hazard() else {
-                assert!(walker.pose().largest_turn_to(&end_pose) <= 1, "{name}");
+            let Some(hazard) = checked_robot.motion().hazard() else {
+                assert!(
+                    checked_robot.pose().largest_turn_to(&end_pose) <= 1,
+                    "{name}"
+                );
                 continue;
             };
             held_count += 1;
-            assert_eq!(walker.motion().activity(), Activity::Stop, "{name}");
-            let printed_lines = walker.take_output_lines();
+            assert_eq!(checked_robot.motion().activity(), Activity::Stop, "{name}");
+            let printed_lines = checked_robot.take_output_lines();
             assert_eq!(printed_lines.len(), 1, "{name}: {printed_lines:?}");
             assert!(
                 printed_lines[0].starts_with("# held in the last safe pose: "),
@@ -110,26 +114,32 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
                     robot.firmware(),
                     start_pose,
                     end_pose,
-                    walker.pose(),
+                    checked_robot.pose(),
                     hazard
                 ),
                 "{name}: {hazard:?}"
             );
-            let held_pose = walker.pose();
-            walker.run_frames(20);
-            assert_eq!(walker.pose(), held_pose, "{name}");
+            let held_pose = checked_robot.pose();
+            checked_robot.run_frames(20);
+            assert_eq!(checked_robot.pose(), held_pose, "{name}");
             assert!(
-                walker.take_output_lines().is_empty(),
-                "{name}: the hazard is reported again"
+                checked_robot.take_output_lines().is_empty(),
+                "{name}: the hazard was reported again"
             );
-            assert!(walker.say("status").contains(" guard=held "), "{name}");
-            // The robot can move back, unless the guard stops it again.
             assert!(
-                walker.move_to(&start_pose) || walker.motion().hazard().is_some(),
+                checked_robot.say("status").contains(" guard=held "),
                 "{name}"
             );
-            if walker.motion().hazard().is_none() {
-                assert!(walker.say("status").contains(" guard=clear "), "{name}");
+            // The robot can move back, unless the guard stops it again.
+            assert!(
+                checked_robot.move_to(&start_pose) || checked_robot.motion().hazard().is_some(),
+                "{name}"
+            );
+            if checked_robot.motion().hazard().is_none() {
+                assert!(
+                    checked_robot.say("status").contains(" guard=clear "),
+                    "{name}"
+                );
             }
         }
     }
@@ -137,7 +147,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
     assert!(held_count >= 10);
 }
 
-/// True if the rest of the path from the held pose violates the condition that a hazard names.
+/// True if the remaining path from the held pose violates the condition that the hazard names.
 fn violates_condition_ahead(
     firmware: &CoreRobot,
     start_pose: Pose,
@@ -151,15 +161,15 @@ fn violates_condition_ahead(
         _ => false,
     };
     (0..=4000).any(|step| {
-        let share = f64::from(step) / 4000.0;
+        let fraction = f64::from(step) / 4000.0;
         let pose = Pose(std::array::from_fn(|servo| {
             let [start, end] = [&start_pose, &end_pose].map(|pose| f64::from(pose.0[servo].0));
-            Sweep((start + share * (end - start)).round() as i16)
+            Sweep((start + fraction * (end - start)).round() as i16)
         }));
         let is_ahead =
             held_pose.largest_turn_to(&start_pose) <= pose.largest_turn_to(&start_pose) + 1;
         is_ahead
-            && Clearance::of(firmware, &pose)
+            && Clearance::measure(firmware, &pose)
                 .first_hazard(firmware)
                 .is_some_and(is_same_condition)
     })
@@ -170,18 +180,18 @@ fn a_running_gait_is_never_stopped_by_the_guard() {
     let (mut walked_count, mut blocked_count) = (0, 0);
     for named in robots() {
         for gait in named.robot.gaits() {
-            let mut walker = CheckedRobot::standing(named);
-            walker.expect_ok(&gait.command());
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            checked_robot.expect_ok(&gait.command());
             // The path to the gait's first pose may contain an unsafe pose.
-            walker.run_frames(settling_frames(&named.robot));
-            if walker.motion().hazard().is_some() {
+            checked_robot.run_frames(settling_frames(&named.robot));
+            if checked_robot.motion().hazard().is_some() {
                 println!("{}: the path to {} is blocked", named.name, gait.name());
                 blocked_count += 1;
                 continue;
             }
             walked_count += 1;
-            walker.run_frames((2.0 * gait.period() * 50.0) as u32);
-            let hazard = walker.motion().hazard();
+            checked_robot.run_frames((2.0 * gait.period() * 50.0) as u32);
+            let hazard = checked_robot.motion().hazard();
             assert!(
                 hazard.is_none(),
                 "{}: {}: {hazard:?}",

@@ -1,5 +1,5 @@
-//! Tests that show why the guard does not use the singularity conditions printed in the paper: sin(theta2 + theta3) = 0
-//! for the head, sin(theta6 + theta7) = 0 for the tail, and sin(2 theta11) = 0 for the left side.
+//! Tests of the singularity conditions printed in the paper, which the guard does not use: sin(theta2 + theta3) = 0 for
+//! the head, sin(theta6 + theta7) = 0 for the tail, and sin(2 theta11) = 0 for the left side.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -11,11 +11,11 @@ use lizard_host_tests::paper_robot;
 
 use crate::truth::{chassis_angles_deg, is_safe};
 
-/// The head's crank angles at which the two crank tips coincide. This is the real singularity: the couplers lie on each
-/// other, and the head can swing freely.
+/// The head's crank angles at which the two crank tips coincide. At this real singularity, the couplers overlap, and
+/// the head can swing freely.
 const SINGULAR_CRANK_ANGLES_DEG: [f64; 2] = [70.52878, 109.47122];
 
-/// The values of the conditions printed in the paper, at one pose.
+/// The values of the conditions printed in the paper, for one pose.
 struct PrintedConditions {
     /// |sin(theta2 + theta3)|.
     head: f64,
@@ -26,7 +26,7 @@ struct PrintedConditions {
 }
 
 impl PrintedConditions {
-    fn of(pose: &Pose) -> Self {
+    fn compute(pose: &Pose) -> Self {
         let solution = paper_robot()
             .lizard()
             .solve(&chassis_angles_deg(paper_robot().firmware(), pose).into())
@@ -39,14 +39,14 @@ impl PrintedConditions {
         }
     }
 
-    /// True if a guard on these conditions would refuse the pose.
+    /// True if a guard with these conditions would refuse the pose.
     fn are_violated(&self) -> bool {
         let limit = paper_robot().limits().type2;
         self.head < limit || self.tail < limit || self.left < limit
     }
 }
 
-fn pose_with_head_at(theta1_deg: f64, theta4_deg: f64) -> Pose {
+fn build_head_pose(theta1_deg: f64, theta4_deg: f64) -> Pose {
     let mut pose = Pose::NEUTRAL;
     for (servo, degrees) in [theta1_deg, theta4_deg].into_iter().enumerate() {
         let centideg = (100.0 * degrees).round() as i32;
@@ -58,7 +58,7 @@ fn pose_with_head_at(theta1_deg: f64, theta4_deg: f64) -> Pose {
 
 #[test]
 fn the_conditions_printed_in_the_paper_would_refuse_the_neutral_pose() {
-    let conditions = PrintedConditions::of(&Pose::NEUTRAL);
+    let conditions = PrintedConditions::compute(&Pose::NEUTRAL);
     assert!(conditions.head < 1e-3 && conditions.tail < 1e-3 && conditions.left < 1e-3);
     assert!(conditions.are_violated());
     assert!(is_safe(paper_robot().firmware(), &Pose::NEUTRAL));
@@ -71,7 +71,7 @@ fn the_condition_printed_in_the_paper_refuses_every_symmetric_pose_of_the_head()
         let pose = Pose([sweep, -sweep, 0, 0].map(Sweep));
         if is_safe(paper_robot().firmware(), &pose) {
             // Neutral angles are rounded to the core's step of 0.0055 deg.
-            assert!(PrintedConditions::of(&pose).head < 1e-3, "{sweep}");
+            assert!(PrintedConditions::compute(&pose).head < 1e-3, "{sweep}");
             safe_count += 1;
         }
     }
@@ -84,43 +84,47 @@ fn the_conditions_printed_in_the_paper_would_stop_every_gait() {
     for id in GaitId::all(firmware.gait_count()) {
         let gait = firmware.gait(id);
         let stopped_count = (0..256u32)
-            .filter(|n| PrintedConditions::of(&gait.pose(firmware.waves(), n << 16)).are_violated())
+            .filter(|n| {
+                PrintedConditions::compute(&gait.pose(firmware.waves(), n << 16)).are_violated()
+            })
             .count();
         assert!(stopped_count > 64, "{id:?}: {stopped_count} of 256");
     }
 }
 
 #[test]
-fn the_papers_condition_accepts_the_real_singularity_and_the_guard_refuses_it() {
+fn only_the_guard_and_not_the_papers_condition_refuses_the_real_singularity() {
     let mut largest_sine = 0.0f64;
     for direction_deg in 0..360 {
         let (theta4_change_deg, theta1_change_deg) =
             f64::from(direction_deg).to_radians().sin_cos();
-        let pose = pose_with_head_at(
+        let pose = build_head_pose(
             SINGULAR_CRANK_ANGLES_DEG[0] + theta1_change_deg,
             SINGULAR_CRANK_ANGLES_DEG[1] + theta4_change_deg,
         );
-        largest_sine = largest_sine.max(PrintedConditions::of(&pose).head);
+        largest_sine = largest_sine.max(PrintedConditions::compute(&pose).head);
         assert_eq!(
             refused_margin(&pose),
             Some(Margin::Type2(End::Head)),
-            "a degree from the singularity"
+            "the refused margin one degree from the singularity"
         );
     }
-    println!("a degree beside the singularity, |sin(theta2 + theta3)| is up to {largest_sine:.3}");
+    println!(
+        "one degree from the singularity, |sin(theta2 + theta3)| is at most {largest_sine:.3}"
+    );
     assert!(largest_sine > 0.95);
-    // The guard also refuses the singularity itself, and the same singularity of the tail.
-    let head_pose = pose_with_head_at(SINGULAR_CRANK_ANGLES_DEG[0], SINGULAR_CRANK_ANGLES_DEG[1]);
+    // The guard also refuses the singularity itself, and the tail's singularity.
+    let head_pose = build_head_pose(SINGULAR_CRANK_ANGLES_DEG[0], SINGULAR_CRANK_ANGLES_DEG[1]);
     assert_eq!(refused_margin(&head_pose), Some(Margin::Type2(End::Head)));
     let Pose([a1, a2, ..]) = head_pose;
     let tail_pose = Pose([Sweep(0), Sweep(0), Sweep(-a2.0), Sweep(-a1.0)]);
     assert_eq!(refused_margin(&tail_pose), Some(Margin::Type2(End::Tail)));
 }
 
-/// Returns the margin for which the guard refuses a pose; `None` if the guard accepts every margin.
+/// Returns the margin because of which the guard refuses a pose; `None` if the guard accepts every margin.
 fn refused_margin(pose: &Pose) -> Option<Margin> {
     let firmware = paper_robot().firmware();
-    match Clearance::of(firmware, pose).first_hazard(firmware) {
+    match Clearance::measure(firmware, pose).first_hazard(firmware) {
         Some(Hazard::Margin { margin, .. }) => Some(margin),
         _ => None,
     }

@@ -1,5 +1,5 @@
-//! Expected values in floating point, without the core: every condition of a safe pose, computed by lizard-kinematics
-//! at the exact angles of the core's pose.
+//! Expected values in floating point, without the core: every safety condition of a pose, which lizard-kinematics
+//! computes at the exact angles of the core's pose.
 
 use std::fmt;
 
@@ -10,13 +10,13 @@ use lizard_core::numbers::calibration::Calibration;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Scale, Sine, Sweep};
-use lizard_kinematics::{Check, Infeasible, Limits, Mechanism};
+use lizard_kinematics::{Check, InfeasiblePose, Limits, Mechanism};
 use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::{CoreRobot, Robot};
 
-/// The maximum error of a margin due to the guard's arithmetic, as a sine. The rounding of lengths adds to this error.
+/// The maximum error of a margin due to the guard's arithmetic, as a sine. Rounding of lengths adds to this error.
 pub const MARGIN_BAND: f64 = 0.002;
-/// The smallest type-2 limit that robot.toml may set, a sine. Below this value, the guard only has to detect that a
+/// The smallest type-2 limit that robot.toml may set, a sine. Below this value, the guard must only detect that a
 /// margin is small.
 pub const MIN_TYPE2_LIMIT: f64 = 0.1;
 
@@ -34,10 +34,10 @@ pub const MARGINS: [Margin; 10] = [
     Margin::Leg(Servo::A4),
 ];
 
-/// The five-bar of each of the first six margins: 0 is the head, 1 the tail. The other four margins are those of legs.
-pub const FIVE_BAR_OF_MARGIN: [usize; 6] = [0, 1, 0, 0, 1, 1];
+/// The five-bar of each of the first six margins: 0 is the head, 1 is the tail. The other four margins belong to legs.
+pub const MARGIN_FIVE_BARS: [usize; 6] = [0, 1, 0, 0, 1, 1];
 
-/// Converts an angle of the core to degrees, 0..360.
+/// Converts an angle of the core to degrees between 0 and 360.
 pub fn to_degrees(angle: Angle) -> f64 {
     f64::from(angle.0) * 360.0 / 65536.0
 }
@@ -57,13 +57,13 @@ pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral_angles()).map(to_degrees)
 }
 
-/// The values of every safety condition at a pose, computed in floating point.
+/// The values of all safety conditions of a pose, computed in floating point.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactConditions {
     /// The margins as sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for
     /// crossed crank tips.
     pub margins: [f64; 10],
-    /// The sliders' strokes: their lengths minus their nominal lengths, mm.
+    /// The sliders' strokes, which are their lengths minus their nominal lengths, mm.
     pub strokes_mm: [f64; 2],
     /// K2 of head and tail, mm.
     pub k2_mm: [f64; 2],
@@ -71,28 +71,28 @@ pub struct ExactConditions {
     /// type-2 margin.
     pub are_violated: [bool; 12],
     limits: Limits,
-    /// The band of each condition, which is the maximum error that the guard may have: first those of the ten margins,
-    /// then, in mm, those of the left stroke, the right stroke, K2 of the head and K2 of the tail.
+    /// The band of each condition, which is the guard's maximum allowed error: first the bands of the ten margins, then
+    /// in mm the bands of the left stroke, the right stroke, K2 of the head and K2 of the tail.
     pub bands: [f64; 14],
 }
 
 /// The verdict on a pose, which is undecided within the band of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within every limit by more than its band.
+    /// Within every limit by more than the limit's band.
     Safe,
-    /// Beyond a limit by more than its band.
+    /// Beyond a limit by more than the limit's band.
     Unsafe,
-    /// Too near to a limit to decide.
+    /// Too close to a limit to decide.
     Undecided,
 }
 
 impl ExactConditions {
-    /// Computes every condition at servo angles in the chassis frame, deg.
+    /// Computes all conditions for servo angles in the chassis frame, deg.
     ///
     /// # Errors
     /// Fails if a five-bar or a side does not close.
-    pub fn of(robot: &Robot, angles: [f64; 4]) -> Result<Self, Infeasible> {
+    pub fn compute(robot: &Robot, angles: [f64; 4]) -> Result<Self, InfeasiblePose> {
         let solution = robot.lizard().solve(&angles.into())?;
         let k2_values = [solution.head.gap.x, solution.tail.gap.x];
         let mut margins = [0.0; 10];
@@ -148,8 +148,8 @@ impl ExactConditions {
         })
     }
 
-    /// Returns the distance of each margin, then of each stroke, from its limit, in bands. Positive distances are safe.
-    /// As in the guard, crossed crank tips violate the type-2 limit.
+    /// Returns the distances of the margins and then of the strokes from their limits, in bands. Positive distances are
+    /// safe. As in the guard, crossed crank tips violate the type-2 limit.
     pub fn distances_from_limits(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -172,7 +172,7 @@ impl ExactConditions {
         })
     }
 
-    /// True if K2 of a five-bar is so near to 0 that rounding may change its sign in the guard. The index is 0 for the
+    /// True if K2 of a five-bar is so close to 0 that rounding may change its sign in the guard. The index is 0 for the
     /// head and 1 for the tail.
     pub fn is_at_crossing(&self, index: usize) -> bool {
         self.k2_mm[index].abs() <= self.bands[12 + index]
@@ -181,7 +181,7 @@ impl ExactConditions {
 
 /// Returns the index of a condition among the twelve: ten margins, two strokes.
 fn condition_index(check: Check) -> usize {
-    let index_among = |checks: &[Check]| checks.iter().position(|known| *known == check);
+    let find_index = |checks: &[Check]| checks.iter().position(|known| *known == check);
     let kinds: [(usize, &[Check]); 5] = [
         (0, &Check::TYPE2),
         (2, &Check::TYPE1),
@@ -191,14 +191,13 @@ fn condition_index(check: Check) -> usize {
     ];
     let mut indices = kinds
         .into_iter()
-        .filter_map(|(first_index, checks)| Some(first_index + index_among(checks)?));
+        .filter_map(|(first_index, checks)| Some(first_index + find_index(checks)?));
     indices.next().expect("every condition is of a known kind")
 }
 
-/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each band is the sum of two errors.
-/// The first is the error of the guard's arithmetic. The second is the effect of an error of `step_mm` in the distance
-/// `tip_distance_mm` between the crank tips. Near a singularity, where `type2` is small, this error turns the couplers
-/// by a large angle.
+/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each band is the sum of the error
+/// of the guard's arithmetic and the effect of an error of `step_mm` in the distance `tip_distance_mm` between the
+/// crank tips. Near a singularity, where `type2` is small, a length error turns the couplers by a large angle.
 fn five_bar_bands(
     robot: &Robot,
     end: End,
@@ -222,9 +221,9 @@ fn five_bar_bands(
 }
 
 impl Verdict {
-    /// Judges the pose at servo angles in the chassis frame, deg.
-    pub fn of(robot: &Robot, angles: [f64; 4]) -> Self {
-        let Ok(conditions) = ExactConditions::of(robot, angles) else {
+    /// Computes the verdict for servo angles in the chassis frame, deg.
+    pub fn compute(robot: &Robot, angles: [f64; 4]) -> Self {
+        let Ok(conditions) = ExactConditions::compute(robot, angles) else {
             return Self::Unsafe;
         };
         let smallest_distance = conditions
@@ -242,7 +241,7 @@ impl Verdict {
 }
 
 /// Returns the index of the five-bar that does not close; `None` if a side does not close.
-pub fn index_of_unclosed_five_bar(error: &Infeasible) -> Option<usize> {
+pub fn find_unclosed_five_bar(error: &InfeasiblePose) -> Option<usize> {
     match error.mechanism {
         Mechanism::End(lizard_kinematics::End::Head) => Some(0),
         Mechanism::End(lizard_kinematics::End::Tail) => Some(1),
@@ -250,7 +249,7 @@ pub fn index_of_unclosed_five_bar(error: &Infeasible) -> Option<usize> {
     }
 }
 
-/// The maximum and the root mean square of many errors.
+/// The maximum and root mean square of many errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ErrorStatistics {
     pub max: f64,
@@ -273,17 +272,17 @@ impl fmt::Display for ErrorStatistics {
     }
 }
 
-/// Returns a random pose anywhere in the servos' travel.
+/// Returns a random pose in the servos' entire travel.
 pub fn random_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.travel_min.0..=servo.travel_max.0))))
 }
 
-/// Returns a random pose in which every servo turns from neutral by at most this share of its travel.
-pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], share: f64) -> Pose {
+/// Returns a random pose in which every servo turns from neutral by at most this fraction of its travel.
+pub fn random_pose_within(rng: &mut Rng, calibration: &[Calibration; 4], fraction: f64) -> Pose {
     let pose = random_pose(rng, calibration);
     Pose(
         pose.0
-            .map(|sweep| Sweep((f64::from(sweep.0) * share) as i16)),
+            .map(|sweep| Sweep((f64::from(sweep.0) * fraction) as i16)),
     )
 }
 
@@ -300,7 +299,7 @@ pub fn random_safe_pose(rng: &mut Rng, firmware: &CoreRobot) -> Pose {
 
 /// True if the guard accepts a pose.
 pub fn is_safe(firmware: &CoreRobot, pose: &Pose) -> bool {
-    Clearance::of(firmware, pose)
+    Clearance::measure(firmware, pose)
         .first_hazard(firmware)
         .is_none()
 }

@@ -1,7 +1,7 @@
 //! Tests of `lizard flash` as a user runs it. The board is simulated in real time, with the original boot loader of a
-//! UNO or of an old Nano.
+//! UNO or an old Nano.
 //!
-//! `make flash-test` runs these tests after it has compiled the program and the boot loaders.
+//! `make flash-test` compiles the program and the boot loaders, and runs these tests.
 
 #[path = "../desk/mod.rs"]
 mod desk;
@@ -16,15 +16,15 @@ use desk::{BOOT_LOADER_START, Desk, load_boot_loader};
 use lizard_core::memory::copies::REST_POSE_ADDRESS;
 use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
 use lizard_core::numbers::section::START_ADDRESS;
-use lizard_host::firmware::robot_label;
+use lizard_host::firmware::format_robot_label;
 use lizard_host::sim::frame::servo_pins;
 use lizard_host_tests::{avr_gcc, robot, root};
 use lizard_robot::Robot;
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use shell::Shell;
 use simulated_uno::{Fidelity, Image, Port, Uno};
 
-/// The image of a program that is not the firmware. It sends bytes forever at the boot loader's baud rate.
+/// The image of a program other than the firmware, which sends bytes forever at the boot loader's baud rate.
 static SENDER_IMAGE: LazyLock<Image> = LazyLock::new(|| {
     avr_gcc::compile_c(
         r#"
@@ -43,20 +43,20 @@ static SENDER_IMAGE: LazyLock<Image> = LazyLock::new(|| {
     )
 });
 
-/// Returns the flash below the boot loader of a board that has `lizard`'s own firmware and this robot.
-fn firmware_of(robot: &Robot) -> Vec<u8> {
+/// Returns the flash contents below the boot loader for `lizard`'s own firmware with this robot.
+fn firmware_with(robot: &Robot) -> Vec<u8> {
     let image = lizard_host::firmware::built_in_image(robot);
     let uno = Uno::with_image(image, Fidelity::DataSheet);
     uno.flash()[..BOOT_LOADER_START].to_vec()
 }
 
-/// Returns the flash below the boot loader of a board that has the firmware and the robot under test.
+/// Returns the flash contents below the boot loader for the firmware with the robot under test.
 fn firmware() -> Vec<u8> {
-    firmware_of(robot())
+    firmware_with(robot())
 }
 
-/// Returns a robot other than the robot under test, and its name for the option `--robot`.
-fn another_robot() -> (&'static str, Robot) {
+/// Loads a robot other than the robot under test, and returns its name for the option `--robot` and the robot.
+fn load_another_robot() -> (&'static str, Robot) {
     let name = match robot().name() {
         "large" => "unequal",
         _ => "large",
@@ -65,7 +65,7 @@ fn another_robot() -> (&'static str, Robot) {
     (name, Robot::load(&file).expect("the file is valid"))
 }
 
-/// Starts `lizard flash` at the desk's port.
+/// Starts `lizard flash` on the desk's port.
 fn start_lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
     let port = desk.port_path();
@@ -73,8 +73,8 @@ fn start_lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
     Shell::start(&lizard, &arguments, &[])
 }
 
-/// Checks that an upload has not changed the EEPROM, except for the rest pose. The firmware itself may write the rest
-/// pose, for example when `lizard` on a slow machine resets the board several times.
+/// Checks that an upload did not change the EEPROM, except for the rest pose. The firmware itself may write the rest
+/// pose, for example if `lizard` on a slow machine resets the board several times.
 fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     let rest_addresses =
         usize::from(REST_POSE_ADDRESS.0)..usize::from(REST_POSE_ADDRESS.0 + RECORD_BYTES);
@@ -85,22 +85,22 @@ fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
     let changed_addresses: Vec<usize> = (0..MEMORY_BYTES).filter(has_changed).collect();
     assert!(
         changed_addresses.is_empty(),
-        "the EEPROM has changed at {changed_addresses:?}:\n{eeprom:?}"
+        "the EEPROM was changed at {changed_addresses:?}:\n{eeprom:?}"
     );
 }
 
-/// Unplugs the board, and plugs it in again at a new port.
-fn unplug(desk: &mut Desk) {
+/// Unplugs the board, and plugs it into a new port.
+fn replug(desk: &mut Desk) {
     desk.port = Port::new().expect("a pseudo terminal can be opened");
 }
 
-/// Runs the board until `lizard` has exited. Returns all output of `lizard`.
+/// Runs the board until `lizard` has exited. Returns the entire output of `lizard`.
 fn run_to_exit(desk: &mut Desk, shell: &Shell) -> String {
     desk.run_until_exit(shell);
     shell.last_screen()
 }
 
-/// Waits for a successful upload, and checks that the robot prints the firmware's banner. Returns all output of
+/// Waits for a successful upload, and checks that the robot prints the firmware's banner. Returns the entire output of
 /// `lizard`.
 fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     let screen = run_to_exit(desk, shell);
@@ -109,18 +109,18 @@ fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
     screen
 }
 
-/// Starts an upload to a board, and waits until some pages of the new code are written.
+/// Starts an upload to a board, and waits until the first pages of the new code are written.
 fn begin_upload(desk: &mut Desk) -> Shell {
     let shell = start_lizard_flash(desk, &[]);
     let is_in_time = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
     let has_begun = is_in_time && !shell.has_ended();
-    assert!(has_begun, "the upload has not begun:\n{screen}");
+    assert!(has_begun, "the upload did not begin:\n{screen}");
     shell
 }
 
-/// Returns a board that already has the firmware, placed in its flash without an upload.
-fn board_with_firmware() -> Desk {
+/// Returns a board with the firmware, which was placed in its flash without an upload.
+fn prepare_board_with_firmware() -> Desk {
     let mut desk = Desk::with_new_uno();
     desk.uno.set_flash(0, &firmware());
     desk
@@ -155,25 +155,25 @@ fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
 }
 
 #[test]
-fn a_board_that_has_the_image_is_left_as_it_is() {
-    let mut desk = board_with_firmware();
+fn a_board_that_has_the_image_stays_unchanged() {
+    let mut desk = prepare_board_with_firmware();
     let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
-    let robot_text = format!("robot {} already", robot_label(robot().firmware()));
+    let robot_text = format!("robot {} already", format_robot_label(robot().firmware()));
     assert!(screen.contains(&robot_text), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
 }
 
 #[test]
-fn one_page_that_differs_is_written_alone() {
-    let mut desk = board_with_firmware();
+fn only_a_page_that_differs_is_written() {
+    let mut desk = prepare_board_with_firmware();
     let old_byte = desk.uno.flash()[0x2005];
     desk.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
     let shell = start_lizard_flash(&desk, &[]);
     let screen = expect_success(&mut desk, &shell);
     let board_text = "the board has another build of lizard";
     assert!(screen.contains(board_text), "{screen}");
-    // Two pages: the page that differs, and the page at address 0, where the chip starts.
+    // Two pages are written: the page that differs, and the page at address 0, where the chip starts.
     let bytes_text = "\n256 bytes written and verified";
     assert!(screen.contains(bytes_text), "{screen}");
 }
@@ -183,28 +183,25 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
     let mut desk = Desk::with_new_uno();
     desk.uno.set_flash(0, &SENDER_IMAGE.flash());
     let shell = begin_upload(&mut desk);
-    unplug(&mut desk);
+    replug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(
-        screen.contains("half a program now, and does nothing"),
+        screen.contains("an incomplete program, which does nothing"),
         "{screen}"
     );
-    assert!(!desk.differences(&firmware()).is_empty());
+    assert!(!desk.find_differences(&firmware()).is_empty());
 
     // After the board is plugged in again, it has power, but no program calls its boot loader.
     desk.uno.power_cycle();
     desk.uno.take_transmitted();
     desk.uno.take_edges();
     desk.uno.run_ms(3000);
-    assert!(
-        desk.uno.transmitted().is_empty(),
-        "the board has sent bytes"
-    );
+    assert!(desk.uno.transmitted().is_empty(), "the board sent bytes");
     let edges = desk.uno.take_edges();
-    assert!(edges.is_empty(), "pins have changed: {edges:?}");
-    // These seconds were simulated faster than real time. A port needs real time, so the board gets a new port.
-    unplug(&mut desk);
+    assert!(edges.is_empty(), "pins changed: {edges:?}");
+    // These seconds were simulated faster than real time. A port requires real time, so the board gets a new port.
+    replug(&mut desk);
 
     let shell = start_lizard_flash(&desk, &[]);
     expect_success(&mut desk, &shell);
@@ -216,11 +213,14 @@ fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_fla
     let shell = begin_upload(&mut desk);
     desk.uno.reset();
     let screen = expect_success(&mut desk, &shell);
-    assert!(screen.contains("is reset for another attempt"), "{screen}");
+    assert!(
+        screen.contains("resetting the board for another attempt"),
+        "{screen}"
+    );
 }
 
 #[test]
-fn a_byte_that_changes_after_it_was_written_is_rewritten() {
+fn a_byte_that_changes_after_its_write_is_rewritten() {
     let mut desk = Desk::with_new_uno();
     let shell = start_lizard_flash(&desk, &[]);
     let mut has_changed = false;
@@ -235,7 +235,7 @@ fn a_byte_that_changes_after_it_was_written_is_rewritten() {
     let screen = shell.last_screen();
     assert!(
         has_ended,
-        "waited {LIMIT} for the end of the upload:\n{screen}"
+        "waited {TIME_LIMIT} for the end of the upload:\n{screen}"
     );
     assert!(has_changed, "nothing was written:\n{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
@@ -245,7 +245,7 @@ fn a_byte_that_changes_after_it_was_written_is_rewritten() {
 #[test]
 fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
     let mut desk = Desk::with_new_uno();
-    // This boot loader does nothing: `rjmp .-2`.
+    // Replaces the boot loader with an endless loop: `rjmp .-2`.
     desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_lizard_flash(&desk, &[]);
     let screen = run_to_exit(&mut desk, &shell);

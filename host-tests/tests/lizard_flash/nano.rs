@@ -1,23 +1,23 @@
-//! Tests with an old Nano, whose boot loader is slower and larger than that of a UNO and leaves the watchdog on.
+//! Tests with an old Nano, whose boot loader is slower and larger than a UNO's and leaves the watchdog on.
 
 use super::*;
 
 /// The address of the first byte of an old Nano's boot loader.
 const NANO_BOOT_LOADER_START: usize = 0x7800;
 
-/// Returns a Nano as sold until 2018, with a boot loader at 57 600 baud.
-fn old_nano() -> Desk {
+/// Creates a Nano as sold until 2018, with a boot loader at 57 600 baud.
+fn create_old_nano() -> Desk {
     Desk::with_boot_loader(load_boot_loader("old-nano.hex"))
 }
 
 #[test]
 fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
-    let mut desk = old_nano();
+    let mut desk = create_old_nano();
     let flash_before = desk.uno.flash().to_vec();
     let shell = start_lizard_flash(&desk, &["--robot", "large"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
-        screen.contains("no answer at 115200 baud; calling again at 57600 baud"),
+        screen.contains("no answer at 115200 baud; retrying at 57600 baud"),
         "{screen}"
     );
     assert!(screen.contains("the board has no program\n"), "{screen}");
@@ -25,7 +25,8 @@ fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
     assert!(screen.contains(" robot large "), "{screen}");
     let large = Robot::load(root().join("robots/large.toml")).expect("the file is valid");
     assert!(
-        desk.uno.flash()[..NANO_BOOT_LOADER_START] == firmware_of(&large)[..NANO_BOOT_LOADER_START]
+        desk.uno.flash()[..NANO_BOOT_LOADER_START]
+            == firmware_with(&large)[..NANO_BOOT_LOADER_START]
     );
     assert!(desk.uno.flash()[NANO_BOOT_LOADER_START..] == flash_before[NANO_BOOT_LOADER_START..]);
 
@@ -36,13 +37,14 @@ fn an_old_nano_is_found_at_its_own_baud_rate_flashed_and_started() {
     assert!(screen.contains("\n# lizard "), "{screen}");
     let paper = Robot::load(root().join("robots/paper.toml")).expect("the file is valid");
     assert!(
-        desk.uno.flash()[..NANO_BOOT_LOADER_START] == firmware_of(&paper)[..NANO_BOOT_LOADER_START]
+        desk.uno.flash()[..NANO_BOOT_LOADER_START]
+            == firmware_with(&paper)[..NANO_BOOT_LOADER_START]
     );
 }
 
 #[test]
 fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
-    let mut desk = old_nano();
+    let mut desk = create_old_nano();
     let flash_before = desk.uno.flash().to_vec();
     let shell = start_lizard_flash(&desk, &["--robot", "own-gaits"]);
     let screen = run_to_exit(&mut desk, &shell);
@@ -55,7 +57,7 @@ fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
 
 #[test]
 fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
-    let mut desk = old_nano();
+    let mut desk = create_old_nano();
     desk.uno.set_flash(0, &firmware()[..NANO_BOOT_LOADER_START]);
     desk.uno.run_ms(2500);
     let take_text = |uno: &mut Uno| -> String {
@@ -70,15 +72,15 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     desk.uno.stall_main(1000 * simulated_uno::CYCLES_PER_MS);
     desk.uno.run_ms(400);
     desk.uno.take_edges();
-    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. A reset by the
-    // RESET pin does not clear WDRF, and while WDRF is set, WDE stays set (data sheet, 11.9.2).
+    // The boot loader leaves the watchdog on, which resets the chip again before the boot loader ends. A reset with the
+    // RESET pin does not clear WDRF, and while WDRF is set, WDE remains set (data sheet, 11.9.2).
     desk.uno.reset();
     let resets_before = desk.uno.watchdog_resets();
     desk.uno.run_ms(3000);
     let reset_count = desk.uno.watchdog_resets() - resets_before;
     assert!(
         (150..200).contains(&reset_count),
-        "{reset_count} resets, not one every 16 ms or so"
+        "expected about one reset every 16 ms, got {reset_count} in 3 s"
     );
     assert_eq!(take_text(&mut desk.uno), "");
     let pins = servo_pins(robot());

@@ -1,5 +1,5 @@
-//! Tests of `lizard flash --only-robot`, which writes only the robot's section of flash to a board that already has
-//! the firmware.
+//! Tests of `lizard flash --only-robot`, which writes only the robot's section in flash to a board that already has the
+//! firmware.
 
 use super::*;
 
@@ -15,13 +15,13 @@ fn send_line(desk: &mut Desk, line: &str, ms: u64) -> String {
 
 #[test]
 fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept() {
-    let (name, other_robot) = another_robot();
-    let mut desk = board_with_firmware();
+    let (name, other_robot) = load_another_robot();
+    let mut desk = prepare_board_with_firmware();
     desk.uno.power_cycle();
     assert!(send_line(&mut desk, "", 2500).contains("# lizard "));
     assert!(send_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
     assert!(send_line(&mut desk, "save\n", 500).contains("ok"));
-    unplug(&mut desk);
+    replug(&mut desk);
     let eeprom_before = desk.uno.eeprom();
 
     let shell = start_lizard_flash(&desk, &["--only-robot", "--robot", name]);
@@ -29,7 +29,7 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
     assert_eeprom_kept(&desk, &eeprom_before);
     let screen = run_to_exit(&mut desk, &shell);
     let [first_label, other_label] =
-        [robot(), &other_robot].map(|robot| robot_label(robot.firmware()));
+        [robot(), &other_robot].map(|robot| format_robot_label(robot.firmware()));
     assert!(
         screen.contains(&format!(" robot {first_label}\n")),
         "{screen}"
@@ -40,7 +40,7 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
         "{screen}"
     );
     let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
+    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
     let shell = start_lizard_flash(&desk, &["--only-robot", "--json"]);
@@ -64,8 +64,8 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
 
 #[test]
 fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
-    let (name, other_robot) = another_robot();
-    let mut desk = board_with_firmware();
+    let (name, other_robot) = load_another_robot();
+    let mut desk = prepare_board_with_firmware();
     let arguments = ["--only-robot", "--robot", name];
     let shell = start_lizard_flash(&desk, &arguments);
     let section = other_robot.section();
@@ -76,10 +76,10 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
         is_written || shell.has_ended()
     });
     assert!(is_in_time && !shell.has_ended(), "{}", shell.screen());
-    unplug(&mut desk);
+    replug(&mut desk);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("the port is gone"), "{screen}");
-    assert!(screen.contains("half a robot now"), "{screen}");
+    assert!(screen.contains("an incomplete robot"), "{screen}");
 
     // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
     desk.uno.power_cycle();
@@ -98,23 +98,26 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
         !edges.iter().any(|edge| pins.contains(&edge.pin)),
         "{edges:?}"
     );
-    unplug(&mut desk);
+    replug(&mut desk);
 
     let shell = start_lizard_flash(&desk, &arguments);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
-        screen.contains(&format!(" robot {}", robot_label(other_robot.firmware()))),
+        screen.contains(&format!(
+            " robot {}",
+            format_robot_label(other_robot.firmware())
+        )),
         "{screen}"
     );
     let robot_end = usize::from(START_ADDRESS) + section.len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
+    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 }
 
 #[test]
 fn no_robot_is_written_to_a_board_with_another_program() {
-    let mut desk = board_with_firmware();
-    // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section stays in flash.
+    let mut desk = prepare_board_with_firmware();
+    // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section remains in flash.
     desk.uno.set_flash(0, &SENDER_IMAGE.flash());
     let flash_before = desk.uno.flash().to_vec();
     let shell = start_lizard_flash(&desk, &["--only-robot"]);
@@ -125,9 +128,9 @@ fn no_robot_is_written_to_a_board_with_another_program() {
 }
 
 #[test]
-fn avrdude_writes_the_robot_file_that_lizard_flash_image_has_made() {
-    let (name, other_robot) = another_robot();
-    let mut desk = board_with_firmware();
+fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
+    let (name, other_robot) = load_another_robot();
+    let mut desk = prepare_board_with_firmware();
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let hex_path = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
@@ -150,5 +153,5 @@ fn avrdude_writes_the_robot_file_that_lizard_flash_image_has_made() {
     let screen = run_to_exit(&mut desk, &shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
     let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_of(&other_robot)[..robot_end]);
+    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 }

@@ -1,6 +1,6 @@
-//! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum can harm no servo.
-//! On the host, the core runs with checks for which the chip has no room: an overflow, or a read beyond the section's
-//! end, fails the test.
+//! Tests with damaged sections: the core refuses them, and a damaged section with a valid checksum cannot harm a servo.
+//! On the host, the core runs with overflow and bounds checking, for which the chip has no room: an overflow, or a read
+//! beyond the section's end, fails the test.
 
 use std::mem::offset_of;
 
@@ -12,7 +12,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::limits::Limits;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::{
-    Header, MAGIC, Numbers, Region, SPACE_BYTES, SectionError, write_checksum,
+    Header, MAGIC, Numbers, REGION_BYTES, Region, SectionError, write_checksum,
 };
 use lizard_core::numbers::units::{CYCLES_PER_US, PulseWidth, Sine, Sweep};
 use lizard_core::virtual_board::RunningRobot;
@@ -31,34 +31,34 @@ fn find_damage(section: &[u8]) -> Option<SectionError> {
     Robot::open(Region::new(section)).err()
 }
 
-/// Returns the flash of a robot of whose section only these first bytes have been written.
-fn partly_written_flash(section: &[u8]) -> Vec<u8> {
+/// Returns flash contents in which only these first bytes of a section have been written.
+fn build_partly_written_flash(section: &[u8]) -> Vec<u8> {
     let mut flash = section.to_vec();
-    flash.resize(SPACE_BYTES.into(), 0xff);
+    flash.resize(REGION_BYTES.into(), 0xff);
     flash
 }
 
 #[test]
-fn every_robot_is_read_with_any_bytes_after_its_section() {
+fn any_bytes_may_follow_a_valid_section() {
     for (named, section) in sections() {
         assert_eq!(find_damage(section), None, "{}", named.name);
         for filler in [0, 0x55, 0xff] {
             let mut flash = section.clone();
-            flash.resize(SPACE_BYTES.into(), filler);
+            flash.resize(REGION_BYTES.into(), filler);
             assert_eq!(find_damage(&flash), None, "{} before {filler}", named.name);
         }
     }
 }
 
 #[test]
-fn a_section_with_any_one_bit_flipped_is_refused() {
+fn a_section_with_any_flipped_bit_is_refused() {
     let files = sections()
         .iter()
         .filter(|(named, _)| named.name.ends_with(".toml"));
     let mut file_count = 0;
     for (named, section) in files {
         file_count += 1;
-        let mut section = partly_written_flash(section);
+        let mut section = build_partly_written_flash(section);
         let length =
             u16::from_le_bytes([section[LENGTH_BYTES.start], section[LENGTH_BYTES.start + 1]]);
         for bit in 0..8 * usize::from(length) {
@@ -81,7 +81,7 @@ fn a_section_with_any_one_bit_flipped_is_refused() {
 }
 
 #[test]
-fn a_section_that_ends_at_any_byte_is_refused() {
+fn a_section_cut_at_any_byte_is_refused() {
     for (named, section) in sections() {
         for length in 0..section.len() {
             let cut_section = &section[..length];
@@ -90,9 +90,9 @@ fn a_section_that_ends_at_any_byte_is_refused() {
                 "{} cut at {length}",
                 named.name
             );
-            // The missing bytes may equal erased flash.
+            // The missing bytes may be the same as erased flash.
             if section[length..].iter().any(|byte| *byte != 0xff) {
-                let cut_section = partly_written_flash(cut_section);
+                let cut_section = build_partly_written_flash(cut_section);
                 assert!(
                     find_damage(&cut_section).is_some(),
                     "{} erased at {length}",
@@ -104,7 +104,7 @@ fn a_section_that_ends_at_any_byte_is_refused() {
 }
 
 #[test]
-fn a_section_of_any_other_format_is_reported_as_other_format() {
+fn a_section_of_any_other_format_is_reported_as_such() {
     let (_, section) = &sections()[0];
     let mut section = section.clone();
     let own_format =
@@ -120,9 +120,9 @@ fn a_section_of_any_other_format_is_reported_as_other_format() {
 }
 
 #[test]
-fn erased_flash_and_flash_filled_with_any_one_byte_are_refused() {
+fn flash_filled_with_any_byte_is_refused() {
     for byte in 0..=u8::MAX {
-        let flash = [byte; SPACE_BYTES as usize];
+        let flash = [byte; REGION_BYTES as usize];
         assert_eq!(find_damage(&flash), Some(SectionError::Missing), "{byte}");
     }
     assert_eq!(find_damage(&[]), Some(SectionError::Missing));
@@ -132,7 +132,7 @@ fn erased_flash_and_flash_filled_with_any_one_byte_are_refused() {
 fn a_hundred_thousand_random_sections_are_refused() {
     let rng = &mut rng(150);
     for index in 0..100_000 {
-        let mut section = vec![0; rng.usize(..=usize::from(SPACE_BYTES))];
+        let mut section = vec![0; rng.usize(..=usize::from(REGION_BYTES))];
         rng.fill(&mut section);
         // The core checks the next field of the header only if the previous field is valid.
         if index % 4 > 0 {
@@ -149,7 +149,7 @@ fn a_hundred_thousand_random_sections_are_refused() {
             let length = section.len() as u16;
             put_bytes(&mut section, LENGTH_BYTES.start, &length.to_le_bytes());
         }
-        // One section in 65 536 has a valid checksum, but its numbers are refused.
+        // One section in 65 536 has a valid checksum, but the core refuses its numbers.
         assert!(find_damage(&section).is_some(), "section {index}");
     }
 }
@@ -165,7 +165,7 @@ fn random_sections_with_a_valid_header_and_checksum_are_refused_or_harmless() {
     let rng = &mut rng(151);
     for _ in 0..20_000 {
         let min_length = size_of::<Header>() + size_of::<Numbers>();
-        let mut section = vec![0; rng.usize(min_length..=usize::from(SPACE_BYTES))];
+        let mut section = vec![0; rng.usize(min_length..=usize::from(REGION_BYTES))];
         rng.fill(&mut section);
         let (_, valid_section) = rng.choice(sections()).expect("there are sections");
         put_bytes(&mut section, 0, &valid_section[..LENGTH_BYTES.start]);
@@ -203,13 +203,13 @@ fn robots_with_changed_numbers_are_refused_or_harmless() {
     println!("{refused_count} refused, {accepted_count} accepted");
     assert!(
         refused_count > 10_000 && accepted_count > 5_000,
-        "{refused_count} {accepted_count}"
+        "{refused_count} refused, {accepted_count} accepted"
     );
 }
 
-/// A section whose gaits exceed the travel that it states for them, and whose limits accept any margin and stroke.
+/// The section's gaits exceed the travel that the section declares, and its limits accept any margin and stroke.
 #[test]
-fn a_gait_that_would_leave_the_travel_is_held_within_it() {
+fn a_gait_that_would_leave_the_travel_is_held() {
     let rng = &mut rng(154);
     let mut held_count = 0;
     for (named, _) in sections() {
@@ -249,7 +249,7 @@ fn a_gait_that_would_leave_the_travel_is_held_within_it() {
     assert!(held_count > 50, "{held_count} gaits were held");
 }
 
-/// A section in which a neutral angle lies outside the servo's travel, so that the robot could not stand.
+/// In the section, a neutral angle is outside the servo's travel, so the robot could not stand.
 #[test]
 fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     for (named, _) in sections() {
@@ -272,9 +272,9 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
     }
 }
 
-/// Changes a random number of a section: a number of the servos, pins or limits, or of the parts after `Numbers`
-/// (curves, gaits, waveforms, maps). Leaves the bars and the offsets of the parts unchanged: the firmware trusts them,
-/// because the host has checked them.
+/// Changes a random number in a section: in the servos, pins or limits, or in the parts after `Numbers` (curves, gaits,
+/// waveforms, maps). Leaves the bars and the offsets of the parts unchanged, because the firmware trusts them after the
+/// host's check.
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     let numbers_start = size_of::<Header>();
     let offset = match rng.u8(..4) {
@@ -300,7 +300,7 @@ fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     section[offset..offset + 2].copy_from_slice(&new_word.to_le_bytes());
 }
 
-/// Runs a robot with an accepted section and random commands. Checks that every frame ends and that no servo turns
+/// Runs a robot with an accepted section and random commands. Checks that every frame completes and that no servo turns
 /// beyond its travel.
 fn check_motion(rng: &mut Rng, section: &[u8]) {
     let robot = Robot::open(flash(section)).expect("the section is accepted");
@@ -348,7 +348,7 @@ fn run_frames(running_robot: &mut RunningRobot, count: u32) {
     }
 }
 
-/// Checks that a pulse is within the servo's travel and within 500..2500 us. A width of 0 means no pulse.
+/// Checks that a pulse is within the servo's travel and between 500 and 2500 us. A width of 0 means no pulse.
 fn check_pulse(pulse: PulseWidth, servo: &Calibration) {
     let end_pulses = [
         servo.clamped_width(servo.travel_min),

@@ -1,5 +1,5 @@
-//! Tests of the robot's section of flash: the core reads the numbers that were written, and with an invalid section no
-//! servo moves.
+//! Tests of the robot's section in flash: the core reads the numbers that were written, and no servo moves with an
+//! invalid section.
 
 use std::sync::LazyLock;
 

@@ -1,5 +1,5 @@
 //! Tests that read sections back with the firmware's reader: each field must match the robot's file. The expected
-//! values come from the robot in floating point, not from the numbers from which the section was made.
+//! values come from the robot in floating point, not from the numbers in the section's source.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::bars::Bars;
@@ -15,8 +15,8 @@ use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
 
 use crate::sections;
 
-/// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from
-/// its file, and the flash.
+/// Runs a test for every robot. The test gets the robot's name, the robot that the core reads, the robot from its file,
+/// and the flash.
 fn for_each_robot(test: impl Fn(&str, &Robot, &FileRobot, Region<'_>)) {
     for (named, section) in sections() {
         let flash = Region::new(section);
@@ -30,13 +30,13 @@ fn read_numbers(flash: Region<'_>) -> Numbers {
     flash.read(size_of::<Header>() as u16)
 }
 
-/// Converts a length to steps, rounded to nearest.
-fn steps_of_mm(mm: f64, scale: Scale) -> f64 {
+/// Converts a length to steps, rounded to the nearest step.
+fn mm_to_steps(mm: f64, scale: Scale) -> f64 {
     (mm * f64::from(1u32 << scale.bits)).round()
 }
 
 /// Converts a sweep in the core's steps to degrees.
-fn degrees(sweep: i32) -> f64 {
+fn steps_to_degrees(sweep: i32) -> f64 {
     f64::from(sweep) / STEPS_PER_DEGREE
 }
 
@@ -56,7 +56,7 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
             supplies.rail.map(|rail| rail.pin),
             "{name}"
         );
-        assert_eq!(robot.slow_pace(), supplies.slow_pace, "{name}");
+        assert_eq!(robot.slow_pace(), supplies.slow_pace_percent, "{name}");
         let stored = robot.supplies();
         let is_close = |mv: u16, volts: f64| (f64::from(mv) - 1000.0 * volts).abs() <= 0.501;
         let are_close = |thresholds: lizard_core::numbers::supplies::Thresholds,
@@ -66,13 +66,16 @@ fn the_name_the_pins_and_the_supplies_are_read_back() {
                 && is_close(thresholds.rest_mv, volts[2])
         };
         assert!(
-            is_close(stored.reference_mv, supplies.reference),
+            is_close(stored.reference_mv, supplies.reference_volts),
             "{name} {stored:?}"
         );
-        assert!(are_close(stored.board, supplies.board), "{name} {stored:?}");
+        assert!(
+            are_close(stored.board, supplies.board_thresholds),
+            "{name} {stored:?}"
+        );
         match supplies.rail {
             Some(rail) => {
-                let rail_reference = supplies.reference * rail.ratio;
+                let rail_reference = supplies.reference_volts * rail.divider_ratio;
                 assert!(
                     is_close(stored.rail_reference_mv, rail_reference),
                     "{name} {stored:?}"
@@ -89,23 +92,24 @@ fn the_servos_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         for (index, servo) in file_robot.servos().iter().enumerate() {
             let servo_id = Servo::ALL[index];
-            let neutral_deg = f64::from(robot.neutral_angle_of(servo_id).0) / STEPS_PER_DEGREE;
+            let neutral_deg = f64::from(robot.servo_neutral_angle(servo_id).0) / STEPS_PER_DEGREE;
             assert!(
                 (neutral_deg - servo.neutral).abs() <= 0.501 / STEPS_PER_DEGREE,
                 "{name}"
             );
             assert_eq!(
                 robot.neutral_angles()[index],
-                robot.neutral_angle_of(servo_id)
+                robot.servo_neutral_angle(servo_id)
             );
-            let calibration = robot.calibration_of(servo_id);
+            let calibration = robot.servo_calibration(servo_id);
             assert_eq!(robot.calibration()[index], calibration);
-            let pulse_us = |sweep: i32| servo.neutral_us + servo.us_per_degree * degrees(sweep);
+            let pulse_us =
+                |sweep: i32| servo.neutral_us + servo.us_per_degree * steps_to_degrees(sweep);
             for sweep in calibration.travel_min.0..=calibration.travel_max.0 {
                 let error = f64::from(calibration.width(Sweep(sweep)).0)
                     - CYCLES_PER_US * pulse_us(sweep.into());
                 // The error is half a cycle for the neutral pulse, half a cycle for the product, and the rounding of
-                // the gain over the travel.
+                // the scale over the travel.
                 assert!(
                     error.abs() <= 1.5,
                     "{name} {servo_id:?}: {error} cycles at {sweep}"
@@ -129,7 +133,7 @@ fn the_servos_are_read_back() {
 }
 
 #[test]
-fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
+fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         let (stored_limits, limits) = (robot.limits(), file_robot.limits());
         for (stored, exact) in [
@@ -149,7 +153,7 @@ fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
             (-1e-5..1.0).contains(&rounding_down),
             "{name}: {rounding_down}"
         );
-        // The smallest and largest sweeps of all gaits in floating point.
+        // The smallest and largest sweeps of all gaits in floating point, for each servo.
         let mut sweep_ranges = [[0.0f64; 2]; 4];
         for gait in file_robot.gaits() {
             for phase in 0..4096 {
@@ -165,8 +169,8 @@ fn the_limits_the_slew_limit_and_the_travel_of_the_gaits_are_read_back() {
             let stored = robot.needed_travel(servo);
             let [min, max] = sweep_ranges[servo.index()];
             let errors = [
-                degrees(stored.min.0.into()) - min,
-                degrees(stored.max.0.into()) - max,
+                steps_to_degrees(stored.min.0.into()) - min,
+                steps_to_degrees(stored.max.0.into()) - max,
             ];
             // The tables have an error of up to a tenth of a degree, and rounding adds up to a step.
             assert!(
@@ -193,7 +197,7 @@ fn the_bars_and_the_sliders_are_read_back() {
         ] {
             let five_bar = robot.five_bar(end);
             let scale = five_bar.bars().scale();
-            let length = |mm: f64| steps_of_mm(mm, scale) as i16;
+            let length = |mm: f64| mm_to_steps(mm, scale) as i16;
             let bars = [base, left, right].map(length);
             let expected = Bars::new(bars, [a, b].map(length), scale);
             assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
@@ -228,7 +232,7 @@ fn the_bars_and_the_sliders_are_read_back() {
             ),
         ] {
             let slider = robot.slider(side);
-            let length = |mm: f64| steps_of_mm(mm, slider.scale);
+            let length = |mm: f64| mm_to_steps(mm, slider.scale);
             let lengths = [
                 f64::from(slider.offset),
                 f64::from(slider.base),
@@ -251,7 +255,7 @@ fn the_bars_and_the_sliders_are_read_back() {
     });
 }
 
-/// The kind of a table of a five-bar's couplers. Each kind has its own argument.
+/// The kind of a coupler table of a five-bar. Each kind has its own argument.
 #[derive(Clone, Copy, PartialEq)]
 enum CurveKind {
     Rise,
@@ -277,7 +281,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
             ),
         ] {
             let scale = robot.five_bar(end).bars().scale();
-            let [a, b] = [a, b].map(|mm| steps_of_mm(mm, scale));
+            let [a, b] = [a, b].map(|mm| mm_to_steps(mm, scale));
             // The squared distances between the crank tips with stretched and with folded couplers, in units of four
             // squared steps.
             let [stretched_sq, folded_sq] = [(a + b) * (a + b) / 4.0, (a - b) * (a - b) / 4.0];
@@ -299,12 +303,12 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                 let table = flash
                     .values::<Table>(address, 1)
                     .get(0)
-                    .expect("the address is that of a curve")
+                    .expect("a curve is at the address")
                     .load();
                 for (index, entry) in table.into_iter().enumerate().take(ENTRY_COUNT) {
                     let max_argument = match kind {
                         CurveKind::Rise | CurveKind::Skew => stretched_sq,
-                        // Rounded down to integers, as in the core.
+                        // Rounds down to integers, as in the core.
                         CurveKind::Stretched => (stretched_sq.floor() / 4.0).floor(),
                         CurveKind::Folded => folded_sq.floor(),
                     };
@@ -325,8 +329,8 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                         }
                     };
                     let exact = (1024.0 * exact).min(32_767.0);
-                    // The entry has a rounding error of one unit. The rounding error of `distance_sq` matters where the
-                    // curve is steep.
+                    // The entry has a rounding error of one unit. Where the curve is steep, the rounding error of
+                    // `distance_sq` matters, too.
                     let tolerance = 1.01
                         + exact * 2.0
                             / (distance_sq - folded_sq)
@@ -335,7 +339,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                     let error = f64::from(entry) - exact;
                     assert!(
                         error.abs() <= tolerance,
-                        "{name} {end:?} {index}: {entry} for {exact}"
+                        "{name} {end:?} entry {index}: expected {exact}, got {entry}"
                     );
                 }
             }
@@ -344,7 +348,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
 }
 
 #[test]
-fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
+fn the_gaits_their_names_and_their_waveforms_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         assert_eq!(robot.gait_count(), file_robot.gaits().len(), "{name}");
         for (id, gait) in GaitId::all(robot.gait_count()).zip(file_robot.gaits()) {
@@ -378,11 +382,11 @@ fn the_gaits_their_names_and_their_waveforms_at_every_phase_are_read_back() {
     });
 }
 
-/// The servos of each map: the row servo and the column servo.
+/// The row servo and the column servo of each map.
 const MAP_SERVOS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 
-/// Reads the rows of the four maps. For each row, returns the row servo's sweeps in this row, and the column servo's
-/// sweeps that are certified in it.
+/// Reads the rows of the four maps. For each row, returns the row servo's sweeps and the column servo's certified
+/// sweeps.
 fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = read_numbers(flash);
     let rows_part = numbers.parts[Part::Rows as usize];
@@ -411,9 +415,9 @@ fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] 
     )
 }
 
-/// True if the exact guard accepts every condition that depends on the servos of a map.
-fn accepts_conditions_of_map(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
-    let clearance = Clearance::of(robot, pose);
+/// True if the exact guard accepts every condition that depends on a map's servos.
+fn accepts_map_conditions(robot: &Robot, map_index: usize, pose: &Pose) -> bool {
+    let clearance = Clearance::measure(robot, pose);
     let limits = robot.limits();
     let accepts_margins = |end_index: usize, first_servo: usize| {
         let is_within_limit = |index: usize, limit: Sine| clearance.margins[index] >= limit;
@@ -435,7 +439,7 @@ fn accepts_conditions_of_map(robot: &Robot, map_index: usize, pose: &Pose) -> bo
 }
 
 #[test]
-fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
+fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
     let mut checked_count = 0;
     let mut robots_with_maps_count = 0;
     for (named, section) in sections() {
@@ -463,7 +467,7 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
                         if is_within_travel {
                             let name = &named.name;
                             assert!(
-                                accepts_conditions_of_map(&robot, map_index, &pose),
+                                accepts_map_conditions(&robot, map_index, &pose),
                                 "{name}: map {map_index} {pose:?}"
                             );
                             checked_count += 1;
@@ -473,15 +477,15 @@ fn in_every_certified_cell_the_exact_guard_accepts_the_maps_conditions() {
             }
         }
     }
-    println!("{checked_count} poses of cells, {robots_with_maps_count} robots with maps");
+    println!("{checked_count} poses in cells, {robots_with_maps_count} robots with maps");
     assert!(
         robots_with_maps_count >= 5 && checked_count > 100_000,
-        "{robots_with_maps_count} {checked_count}"
+        "{robots_with_maps_count} robots with maps, {checked_count} poses"
     );
 }
 
 #[test]
-fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
+fn a_pose_in_all_four_maps_is_certified_and_accepted_by_the_guard() {
     let rng = &mut rng(153);
     for (named, section) in sections() {
         let flash = Region::new(section);
@@ -491,7 +495,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         for index in 0..20_000 {
             let mut pose = Pose::NEUTRAL;
             for (sweep, servo) in pose.0.iter_mut().zip(robot.calibration()) {
-                // Any sweep, a sweep within the travel, or a sweep near neutral.
+                // The sweep is any sweep, a sweep within the travel, or a sweep near neutral.
                 *sweep = Sweep(match index % 3 {
                     0 => rng.i16(..),
                     1 => rng.i16(servo.travel_min.0..=servo.travel_max.0),
@@ -511,7 +515,7 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
             );
             if is_in_maps {
                 certified_count += 1;
-                let hazard = Clearance::of(&robot, &pose).first_hazard(&robot);
+                let hazard = Clearance::measure(&robot, &pose).first_hazard(&robot);
                 assert_eq!(hazard, None, "{} {pose:?}", named.name);
             }
         }
@@ -519,14 +523,14 @@ fn a_pose_in_all_four_maps_is_certified_and_the_guard_accepts_it() {
         assert_eq!(
             certified_count > 100,
             has_maps,
-            "{}: {certified_count}",
+            "{}: {certified_count} certified poses",
             named.name
         );
     }
 }
 
 #[test]
-fn different_robots_have_different_hashes_which_do_not_depend_on_the_maps() {
+fn different_robots_have_different_hashes_independent_of_the_maps() {
     let mut hashes = std::collections::HashMap::new();
     for_each_robot(|name, robot, file_robot, _| {
         assert_eq!(robot.hash(), file_robot.firmware().hash(), "{name}");
@@ -536,7 +540,7 @@ fn different_robots_have_different_hashes_which_do_not_depend_on_the_maps() {
             .expect("the section is valid")
             .hash();
         let previous = hashes.insert(hash, (named, named.robot.content()));
-        // robot.toml may be one of the files of robots/.
+        // robot.toml may be equal to a file in robots/.
         if let Some((previous, content)) = previous {
             assert_eq!(
                 content,

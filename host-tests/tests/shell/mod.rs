@@ -1,10 +1,10 @@
-//! A shell for tests: starts a command in the root of the repository as a user does. While the command runs, a test
-//! reads its output, types lines, and ends the command with Ctrl-C.
+//! A shell for tests, which starts a command in the root of the repository as a user would. While the command runs, a
+//! test reads the output, types lines, and ends the command with Ctrl-C.
 //!
-//! A shell without job control makes the commands that it starts with `&` ignore Ctrl-C, and a process inherits the
-//! ignored signals from its parent. If these tests are started with `&`, a command would therefore ignore Ctrl-C until
-//! it sets its own handler. So the command starts with the default signals, as from a user's shell.
-#![allow(dead_code)] // each test program uses a part of this module
+//! If a shell without job control starts a command with `&`, the command ignores Ctrl-C, and a process inherits the
+//! ignored signals from its parent. If these tests were started with `&`, a command would ignore Ctrl-C until it sets
+//! its own handler. The command therefore starts with the default signals, as from a user's shell.
+#![allow(dead_code)] // each test program uses only part of this module
 
 use std::io::{Read, Write};
 use std::os::unix::process::CommandExt;
@@ -14,10 +14,10 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use lizard_host_tests::root;
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use rustix::process::{Pid, Signal, kill_process_group};
 
-/// The time after which Ctrl-C is pressed again if the command is still running.
+/// The time after which Ctrl-C is pressed again if the command still runs.
 const CTRL_C_INTERVAL: Duration = Duration::from_secs(1);
 
 /// A running command, with its keyboard and its screen.
@@ -35,7 +35,7 @@ impl Shell {
         let mut command = Command::new("env");
         command.args(["--default-signal=INT,QUIT", program]);
         command.args(arguments).current_dir(root());
-        // A user's shell does not have the variables of cargo and make, which run this test.
+        // Removes the variables of cargo and make, which run this test, because a user's shell does not have them.
         for (name, _) in std::env::vars() {
             let is_cargo_variable = name.starts_with("CARGO") && name != "CARGO_HOME";
             if is_cargo_variable || name.starts_with("MAKE") || name == "MFLAGS" {
@@ -52,7 +52,7 @@ impl Shell {
             spawn_reader(child.stdout.take().expect("stdout is a pipe"), &screen),
             spawn_reader(child.stderr.take().expect("stderr is a pipe"), &screen),
         ];
-        // The pipe stays open, because ravedude's console would read without a pause at the end of its input.
+        // The pipe stays open, because at the end of its input ravedude's console would read in a busy loop.
         let keyboard = child.stdin.take().expect("stdin is a pipe");
         let child = Mutex::new(child);
         Self {
@@ -64,17 +64,20 @@ impl Shell {
         }
     }
 
-    /// Returns everything printed so far.
+    /// Returns the output so far.
     pub fn screen(&self) -> String {
         let screen = self.screen.lock().expect("no thread has panicked");
         String::from_utf8_lossy(&screen).into_owned()
     }
 
-    /// Returns everything printed by a command that has ended. Waits for the last output, which may still be in a pipe.
+    /// Returns the entire output of a command that has ended. Waits for the last output, which may still be in a pipe.
     pub fn last_screen(&self) -> String {
-        let is_complete = LIMIT.wait_for(|| self.readers.iter().all(JoinHandle::is_finished));
+        let is_complete = TIME_LIMIT.poll(|| self.readers.iter().all(JoinHandle::is_finished));
         let screen = self.screen();
-        assert!(is_complete, "waited {LIMIT} for the rest of\n{screen}");
+        assert!(
+            is_complete,
+            "waited {TIME_LIMIT} for the remaining output after\n{screen}"
+        );
         screen
     }
 
@@ -94,7 +97,7 @@ impl Shell {
     /// Presses Ctrl-C repeatedly until the command ends. The test fails if the command never ends.
     pub fn interrupt(&mut self) {
         let mut pressed_at: Option<Instant> = None;
-        let has_ended = LIMIT.wait_for(|| {
+        let has_ended = TIME_LIMIT.poll(|| {
             if self.has_ended() {
                 return true;
             }
@@ -107,7 +110,7 @@ impl Shell {
         let (command_line, screen) = (&self.command_line, self.screen());
         assert!(
             has_ended,
-            "waited {LIMIT} for the end of `{command_line}` by Ctrl-C:\n{screen}"
+            "waited {TIME_LIMIT} for `{command_line}` to end on Ctrl-C:\n{screen}"
         );
     }
 
@@ -123,7 +126,7 @@ impl Drop for Shell {
     fn drop(&mut self) {
         if !self.has_ended() {
             self.signal(Signal::KILL);
-            let _ = LIMIT.wait_for_exit(self.child.get_mut().expect("no thread has panicked"));
+            let _ = TIME_LIMIT.wait_for_exit(self.child.get_mut().expect("no thread has panicked"));
         }
     }
 }

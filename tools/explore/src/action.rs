@@ -1,4 +1,4 @@
-//! Commands and faults that the search applies, and their names in reports.
+//! Commands and faults that the search applies, and their descriptions in reports.
 
 use std::fmt;
 
@@ -11,13 +11,13 @@ use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 /// An event that the search applies to the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// A line is sent, and main executes it. Its output and its writes to the EEPROM are still pending.
+    /// A line is sent, and main executes it. The line's output and EEPROM writes are still pending.
     Line(&'static str),
     /// A line arrives in which noise has changed one byte.
     GarbledLine,
     /// Lines are sent at this baud rate from now on.
     SenderRate(BaudRate),
-    /// Main performs one step: its most urgent task.
+    /// Main performs one step, its most urgent task.
     MainStep,
     /// This many frames pass.
     Frames(u8),
@@ -25,8 +25,7 @@ pub enum Action {
     Stall(u16),
     /// The supply falls or rises to this many millivolts.
     SupplyMv(u16),
-    /// If true, the supply is weak from now on: three awake servos cause a brown-out. If false, the supply is strong
-    /// again.
+    /// The supply becomes weak (true), so that three awake servos cause a brown-out, or becomes strong again (false).
     WeakSupply(bool),
     /// A frame passes in which an edge of a pulse is late.
     LateEdge,
@@ -34,17 +33,16 @@ pub enum Action {
     StackOverflow,
     /// The processor is reset.
     Reset(Cause),
-    /// Power is lost and comes back. If the EEPROM was writing a byte, that byte then has this value; `None` if no
-    /// byte is torn.
+    /// Power is lost and comes back. A byte that the EEPROM was writing then has this value; `None` if no byte is torn.
     PowerLoss(Option<u8>),
     /// The contact at this pin closes (true) or opens (false).
     Contact(u8, bool),
-    /// If true, no host reads the robot's output from now on; if false, a host reads the output again.
+    /// The host stops reading the robot's output (true) or reads it again (false).
     HeldOutput(bool),
 }
 
-/// The lines that the search sends. For each command word that begins none of these lines, it also sends the word's
-/// example.
+/// The lines that the search sends. For each command word that begins none of these lines, the search also sends the
+/// word's example.
 const LINES: [&str; 30] = [
     "stand",
     "walk",
@@ -89,16 +87,16 @@ impl Action {
             Self::MainStep,
             Self::GarbledLine,
         ];
-        let begins_a_line = |word: &&Word| {
+        let begins_line = |word: &&Word| {
             let mut first_words = LINES.iter().filter_map(|line| line.split(' ').next());
             first_words.any(|first_word| first_word == word.text())
         };
-        let other_words = Word::ALL.iter().filter(|word| !begins_a_line(word));
+        let other_words = Word::ALL.iter().filter(|word| !begins_line(word));
         actions.extend(LINES.map(Self::Line));
         actions.extend(BaudRate::ALL.map(Self::SenderRate));
         actions.extend(other_words.map(|word| Self::Line(word.example())));
-        // The last frame was handed to the board 16 ms ago. During these stalls main misses zero, one, three or five
-        // frames; or the watchdog ends the pulses; or the watchdog resets the processor.
+        // Main handed the last frame to the board 16 ms ago. During these stalls, main misses zero, one, three or five
+        // frames, or the watchdog ends the pulses, or the watchdog resets the processor.
         actions.extend([3, 15, 60, 100, 120, 130, 200, 229, 240].map(Self::Stall));
         actions.extend([5_000, 4_100, 3_900, 3_500].map(Self::SupplyMv));
         actions.extend([Self::WeakSupply(true), Self::WeakSupply(false)]);
@@ -116,19 +114,21 @@ impl fmt::Display for Action {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(line) => write!(f, "send `{line}`"),
-            Self::MainStep => f.write_str("one step of main"),
+            Self::MainStep => f.write_str("main performs one step"),
             Self::SenderRate(rate) => {
-                write!(f, "lines are sent at {} baud from now on", rate.baud())
+                write!(f, "the sender changes to {} baud", rate.baud())
             }
             Self::GarbledLine => f.write_str("noise changes a byte of `walk`"),
-            Self::Frames(1) => f.write_str("a frame"),
-            Self::Frames(count) => write!(f, "{count} frames"),
+            Self::Frames(1) => f.write_str("a frame passes"),
+            Self::Frames(count) => write!(f, "{count} frames pass"),
             Self::Stall(ms) => write!(f, "main does nothing for {ms} ms"),
-            Self::SupplyMv(mv) => write!(f, "the supply is at {mv} mV"),
+            Self::SupplyMv(mv) => write!(f, "the supply changes to {mv} mV"),
             Self::WeakSupply(true) => f.write_str("the supply becomes too weak for three servos"),
             Self::WeakSupply(false) => f.write_str("the supply can power four servos again"),
-            Self::LateEdge => f.write_str("a frame in which an edge is late"),
-            Self::StackOverflow => f.write_str("a frame in which the stack reaches the data"),
+            Self::LateEdge => f.write_str("a frame passes in which an edge is late"),
+            Self::StackOverflow => {
+                f.write_str("a frame passes in which the stack reaches the data")
+            }
             Self::Reset(cause) => write!(f, "reset: {cause:?}"),
             Self::PowerLoss(None) => f.write_str("power is lost and comes back"),
             Self::PowerLoss(Some(byte)) => {
@@ -145,7 +145,7 @@ impl fmt::Display for Action {
                     if *is_closed { "closes" } else { "opens" }
                 )
             }
-            Self::HeldOutput(true) => f.write_str("no host reads the output any more"),
+            Self::HeldOutput(true) => f.write_str("no host reads the output"),
             Self::HeldOutput(false) => f.write_str("a host reads the output again"),
         }
     }

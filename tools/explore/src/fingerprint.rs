@@ -1,24 +1,24 @@
-//! Fingerprints of states: two states count as equal if their fingerprints are equal.
+//! Fingerprints of states. Two states count as equal if their fingerprints are equal.
 //!
 //! A fingerprint is a hash of the core's own `Debug` output. The core derives `Debug` for all its structs, so
-//! every new field is included automatically, and the core needs no code for the search. `RULES` lists the exceptions:
-//! a field without effect, such as some counters, is left out, and a field that the core compares with only a few
-//! values, such as a countdown, is rounded. If rounding makes several states equal, the search explores only the
-//! first of them.
+//! every new field is included automatically, and the core needs no code for the search. `RULES` lists the exceptions.
+//! A field without effect, such as some counters, is left out. A field that the core compares with only a few values,
+//! such as a countdown, is rounded. If rounding makes several states equal, the search explores only the state that it
+//! reaches first.
 
 use std::fmt::{self, Write};
 
 /// A function that rounds a number.
 type Rounding = fn(u64) -> u64;
 
-/// The treatment of a field: left out, or rounded.
+/// The treatment of a field in a fingerprint.
 #[derive(Clone, Copy)]
 enum Treatment {
     Skip,
-    Coarse(Rounding),
+    Round(Rounding),
 }
 
-use Treatment::{Coarse, Skip};
+use Treatment::{Round, Skip};
 
 /// A rule for a field: the struct's name, the field's name, and the field's treatment.
 type FieldRule = (&'static str, &'static str, Treatment);
@@ -31,44 +31,44 @@ const RULES: &[FieldRule] = &[
     // No action ends in the middle of a line, so the time since the last byte has no effect.
     ("Console", "silence_ms", Skip),
     // A single line at another baud rate has enough wrong bytes to change the rate.
-    ("RateFinder", "wrong_byte_count", Skip),
+    ("RateDetector", "wrong_byte_count", Skip),
     (
         "Motion",
         "frame_count",
-        Coarse(|frames| u64::from(frames >= 1_500)),
+        Round(|frames| u64::from(frames >= 1_500)),
     ),
     ("Motion", "calibration", Skip),
-    ("CycleCount", "phase_covered", Coarse(|phase| phase >> 14)),
+    ("CycleCount", "phase_covered", Round(|phase| phase >> 14)),
     ("CycleCount", "last_phase", Skip),
-    ("Routine", "frames_left", Coarse(countdown_class)),
-    ("Stance", "sent_pulses", Coarse(|width| width >> 11)),
-    ("Stance", "pose", Coarse(|sweep| sweep >> 10)),
+    ("Routine", "frames_left", Round(countdown_class)),
+    ("ServoState", "sent_pulses", Round(|width| width >> 11)),
+    ("ServoState", "pose", Round(|sweep| sweep >> 10)),
     (
-        "Stance",
+        "ServoState",
         "frames_awake",
-        Coarse(|frames| frames.div_ceil(5)),
+        Round(|frames| frames.div_ceil(5)),
     ),
     ("LedPattern", "frames", Skip),
     ("Safety", "is_lit", Skip),
     ("Safety", "handled_late_edges", Skip),
-    // The observer measures the time without a line, too, while `deadman` is set.
+    // While `deadman` is set, the observer also measures the time without a line.
     ("Safety", "silence_ms", Skip),
-    ("Safety", "boot_timer", Coarse(countdown_class)),
+    ("Safety", "boot_timer", Round(countdown_class)),
     ("Supply", "reading", Skip),
-    ("Supply", "frames_at_other_level", Coarse(countdown_class)),
+    ("Supply", "frames_at_other_level", Round(countdown_class)),
     ("Cycling", "gait", Skip),
-    ("Cycling", "phase", Coarse(|phase| phase >> 22)),
-    ("Cycling", "pace", Coarse(pace_class)),
-    ("Moving", "pace", Coarse(pace_class)),
-    ("PointToPointMove", "from", Coarse(|sweep| sweep >> 11)),
-    ("PointToPointMove", "share_per_frame", Skip),
+    ("Cycling", "phase", Round(|phase| phase >> 22)),
+    ("Cycling", "pace", Round(pace_class)),
+    ("Moving", "pace", Round(pace_class)),
+    ("PointToPointMove", "from", Round(|sweep| sweep >> 11)),
+    ("PointToPointMove", "fraction_per_frame", Skip),
     (
         "PointToPointMove",
-        "elapsed_share",
-        Coarse(|share| share >> 13),
+        "elapsed_fraction",
+        Round(|fraction| fraction >> 13),
     ),
-    ("Restart", "reset_count", Coarse(|count| count.min(1))),
-    ("Controller", "reset_count", Coarse(|count| count.min(1))),
+    ("Restart", "reset_count", Round(|count| count.min(1))),
+    ("Controller", "reset_count", Round(|count| count.min(1))),
 ];
 
 /// The fields that record the arrival of a line. A refused command may change only these fields.
@@ -77,13 +77,13 @@ const LINE_ARRIVAL_FIELDS: &[FieldRule] = &[
     ("Console", "line", Skip),
     ("Console", "silence_ms", Skip),
     ("Console", "answer", Skip),
-    ("RateFinder", "wrong_byte_count", Skip),
-    ("RateFinder", "has_received", Skip),
+    ("RateDetector", "wrong_byte_count", Skip),
+    ("RateDetector", "has_received", Skip),
     ("Console", "has_printed_banner", Skip),
     ("Safety", "silence_ms", Skip),
     ("Safety", "boot_timer", Skip),
     // A command shows that the last reset came from a program that opened the port.
-    ("Controller", "has_heard_command", Skip),
+    ("Controller", "has_received_command", Skip),
     // After a command, the motion that `boot` started counts as commanded.
     ("Controller", "is_unattended", Skip),
 ];
@@ -102,12 +102,12 @@ fn pace_class(pace: u64) -> u64 {
     u64::from(pace > 0) + u64::from(pace >= 1024)
 }
 
-/// Returns the fingerprint of a value; `RULES` lists the fields that are rounded or left out.
+/// Returns the fingerprint of a value, with the fields in `RULES` rounded or left out.
 pub fn coarse_fingerprint(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, RULES)
 }
 
-/// Returns the fingerprint of a value without rounding; only the fields that record a line's arrival are left out.
+/// Returns the fingerprint of a value without rounding, and without the fields that record a line's arrival.
 pub fn fingerprint_without_line_arrival(value: &impl fmt::Debug) -> u64 {
     fingerprint(value, LINE_ARRIVAL_FIELDS)
 }
@@ -144,13 +144,13 @@ impl Fingerprint {
     }
 }
 
-/// A reader of `Debug` output, which arrives in separate pieces: a struct's name, a brace, a field's name, a colon, a
-/// value.
+/// A reader of `Debug` output, which arrives in separate pieces, such as a struct's name, a brace, a field's name, a
+/// colon or a value.
 struct DebugReader {
     rules: &'static [FieldRule],
     fingerprint: Fingerprint,
-    /// The values that enclose the next piece, outermost first: the hash of a struct's name, or 0 for a tuple or a
-    /// list.
+    /// The values that enclose the next piece, outermost first: for a struct the hash of its name, for a tuple or a
+    /// list 0.
     enclosing_hashes: Vec<u64>,
     /// The hash of the previous piece.
     last_piece_hash: u64,
@@ -231,7 +231,7 @@ impl DebugReader {
             .find(|(owner, field_name, _)| *field_name == field && hash(owner) == struct_hash);
         match rule {
             Some((_, _, Skip)) => self.skipped_depth = Some(self.enclosing_hashes.len()),
-            Some((_, _, Coarse(round))) => {
+            Some((_, _, Round(round))) => {
                 self.rounding = Some((*round, self.enclosing_hashes.len()))
             }
             None => {}
@@ -257,20 +257,20 @@ mod tests {
     #[allow(dead_code, reason = "read by Debug")]
     struct Motion {
         frame_count: u32,
-        stance: Stance,
+        servo_state: ServoState,
         speed: i16,
         list: [u8; 3],
     }
 
     #[derive(Clone, Copy, Debug)]
     #[allow(dead_code, reason = "read by Debug")]
-    struct Stance {
+    struct ServoState {
         frames_awake: u8,
     }
 
     const MOTION: Motion = Motion {
         frame_count: 7,
-        stance: Stance { frames_awake: 3 },
+        servo_state: ServoState { frames_awake: 3 },
         speed: -5,
         list: [1, 2, 3],
     };
@@ -283,14 +283,14 @@ mod tests {
     }
 
     #[test]
-    fn counters_are_left_out_coarse_fields_are_rounded_and_all_others_count() {
+    fn a_fingerprint_skips_counters_rounds_coarse_fields_and_includes_all_others() {
         let fingerprint = coarse_fingerprint(&MOTION);
         assert_eq!(
             coarse_fingerprint(&motion_with(|motion| motion.frame_count = 1_499)),
             fingerprint
         );
         assert_eq!(
-            coarse_fingerprint(&motion_with(|motion| motion.stance.frames_awake = 5)),
+            coarse_fingerprint(&motion_with(|motion| motion.servo_state.frames_awake = 5)),
             fingerprint
         );
         assert_ne!(
@@ -298,7 +298,7 @@ mod tests {
             fingerprint
         );
         assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.stance.frames_awake = 6)),
+            coarse_fingerprint(&motion_with(|motion| motion.servo_state.frames_awake = 6)),
             fingerprint
         );
         assert_ne!(
@@ -320,7 +320,7 @@ mod tests {
     fn every_rule_names_an_existing_field() {
         let robot = small_robot();
         let mut text = String::new();
-        for initial_state in initial_states::all(robot) {
+        for initial_state in initial_states::prepare_all(robot) {
             for action in [
                 Action::Line("walk"),
                 Action::Line("save"),
@@ -341,7 +341,7 @@ mod tests {
         }
     }
 
-    /// True if a struct `owner` in the `Debug` text has the field itself, not in a struct inside it.
+    /// True if a struct `owner` in the `Debug` text has the field directly, not in a nested struct.
     fn has_field(text: &str, owner: &str, field: &str) -> bool {
         let field = format!(" {field}: ");
         text.split(&format!("{owner} {{")).skip(1).any(|inside| {

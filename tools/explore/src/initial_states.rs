@@ -1,4 +1,4 @@
-//! Initial states of a search: all kinds of EEPROM contents, each combined with all activities.
+//! Initial states of a search: each kind of EEPROM contents, combined with each activity.
 
 use lizard_core::memory::copies::COPY_ADDRESSES;
 use lizard_core::memory::record::Progress;
@@ -22,7 +22,7 @@ pub struct InitialState {
     pub world: World,
 }
 
-/// Names of EEPROM contents, each with the actions by which a standing robot writes these contents.
+/// Names of EEPROM contents, each with the actions that make a standing robot write these contents.
 const PREPARED_MEMORIES: [(&str, &[Action]); 5] = [
     ("a blank memory", &[]),
     (
@@ -97,8 +97,8 @@ const ACTIVITIES: [&[Action]; 11] = [
 ];
 
 /// Returns an EEPROM with valid settings in which servo A3 has too little travel for the gaits.
-fn short_travel_memory(robot: &Robot) -> Eeprom {
-    let mut settings = Settings::of(robot);
+fn build_short_travel_memory(robot: &Robot) -> Eeprom {
+    let mut settings = Settings::for_robot(robot);
     let mut adjustment = settings.adjustment(Servo::ALL[2]);
     adjustment.travel_max = Sweep(robot.needed_travel(Servo::ALL[2]).max.0 / 2);
     settings.set_adjustment(Servo::ALL[2], adjustment);
@@ -108,8 +108,8 @@ fn short_travel_memory(robot: &Robot) -> Eeprom {
     Eeprom::with_bytes(*memory.bytes())
 }
 
-/// Returns every initial state: each EEPROM with each activity. A combination that breaks a rule is left out.
-pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
+/// Returns all initial states: each EEPROM with each activity. Leaves out a combination that violates a rule.
+pub fn prepare_all(robot: Robot<'static>) -> Vec<InitialState> {
     let mut memories: Vec<(&'static str, Eeprom)> = PREPARED_MEMORIES
         .iter()
         .map(|(name, actions)| {
@@ -134,7 +134,7 @@ pub fn all(robot: Robot<'static>) -> Vec<InitialState> {
         ("a worn memory", worn_memory),
         (
             "saved settings with too little travel for the gaits",
-            short_travel_memory(&robot),
+            build_short_travel_memory(&robot),
         ),
     ]);
     memories.push((BOOT_LOADER_CONDITIONS, Eeprom::blank()));
@@ -162,8 +162,11 @@ mod tests {
     use crate::small_robot::small_robot;
 
     #[test]
-    fn no_activity_before_a_search_breaks_a_rule() {
+    fn no_initial_state_violates_a_rule() {
         let memory_count = PREPARED_MEMORIES.len() + 4;
-        assert_eq!(all(small_robot()).len(), memory_count * ACTIVITIES.len());
+        assert_eq!(
+            prepare_all(small_robot()).len(),
+            memory_count * ACTIVITIES.len()
+        );
     }
 }

@@ -1,10 +1,10 @@
-//! A model checker: an exhaustive search for sequences of commands and faults that break a safety rule. The search
-//! tries all sequences, the shortest first, up to a number of states.
+//! A model checker: an exhaustive search for sequences of commands and faults that violate a safety rule. The search
+//! tries all sequences, the shortest first, up to a maximum number of states.
 //!
 //! The search does not explore a model of the firmware, but the firmware's own core, [`Main`], on the
 //! [`VirtualBoard`]. A [`World`] contains both and an [`Observer`](lizard_rules::Observer). An [`Action`] is a command
-//! or a fault. [`search()`] applies all actions to all initial states and to every state that it reaches. It works
-//! breadth first, so the first sequence that breaks a rule is one of the shortest. States that differ little count as
+//! or a fault. [`search()`] applies all actions to all initial states and to every state that it reaches. The search is
+//! breadth first, so the first sequence that violates a rule is one of the shortest. States that differ little count as
 //! equal ([`fingerprint`]).
 //!
 //! [`Main`]: lizard_core::step::Main

@@ -1,4 +1,4 @@
-//! `make explore`: explores ten million states, or as many as the argument says.
+//! `make explore`: explores as many states as the argument says, by default ten million.
 
 use std::process::ExitCode;
 
@@ -16,21 +16,21 @@ fn main() -> ExitCode {
     let start = std::time::Instant::now();
     let result = search(robot, max_states);
     println!(
-        "{} distinct states by {} actions in {:.0} s, the longest sequence of {}, {}",
+        "{} distinct states, {} actions tried in {:.0} s, longest sequence {} actions, {}",
         result.state_count,
         result.tried_action_count,
         start.elapsed().as_secs_f64(),
         result.longest_sequence_length,
         if result.is_complete {
-            "closed"
+            "all states explored"
         } else {
-            "not closed"
+            "stopped at the limit"
         },
     );
-    for (rule, (count, sequence)) in &result.broken_rules {
-        println!("\nBROKEN {count} times: {}\n{sequence}", rule.sentence());
+    for (rule, (count, sequence)) in &result.violations {
+        println!("\nVIOLATED {count} times: {}\n{sequence}", rule.sentence());
     }
-    if result.broken_rules.is_empty() {
+    if result.violations.is_empty() {
         ExitCode::SUCCESS
     } else {
         ExitCode::FAILURE

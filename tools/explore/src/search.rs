@@ -1,8 +1,8 @@
 //! Breadth-first search through all sequences of [`Action`]s, up to a maximum number of distinct states.
 //!
 //! The search processes all states that `n` actions reach before the states that `n + 1` actions reach, so the first
-//! sequence that breaks a rule is one of the shortest. There are as many threads as processors. Of a processed state,
-//! the search keeps only the fingerprint and the step that reached the state.
+//! sequence that violates a rule is one of the shortest. There are as many threads as processors. For each processed
+//! state, the search keeps only the fingerprint and the step that reached the state.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ use std::thread;
 use std::vec;
 
 use lizard_core::numbers::robot::Robot;
-use lizard_rules::{BrokenRule, Rule};
+use lizard_rules::{Rule, Violation};
 
 use crate::action::Action;
 use crate::initial_states::{self, InitialState};
@@ -28,16 +28,16 @@ type Fingerprints = HashSet<u64>;
 /// The results of a search.
 #[derive(Debug, Default)]
 pub struct SearchResult {
-    /// Number of distinct states that were reached.
+    /// The number of distinct states that were reached.
     pub state_count: usize,
-    /// Number of actions that were tried, in all states together.
+    /// The number of actions that were tried, in all states together.
     pub tried_action_count: usize,
-    /// Number of actions in the longest sequence.
+    /// The number of actions in the longest sequence.
     pub longest_sequence_length: usize,
     /// True if no state is left to explore.
     pub is_complete: bool,
-    /// The broken rules, each with the number of times that it was broken, and the first sequence that broke it.
-    pub broken_rules: BTreeMap<Rule, (usize, String)>,
+    /// For each violated rule, the number of violations and the first sequence that violated the rule.
+    pub violations: BTreeMap<Rule, (usize, String)>,
 }
 
 /// A step of a sequence.
@@ -51,7 +51,7 @@ struct Step {
 /// Searches from all initial states, until `max_states` distinct states are reached or no state is left to explore.
 pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
     let actions = Action::all();
-    let initial_states = initial_states::all(robot);
+    let initial_states = initial_states::prepare_all(robot);
     let known_states: Vec<Mutex<Fingerprints>> = (0..64).map(|_| Mutex::default()).collect();
     let mut steps: Vec<Step> = Vec::new();
     let mut result = SearchResult::default();
@@ -66,7 +66,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
         }
     }
     let state_count = AtomicUsize::new(frontier.len());
-    // A panic is reported as a broken rule, so the hook prints nothing.
+    // A panic is reported as a violation, so the hook prints nothing.
     let panic_hook = panic::take_hook();
     panic::set_hook(Box::new(|_| {}));
     while !frontier.is_empty() && state_count.load(Ordering::Relaxed) < max_states {
@@ -83,19 +83,19 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
                 .collect()
         });
         let mut next_frontier = Vec::new();
-        let mut broken_rules = Vec::new();
+        let mut violations = Vec::new();
         for thread_result in thread_results {
             result.tried_action_count += thread_result.tried_action_count;
-            broken_rules.extend(thread_result.broken_rules);
+            violations.extend(thread_result.violations);
             next_frontier.extend(thread_result.reached_states);
         }
-        // Sorted, so that the result does not depend on which thread was faster.
-        broken_rules.sort_by_key(|(step, _)| (step.previous_step, step.action_index));
-        for (step, broken_rule) in broken_rules {
-            let entry = result.broken_rules.entry(broken_rule.rule);
+        // Sorted, so that the result does not depend on the threads' speeds.
+        violations.sort_by_key(|(step, _)| (step.previous_step, step.action_index));
+        for (step, violation) in violations {
+            let entry = result.violations.entry(violation.rule);
             let (count, _) = entry.or_insert_with(|| {
                 let description = describe_sequence(&initial_states, &steps, &actions, step);
-                (0, format!("{description}\n  {}", broken_rule.observation))
+                (0, format!("{description}\n  {}", violation.observation))
             });
             *count += 1;
         }
@@ -118,7 +118,7 @@ pub fn search(robot: Robot<'static>, max_states: usize) -> SearchResult {
 struct ThreadResult {
     tried_action_count: usize,
     reached_states: Vec<(World, Step)>,
-    broken_rules: Vec<(Step, BrokenRule)>,
+    violations: Vec<(Step, Violation)>,
 }
 
 /// Inserts a fingerprint. Returns true if it was not known before.
@@ -154,7 +154,7 @@ fn explore_queue(
 }
 
 impl ThreadResult {
-    /// Applies every possible action to the state `world`, which the step with this index reached.
+    /// Applies every possible action to the state `world`, which the step `step_index` reached.
     fn expand(
         &mut self,
         world: &World,
@@ -174,7 +174,7 @@ impl ThreadResult {
                 action_index: action_index as u8,
             };
             match apply_catching_panics(&mut next_world, *action) {
-                Err(broken_rule) => self.broken_rules.push((step, broken_rule)),
+                Err(violation) => self.violations.push((step, violation)),
                 Ok(()) if insert_if_new(known_states, next_world.fingerprint()) => {
                     state_count.fetch_add(1, Ordering::Relaxed);
                     self.reached_states.push((next_world, step));
@@ -185,20 +185,20 @@ impl ThreadResult {
     }
 }
 
-/// Applies an action. A panic counts as a broken rule.
+/// Applies an action. A panic counts as a violation.
 fn apply_catching_panics(world: &mut World, action: Action) -> Verdict {
     let result = panic::catch_unwind(AssertUnwindSafe(|| world.apply(action)));
     result.unwrap_or_else(|payload| {
         let message = payload.downcast_ref::<String>().cloned();
         let message = message.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
-        Err(BrokenRule::new(
+        Err(Violation::new(
             Rule::KeepsRunning,
             message.unwrap_or_default(),
         ))
     })
 }
 
-/// Returns a description of the sequence that ends with a step.
+/// Returns a description of the sequence that ends with `last_step`.
 fn describe_sequence(
     initial_states: &[InitialState],
     steps: &[Step],

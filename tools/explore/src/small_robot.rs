@@ -1,7 +1,7 @@
-//! A small robot for the search: the paper's robot with few and short gaits, so that states soon repeat. One of its
-//! gaits leaves the safe poses; a robot.toml with such a gait would be refused.
+//! A small robot for the search: the paper's robot with a few short gaits, so that states soon repeat. One gait leaves
+//! the safe poses; no robot.toml can have such a gait.
 
-use lizard_core::numbers::calibration::NeededTravel;
+use lizard_core::numbers::calibration::SweepRange;
 use lizard_core::numbers::gaits::{Channel, Gait, Input, SAMPLES_PER_WAVE, Step, Wave};
 use lizard_core::numbers::robot::Robot;
 use lizard_core::numbers::section::Content;
@@ -9,16 +9,16 @@ use lizard_core::numbers::slew::Slew;
 use lizard_core::numbers::units::Sweep;
 use lizard_robot::flash;
 
-/// The slew limit, 1/65536 turn per frame. It is a third of the paper's limit: if a servo wakes with a pulse for a
-/// wrong position, the change is then larger than the limit.
+/// The slew limit, 1/65536 turn per frame. This is a third of the paper's limit, so a servo that wakes in a wrong
+/// position exceeds the limit.
 const SLEW_PER_FRAME: u16 = 364;
 
-/// The sweep to either side of neutral that the gaits declare, 1/65536 turn. Only `stray` exceeds this sweep.
-const DECLARED_REACH: i16 = 1_000;
+/// The sweep to either side of neutral that the gaits declare, 1/65536 turn. Only the gait `stray` exceeds it.
+const DECLARED_SWEEP: i16 = 1_000;
 
-/// Arduino number of the button's pin, A1.
+/// The Arduino number of the button's pin, A1.
 pub const BUTTON_PIN: u8 = 15;
-/// Arduino number of the pin of the nose contact, A2.
+/// The Arduino number of the nose contact's pin, A2.
 pub const NOSE_PIN: u8 = 16;
 
 /// Returns the paper's robot with four gaits and two endless routines. The gait `stray` leaves the safe poses. The
@@ -30,20 +30,20 @@ pub fn small_robot() -> Robot<'static> {
     let text = include_str!("../../../robots/paper.toml");
     let paper = lizard_robot::Robot::parse(text).expect("robots/paper.toml is valid");
     let angle_rad = |sample: usize| sample as f64 / SAMPLES_PER_WAVE as f64 * std::f64::consts::TAU;
-    let wave_of = |height_at: &dyn Fn(f64) -> f64| -> Wave {
+    let sample_wave = |height_at: &dyn Fn(f64) -> f64| -> Wave {
         std::array::from_fn(|sample| (height_at(angle_rad(sample)) * 1820.0).round() as i16)
     };
     let mut content = Content {
         slew: Slew::new(SLEW_PER_FRAME),
-        needed_travel: [NeededTravel {
-            min: Sweep(-DECLARED_REACH),
-            max: Sweep(DECLARED_REACH),
+        needed_travel: [SweepRange {
+            min: Sweep(-DECLARED_SWEEP),
+            max: Sweep(DECLARED_SWEEP),
         }; 4],
         gaits: Vec::new(),
         names: Vec::new(),
         waves: vec![
-            wave_of(&f64::sin),
-            wave_of(&|angle_rad: f64| 4.0 * (1.0 - angle_rad.cos())),
+            sample_wave(&f64::sin),
+            sample_wave(&|angle_rad: f64| 4.0 * (1.0 - angle_rad.cos())),
         ],
         ..paper.content().clone()
     };
@@ -109,10 +109,10 @@ fn add_routine(content: &mut Content, name: &str, steps: &[(u8, u8, u16)]) {
         ..Gait::routine(content.steps.len() as u16, steps.len() as u16, 0)
     });
     content.names.extend(name.bytes());
-    let step_of = |(kind, gait, count): &(u8, u8, u16)| Step {
+    let to_step = |(kind, gait, count): &(u8, u8, u16)| Step {
         kind: *kind,
         gait: *gait,
         count: *count,
     };
-    content.steps.extend(steps.iter().map(step_of));
+    content.steps.extend(steps.iter().map(to_step));
 }

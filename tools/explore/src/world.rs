@@ -1,4 +1,4 @@
-//! A state of the search: the firmware, its board, and an observer that judges the robot by the rules.
+//! A state of the search: the firmware, its board, and an observer that checks the robot against the rules.
 
 mod inside;
 mod lines;
@@ -12,22 +12,22 @@ use lizard_core::numbers::rate::BaudRate;
 use lizard_core::numbers::robot::Robot;
 use lizard_core::step::Board;
 use lizard_core::virtual_board::{Eeprom, RunningRobot, compute_reading};
-use lizard_rules::{BrokenRule, Event, MS, Observer, Rule, Time, led};
+use lizard_rules::{Event, MS, Observer, Rule, Time, Violation, led};
 
 use crate::action::Action;
 use crate::fingerprint::{self, Fingerprint};
 use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 
 /// The verdict of the rules.
-pub type Verdict = Result<(), BrokenRule>;
+pub type Verdict = Result<(), Violation>;
 
-fn broken_rule(rule: Rule, observation: impl Into<String>) -> Verdict {
-    Err(BrokenRule::new(rule, observation))
+fn report_violation(rule: Rule, observation: impl Into<String>) -> Verdict {
+    Err(Violation::new(rule, observation))
 }
 
-/// The bytes that a receiver reads if a line is sent at another baud rate: enough wrong bytes to make the robot change
+/// The bytes that a receiver gets if a line is sent at another baud rate: enough wrong bytes to make the robot change
 /// its rate.
-const UNREADABLE: [u8; 40] = [GARBLED_BYTE; 40];
+const UNREADABLE_BYTES: [u8; 40] = [GARBLED_BYTE; 40];
 
 /// Number of lines within which the robot must find the sender's baud rate.
 const MAX_LINES_TO_FIND_RATE: usize = 12;
@@ -38,7 +38,7 @@ const FRAME: Time = 20 * MS;
 /// A state of the search.
 #[derive(Clone, Debug)]
 pub struct World {
-    /// The firmware on its board.
+    /// The firmware, running on its board.
     pub running_robot: RunningRobot,
     /// The observer, which sees the robot from outside.
     pub observer: Observer,
@@ -47,16 +47,16 @@ pub struct World {
     is_supply_weak: bool,
     /// True if main was late for the last frame.
     was_main_late: bool,
-    /// The last line that was sent; `None` once its answer has been judged.
+    /// The last line that was sent; `None` once its answer has been checked.
     unanswered_line: Option<&'static str>,
     /// The baud rate at which lines are sent.
     sender_rate: BaudRate,
-    /// Number of answers that have been judged, but not printed yet.
-    judged_answer_count: u8,
+    /// The number of answers that have been checked, but not printed yet.
+    checked_answer_count: u8,
 }
 
 impl World {
-    /// Returns a robot whose power has just come on.
+    /// Returns the state just after power-on.
     pub fn power_on(robot: Robot<'static>, mut memory: Eeprom) -> Self {
         memory.write_delay = 4;
         memory.is_timed = true;
@@ -68,7 +68,7 @@ impl World {
             was_main_late: false,
             unanswered_line: None,
             sender_rate: BaudRate::Fastest,
-            judged_answer_count: 0,
+            checked_answer_count: 0,
         };
         world.observe(Event::SupplyMv(5_000));
         world.observe(Event::ProgramStart(Cause::Power));
@@ -113,14 +113,14 @@ impl World {
             board.is_stack_intact,
             board.converter.is_complete(),
             board.transmitter.is_held,
-            board.last_restart().stance_before.is_some(),
+            board.last_restart().servo_state_before.is_some(),
             board.unread_count() > 0,
             board.is_frame_pending(),
             board.closed_pins & 1 << BUTTON_PIN != 0,
             board.closed_pins & 1 << NOSE_PIN != 0,
             self.is_supply_weak,
             self.was_main_late,
-            self.judged_answer_count > 0,
+            self.checked_answer_count > 0,
         ];
         fingerprint.add(
             flags
@@ -163,7 +163,7 @@ impl World {
     /// Applies an action.
     ///
     /// # Errors
-    /// Returns the first rule that the action breaks.
+    /// Returns the first violation that the action causes.
     pub fn apply(&mut self, action: Action) -> Verdict {
         let was_rest_pose_saved = self.observer.must_rest() && self.is_rest_pose_saved();
         match action {
@@ -211,11 +211,11 @@ impl World {
         }
         let is_resting = self.running_robot.motion().is_resting();
         if was_rest_pose_saved && is_resting && !self.is_rest_pose_saved() {
-            return broken_rule(Rule::RestPoseKept, action.to_string());
+            return report_violation(Rule::RestPoseKept, action.to_string());
         }
-        self.judge_writes()?;
-        self.observer.drop_pending();
-        self.observer.verdict()
+        self.check_writes()?;
+        self.observer.drop_pending_promises();
+        self.observer.take_verdict()
     }
 
     fn observe(&mut self, event: Event<'_>) {
@@ -231,19 +231,19 @@ impl World {
         self.note_restart(cause);
     }
 
-    /// Records that the program has restarted. Its remaining output is lost.
+    /// Records a restart of the program, which loses the remaining output.
     fn note_restart(&mut self, cause: Cause) {
         self.running_robot.board.transmitter.text.clear();
         self.unanswered_line = None;
-        self.judged_answer_count = 0;
+        self.checked_answer_count = 0;
         self.observe(Event::ProgramStart(cause));
     }
 
-    /// Runs several frames. If they are many, also checks that lines have been answered and that the LED shows the
-    /// fault.
+    /// Runs several frames. From 100 frames on, also checks that all lines have been answered and that the LED shows
+    /// the fault.
     fn run_frames(&mut self, count: u8) -> Verdict {
         let start = self.now;
-        let stop_before = (self.fault_code(), self.observer.stopped_since());
+        let stop_before = (self.fault_code(), self.observer.stop_time());
         let mut edges = Vec::new();
         for _ in 0..count {
             let was_lit = self.running_robot.board.is_lit();
@@ -257,12 +257,12 @@ impl World {
             return Ok(());
         }
         if self.observer.has_unanswered_lines() {
-            return broken_rule(Rule::AnswersAgain, "no answer within 100 frames");
+            return report_violation(Rule::AnswersAgain, "no answer within 100 frames");
         }
-        let is_stop_unchanged = (self.fault_code(), self.observer.stopped_since()) == stop_before;
+        let is_stop_unchanged = (self.fault_code(), self.observer.stop_time()) == stop_before;
         if is_stop_unchanged && self.observer.time_since_start() > self.now - start {
             led::check_pattern(&edges, start + 3 * FRAME, self.now, stop_before.0)
-                .map_err(|message| BrokenRule::new(Rule::LedShowsFault, message))?;
+                .map_err(|message| Violation::new(Rule::LedShowsFault, message))?;
         }
         Ok(())
     }
@@ -278,7 +278,7 @@ impl World {
             // Main no longer runs; the watchdog resets the processor soon.
             return self.stall_main(20);
         }
-        // After `stand` and `stop` within one frame, the guard still holds the robot. This hold is already reported.
+        // After `stand` and `stop` within one frame, the guard still holds the robot, which is already reported.
         let was_held = self.running_robot.motion().hazard().is_some();
         let frame_start = self.now;
         let was_resting = self.running_robot.motion().is_resting();
@@ -288,13 +288,13 @@ impl World {
         {
             self.observe_held_boot_lines();
         }
-        self.judge_pulses(true)?;
+        self.check_pulses(true)?;
         if !was_held && self.running_robot.motion().hazard().is_some() {
             self.observe(Event::Fault);
         }
         // Main composes its lines at the start of the frame.
         self.observe_output(frame_start + MS)?;
-        self.judge_writes()?;
+        self.check_writes()?;
         let is_output_read = !self.running_robot.board.transmitter.is_held
             && !self.running_robot.is_stopped_by_watchdog();
         if is_output_read && !self.was_main_late {
@@ -306,7 +306,7 @@ impl World {
         if self.is_supply_weak && awake_count == 3 {
             self.reset(Cause::BrownOut);
         }
-        self.observer.verdict()
+        self.observer.take_verdict()
     }
 
     /// Stalls main. Then main runs to the end of the frame, unless the watchdog has reset the processor.
@@ -316,7 +316,7 @@ impl World {
             if self.pass_time(20) {
                 return self.observe_output(self.now);
             }
-            self.judge_pulses(false)?;
+            self.check_pulses(false)?;
         }
         let remaining_ms = ms % 20;
         if remaining_ms > 0 {
@@ -327,12 +327,12 @@ impl World {
             if self.pass_time(20 - remaining_ms) {
                 return self.observe_output(self.now);
             }
-            self.judge_pulses(false)?;
+            self.check_pulses(false)?;
         }
         self.observe_output(self.now - FRAME)
     }
 
-    /// Lets time pass while main does not run. Returns true if the watchdog has reset the processor.
+    /// Lets time pass without running main. Returns true if the watchdog has reset the processor.
     fn pass_time(&mut self, ms: u16) -> bool {
         let was_reset = self.running_robot.board.pass_time(ms);
         if was_reset {
@@ -341,19 +341,19 @@ impl World {
         was_reset
     }
 
-    /// Judges the bytes that were written to the EEPROM.
-    fn judge_writes(&mut self) -> Verdict {
+    /// Checks the bytes that were written to the EEPROM.
+    fn check_writes(&mut self) -> Verdict {
         let log = &mut self.running_robot.board.memory.log;
         if !log.is_empty() {
             log.clear();
             if !self.running_robot.board.converter.is_complete() {
-                return broken_rule(
+                return report_violation(
                     Rule::SafeWrites,
                     "a byte is written before the supply is measured",
                 );
             }
             self.observe(Event::ByteWritten);
         }
-        self.observer.verdict()
+        self.observer.take_verdict()
     }
 }

@@ -1,11 +1,11 @@
-//! Test of the safety rules with a hundredth of the states of `make explore`.
+//! Test of the safety rules with a hundredth of the states that `make explore` visits.
 
 use lizard_explore::{search, small_robot::small_robot};
 
 const MAX_STATES: usize = 100_000;
 
 #[test]
-fn no_short_sequence_of_actions_breaks_a_rule() {
+fn no_short_sequence_of_actions_violates_a_rule() {
     let robot = small_robot();
     let result = search(robot, MAX_STATES);
     assert!(
@@ -13,12 +13,12 @@ fn no_short_sequence_of_actions_breaks_a_rule() {
         "{} states",
         result.state_count
     );
-    let broken: Vec<String> = result
-        .broken_rules
+    let violations: Vec<String> = result
+        .violations
         .iter()
         .map(|(rule, (count, sequence))| {
-            format!("broken {count} times: {}\n{sequence}", rule.sentence())
+            format!("violated {count} times: {}\n{sequence}", rule.sentence())
         })
         .collect();
-    assert!(broken.is_empty(), "{}", broken.join("\n\n"));
+    assert!(violations.is_empty(), "{}", violations.join("\n\n"));
 }

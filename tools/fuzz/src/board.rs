@@ -1,4 +1,4 @@
-//! The core on a virtual board, with an observer that judges the robot after each byte and each frame.
+//! The core on a virtual board, with an observer that checks the robot after each byte and each frame.
 
 use lizard_core::console::command::{effect, parse};
 use lizard_core::console::word::Effect;
@@ -25,13 +25,13 @@ pub struct Board {
 
 /// Returns the observer's limits for a robot that has a good supply and receives its lines between frames.
 fn observer_limits(robot: &Robot) -> Limits {
-    let cycles_of_us = |us: f64| (us * 16.0).round() as u32;
+    let us_to_cycles = |us: f64| (us * 16.0).round() as u32;
     let servos = robot.servos().each_ref();
     Limits {
         width_ranges: servos.map(|servo| {
             (
-                cycles_of_us(servo.min_us) - 3,
-                cycles_of_us(servo.max_us) + 3,
+                us_to_cycles(servo.min_us) - 3,
+                us_to_cycles(servo.max_us) + 3,
             )
         }),
         ..Limits::default()
@@ -39,11 +39,11 @@ fn observer_limits(robot: &Robot) -> Limits {
 }
 
 impl Board {
-    /// Powers a robot on with this EEPROM, and runs 30 frames.
+    /// Powers on a robot with this EEPROM, and runs 30 frames.
     ///
     /// # Panics
-    /// If the robot breaks a rule.
-    pub fn new(robot: &'static Robot, memory: Eeprom) -> Self {
+    /// If the robot violates a rule.
+    pub fn power_on(robot: &'static Robot, memory: Eeprom) -> Self {
         let mut board = Self {
             robot,
             running_robot: RunningRobot::with_memory(*robot.firmware(), memory, Restart::default()),
@@ -54,7 +54,7 @@ impl Board {
             is_line_invalid: false,
         };
         board.observe(Event::ProgramStart(Cause::Power));
-        // Runs until the supplies have been measured, since a `save` waits for that.
+        // Runs until the supplies have been measured, because `save` waits for the measurement.
         for _ in 0..30 {
             board.run_frame();
         }
@@ -77,7 +77,7 @@ impl Board {
     }
 
     fn assert_rules_hold(&mut self) {
-        let verdict = self.observer.verdict();
+        let verdict = self.observer.take_verdict();
         assert!(
             verdict.is_ok(),
             "{}: {:?}",
@@ -86,7 +86,7 @@ impl Board {
         );
     }
 
-    /// Returns the output since the last byte that was sent.
+    /// Returns the output since the last sent byte.
     pub fn output(&self) -> &str {
         &self.output
     }
@@ -99,7 +99,7 @@ impl Board {
     /// Sends a byte. If it ends a line, checks that the line gets exactly one answer.
     ///
     /// # Panics
-    /// If the robot breaks a rule.
+    /// If the robot violates a rule.
     pub fn send_byte(&mut self, byte: u8) {
         self.output.clear();
         let mut ended_line = None;
@@ -164,7 +164,7 @@ impl Board {
     /// Runs the robot for a frame of 20 ms.
     ///
     /// # Panics
-    /// If the robot breaks a rule.
+    /// If the robot violates a rule.
     pub fn run_frame(&mut self) {
         self.running_robot.run_frame();
         let widths = self.running_robot.board.started_pulses().0;
@@ -182,12 +182,12 @@ impl Board {
     pub fn assert_memory_is_valid(&self) {
         let rule = Rule::MemoryValid.sentence();
         let robot = self.robot.firmware();
-        let mut settings = Settings::of(robot);
+        let mut settings = Settings::for_robot(robot);
         let outcome = copies::load(robot, self.memory(), &mut settings);
         let are_settings_valid = matches!(outcome, SavedState::Latest | SavedState::Blank);
         assert!(are_settings_valid, "{rule}: {outcome:?}");
         let is_rest_pose_blank = self.memory().read(REST_POSE_ADDRESS.0) == 0xff;
-        let has_rest_pose = copies::last_rest_pose(robot, self.memory()).is_some();
+        let has_rest_pose = copies::read_rest_pose(robot, self.memory()).is_some();
         assert!(is_rest_pose_blank || has_rest_pose, "{rule}: the rest pose");
         // No record reaches these addresses.
         assert!(

@@ -1,11 +1,11 @@
 //! Fuzz targets for the core: any bytes at its console, any bytes in its EEPROM.
 //!
 //! Unexpected bytes come from a half-open port, a modem manager or an open terminal, and the EEPROM may hold another
-//! program's data. For all bytes, each line must get one answer, every pulse must be within the servo's limits, and
-//! saved settings must stay intact.
+//! program's data. Whatever the bytes, each line must get one answer, every pulse must be within the servo's limits,
+//! and saved settings must stay intact.
 //!
-//! [`check_console`] and [`check_memory`] check one input. `make fuzz` calls them with inputs that LLVM's libFuzzer
-//! generates. `make test` makes the same checks with millions of random bytes and lines.
+//! [`check_console`] and [`check_memory`] each check one input. `make fuzz` calls them with inputs that LLVM's
+//! libFuzzer generates. `make test` calls them with millions of random bytes and lines.
 
 mod board;
 
@@ -19,7 +19,7 @@ use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
 
-/// Returns the robot of the file that `LIZARD_ROBOT` names, by default the source tree's robot.toml.
+/// Returns the robot from the file that `LIZARD_ROBOT` names, by default robot.toml in the source tree.
 ///
 /// # Panics
 /// If the file does not describe a valid robot.
@@ -35,9 +35,9 @@ pub fn robot() -> &'static Robot {
 /// Sends bytes to the console and runs a frame after every eight bytes.
 ///
 /// # Panics
-/// If the robot breaks a rule.
+/// If the robot violates a rule.
 pub fn check_console(data: &[u8]) {
-    let mut board = Board::new(robot(), Eeprom::blank());
+    let mut board = Board::power_on(robot(), Eeprom::blank());
     for chunk in data.chunks(8) {
         for byte in chunk {
             board.send_byte(*byte);
@@ -48,18 +48,18 @@ pub fn check_console(data: &[u8]) {
     board.assert_memory_is_valid();
 }
 
-/// Starts a robot with an EEPROM that these bytes define. The first bytes change the contents of the three records,
-/// which stay valid. Each further group of three bytes sets a byte at some address, which may damage a record.
+/// Starts a robot with an EEPROM that `data` defines. The first bytes change the contents of the three records, which
+/// stay valid. Each further group of three bytes sets a byte at one address, which may damage a record.
 ///
 /// # Panics
-/// If the robot breaks a rule.
+/// If the robot violates a rule.
 pub fn check_memory(data: &[u8]) {
     let robot = robot();
     let mut memory = Eeprom::blank();
     let (records, patches) = data.split_at(data.len().min(3 * CONTENT_BYTES));
     let addresses = [COPY_ADDRESSES[0], COPY_ADDRESSES[1], REST_POSE_ADDRESS];
     for (address, changes) in addresses.into_iter().zip(records.chunks(CONTENT_BYTES)) {
-        let mut content = *Settings::of(robot.firmware()).bytes();
+        let mut content = *Settings::for_robot(robot.firmware()).bytes();
         for (byte, change) in content.iter_mut().zip(changes) {
             *byte ^= change;
         }
@@ -70,7 +70,7 @@ pub fn check_memory(data: &[u8]) {
         memory.bytes_mut()[usize::from(address)] = patch[2];
     }
     let memory_before = memory.clone();
-    let mut board = Board::new(robot, memory);
+    let mut board = Board::power_on(robot, memory);
     // After 3.5 s, the `boot` action has started, too.
     for _ in 0..175 {
         board.run_frame();
@@ -80,7 +80,7 @@ pub fn check_memory(data: &[u8]) {
     assert_eq!(
         bytes_after[settings_range.clone()],
         memory_before.bytes()[settings_range],
-        "the settings change although no command saved them"
+        "the saved settings changed without a save command"
     );
     for byte in b"status\nstand\n" {
         board.send_byte(*byte);

@@ -1,5 +1,5 @@
-// A boot loader waits for bytes and flags in loops that read one flag and jump back. Between two clock events nothing
-// can change that flag. So all iterations that end before the next event are skipped in one step, to the same cycle.
+// A boot loader waits for bytes and flags in loops that read one flag and jump back. Between two clock events, nothing
+// can change that flag. Therefore one step skips all iterations that end before the next event, to the same cycle.
 import { avrInstruction } from 'avr8js';
 
 /** Data addresses of registers whose flags change only by a clock event or by the program. */
@@ -11,26 +11,26 @@ const SREG = 0x5f;
 const SREG_I = 0x80;
 const IO_START = 0x20;
 
-/** Opcode of an RJMP that jumps back by a number of words, including its own. */
-const rjmpBack = (words) => 0xd000 - words;
-/** True for SBRS and SBRC. */
+/** Returns the opcode of an RJMP to a loop of this many words before the RJMP. */
+const encodeRjmpBack = (words) => 0xd000 - words;
+/** Returns true for SBRS and SBRC. */
 const isSkip = (opcode) => (opcode & 0xfc08) === 0xfc00;
 
 /**
- * Returns the loop that ends with the jump at `pc`: the address of its flag register, the flag's bit, the flag's value
- * while the loop continues, and the cycles of an iteration. Returns null for any other loop.
+ * Returns the loop that ends with the jump at `pc`: its flag register's address, the flag's bit, the flag's value
+ * while the loop continues, and the cycles of an iteration. Returns null if the loop does not wait for a flag.
  */
-function flagLoopAt(progMem, pc) {
+function findFlagLoop(progMem, pc) {
   const [first, second, third] = [progMem[pc - 3], progMem[pc - 2], progMem[pc - 1]];
   const flag = { bit: third & 7, waitingValue: third & 0x200 ? 0 : 1 };
   switch (progMem[pc]) {
-    case rjmpBack(2): // sbis or sbic
+    case encodeRjmpBack(2): // sbis or sbic
       if ((third & 0xfd00) !== 0x9900) return null;
       return { ...flag, address: IO_START + ((third >> 3) & 0x1f), iterationCycles: 3 };
-    case rjmpBack(3): // in, then sbrs or sbrc
+    case encodeRjmpBack(3): // in, then sbrs or sbrc
       if ((second & 0xf800) !== 0xb000 || !isSkip(third)) return null;
       return { ...flag, address: IO_START + ((second & 0x600) >> 5) + (second & 0xf), iterationCycles: 4 };
-    case rjmpBack(4): // lds, then sbrs or sbrc
+    case encodeRjmpBack(4): // lds, then sbrs or sbrc
       if ((first & 0xfe0f) !== 0x9000 || !isSkip(third)) return null;
       return { ...flag, address: second, iterationCycles: 5 };
     default:
@@ -42,16 +42,16 @@ export function skipBusyWaits(uno) {
   const { cpu } = uno;
   const { data, progMem } = cpu;
   const execute = () => {
-    const loop = flagLoopAt(progMem, cpu.pc);
+    const loop = findFlagLoop(progMem, cpu.pc);
     avrInstruction(cpu);
     if (loop === null || !FLAG_REGISTERS.has(loop.address)) return;
     if (((data[loop.address] >> loop.bit) & 1) !== loop.waitingValue) return;
-    // An interrupt that is due comes before the next iteration.
+    // A pending interrupt is served before the next iteration.
     if (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I) return;
     const nextCycle = Math.min(cpu.nextClockEvent?.cycles ?? Infinity, uno.endCycle);
     const iterations = Math.floor((nextCycle - 1 - cpu.cycles) / loop.iterationCycles);
     if (iterations > 0) cpu.cycles += iterations * loop.iterationCycles;
   };
-  const jumpOpcodes = new Set([2, 3, 4].map(rjmpBack));
+  const jumpOpcodes = new Set([2, 3, 4].map(encodeRjmpBack));
   uno.overrideInstructions(execute, (opcode) => jumpOpcodes.has(opcode));
 }

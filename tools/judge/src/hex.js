@@ -1,19 +1,19 @@
-/** Loads the text of an Intel HEX file into `flash`, a Uint8Array. Throws an error that names the line. */
+/** Loads the text of an Intel HEX file into the Uint8Array `flash`. Throws an error that names the faulty line. */
 export function loadHex(text, flash) {
   let base = 0;
   let hasEnded = false;
   text.split(/\r?\n/).forEach((line, index) => {
     if (line === '' || hasEnded) return;
-    const errorOf = (problem) => new Error(`line ${index + 1} of the HEX file ${problem}`);
-    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw errorOf('is not a record');
+    const makeError = (problem) => new Error(`line ${index + 1} of the HEX file ${problem}`);
+    if (!/^:([0-9a-f]{2}){5,}$/i.test(line)) throw makeError('is not a record');
     const bytes = Uint8Array.from(line.slice(1).match(/../g), (pair) => parseInt(pair, 16));
-    if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw errorOf('has a wrong checksum');
-    if (bytes.length !== bytes[0] + 5) throw errorOf('has a wrong length');
+    if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw makeError('has a wrong checksum');
+    if (bytes.length !== bytes[0] + 5) throw makeError('has a wrong length');
     const address = base + (bytes[1] << 8) + bytes[2];
     const data = bytes.subarray(4, -1);
     switch (bytes[3]) {
       case 0:
-        if (address + data.length > flash.length) throw errorOf('is beyond the flash');
+        if (address + data.length > flash.length) throw makeError('is beyond the flash');
         flash.set(data, address);
         break;
       case 1:
@@ -29,7 +29,7 @@ export function loadHex(text, flash) {
       case 5:
         break;
       default:
-        throw errorOf('has an unknown type');
+        throw makeError('has an unknown type');
     }
   });
   if (!hasEnded) throw new Error('the HEX file has no end record');

@@ -4,7 +4,7 @@
 const FIRST_PIN = { D: 0, B: 8, C: 14 };
 
 export class Scope {
-  /** Watches the ports of an Uno; calls `onPulse(pin, rise, width)` when a pulse has ended. */
+  /** Watches the ports of an Uno; calls `onPulse(pin, rise, width)` when a pulse ends. */
   constructor(uno, onPulse) {
     const riseCycles = [];
     const changes = [];
@@ -14,7 +14,7 @@ export class Scope {
         uno.hasPortChanged = true;
       });
     }
-    // The cycle of an edge is the end of the instruction that makes it.
+    // An edge gets the cycle at which its instruction ends.
     uno.afterPortChange = () => {
       for (const { firstPin, value, oldValue } of changes) {
         for (let bit = 0; bit < 8; bit++) {

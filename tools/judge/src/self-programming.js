@@ -1,5 +1,5 @@
-// A boot loader writes the part of flash that it does not run from, page by page (data sheet, chapter 26). avr8js
-// treats SPM as a NOP. Here an erase and a write take no time, so a loader's wait for the end of either is short.
+// A boot loader writes the flash outside its own section, page by page (data sheet, chapter 26). avr8js treats SPM as
+// a NOP. Here an erase and a write take no time; a loader that waits for their end continues at once.
 import { avrInstruction } from 'avr8js';
 
 const SPM = 0x95e8;

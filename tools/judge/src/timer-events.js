@@ -1,9 +1,9 @@
-// avr8js updates a timer at each of its counts, which takes nearly all of the simulation's time. Here a timer is
-// updated only when its next flag is due, and before the program reads or changes it. Only the speed differs; a test
-// compares both ways.
+// avr8js updates a timer at every count, which takes nearly all of the simulation's time. Here a timer is updated only
+// when its next flag is due, and before the program reads or changes the timer. Only the speed differs; a test compares
+// both methods.
 
 /** Returns the cycle at which a running timer sets its next flag or wraps. */
-function nextFlagCycle(timer) {
+function computeNextFlagCycle(timer) {
   const { tcnt, TOP, lastCycle, divider } = timer;
   let ticks = TOP + 1 - tcnt;
   for (const compare of [timer.ocrA, timer.ocrB]) {
@@ -20,7 +20,7 @@ export function wakeTimersAtTheirFlags({ cpu, timers }) {
   cpu.addClockEvent = (callback, cycles) => {
     const timer = timerByCallback.get(callback);
     const isCountingSteadily = timer?.divider && !timer.updateDivider && !timer.tcntUpdated;
-    return addClockEvent(callback, isCountingSteadily ? nextFlagCycle(timer) - cpu.cycles : cycles);
+    return addClockEvent(callback, isCountingSteadily ? computeNextFlagCycle(timer) - cpu.cycles : cycles);
   };
   for (const timer of timers) {
     const { OCRA, OCRB, TCNT, TCCRA, ICR } = timer.config;

@@ -1,4 +1,4 @@
-// An Arduino UNO on avr8js: an ATmega328P at 16 MHz, its peripherals and its serial line.
+// An Arduino UNO simulated by avr8js: an ATmega328P at 16 MHz, its peripherals and its serial line.
 import {
   AVRADC, AVRClock, AVREEPROM, AVRIOPort, AVRTimer, AVRUSART, AVRWatchdog, CPU, EEPROMMemoryBackend,
   adcConfig, avrInstruction, eepromConfig, portBConfig, portCConfig, portDConfig,
@@ -10,7 +10,7 @@ const FLASH_WORDS = 16 * 1024;
 const SRAM_BYTES = 2048;
 const EEPROM_BYTES = 1024;
 
-/** Cycles of an erase and of a write. Together they take 3.4 ms (data sheet, table 8-2); avr8js adds both. */
+/** Cycles of an erase, and of a write. Together they take 3.4 ms (data sheet, table 8-2); avr8js adds both. */
 const EEPROM_CYCLES = (3.4e-3 * FREQUENCY_HZ) / 2;
 
 const MCUSR = 0x54;
@@ -20,7 +20,7 @@ const PORF = 0x01;
 const RXC = 0x80;
 
 export class Uno {
-  /** Makes a board at power-on with an empty flash. Each of `corrections` is a function that corrects its avr8js. */
+  /** Makes a board at power-on with empty flash. Each of `corrections` is a function that corrects the simulation. */
   constructor(corrections) {
     const flashWords = new Uint16Array(FLASH_WORDS).fill(0xffff);
     this.flash = new Uint8Array(flashWords.buffer);
@@ -42,34 +42,34 @@ export class Uno {
     this.eepromBytes = eepromMemory.memory;
     new AVRWatchdog(cpu, watchdogConfig, new AVRClock(cpu, FREQUENCY_HZ));
     cpu.data[MCUSR] = PORF;
-    // A reset of avr8js would leave all peripherals unchanged.
+    // avr8js would reset the processor only, not the peripherals.
     cpu.reset = () => {
-      throw new Error(`the watchdog resets the UNO at cycle ${cpu.cycles}, which avr8js does not simulate`);
+      throw new Error(`the watchdog resets the UNO at cycle ${cpu.cycles}, but avr8js cannot simulate a reset`);
     };
 
     /** The cycle at which the run ends. */
     this.endCycle = 0;
-    /** Functions that execute an instruction; the first is that of avr8js. */
+    /** Functions that execute an instruction; the one at index 0 belongs to avr8js. */
     this.executors = [avrInstruction];
     /** The index in `executors` for each opcode. */
     this.executorIndexes = new Uint8Array(0x10000);
-    /** Called instead of an instruction while the processor sleeps; null while it is awake. */
+    /** Function called instead of an instruction while the processor sleeps; null while it is awake. */
     this.passSleep = null;
-    /** True if a port has changed during the last instruction. */
+    /** True if a port changed during the last instruction. */
     this.hasPortChanged = false;
-    /** Called after an instruction that has changed a port, before events that are due. */
+    /** Function called after an instruction that changed a port, before any due events. */
     this.afterPortChange = () => {};
 
     for (const correct of corrections) correct(this);
   }
 
-  /** Makes `execute(cpu)` execute all instructions whose opcode `matches`. The speed of other instructions does not change. */
+  /** Makes `execute(cpu)` execute all instructions whose opcode `matches`. Other instructions keep their speed. */
   overrideInstructions(execute, matches) {
     const index = this.executors.push(execute) - 1;
     for (let opcode = 0; opcode <= 0xffff; opcode++) if (matches(opcode)) this.executorIndexes[opcode] = index;
   }
 
-  /** Runs to a cycle; the last instruction may end after that cycle. */
+  /** Runs to `endCycle`; the last instruction may end later. */
   run(endCycle) {
     const { cpu, executors, executorIndexes } = this;
     const { data, progMem } = cpu;
@@ -92,7 +92,7 @@ export class Uno {
     }
   }
 
-  /** Delivers bytes, each `{ cycle, byte }`, over the serial line. */
+  /** Schedules the arrival of serial bytes, each `{ cycle, byte }`. */
   deliver(bytes) {
     const { cpu, usart } = this;
     const queue = bytes.values();
@@ -100,9 +100,9 @@ export class Uno {
       const { value } = queue.next();
       if (value === undefined) return;
       const arrive = () => {
-        // An ATmega's receiver holds three bytes; that of avr8js holds one.
+        // The receiver of an ATmega holds three bytes, but avr8js simulates only one.
         if (cpu.data[usart.config.UCSRA] & RXC) {
-          throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last was read, which avr8js does not simulate`);
+          throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last one was read; avr8js drops it`);
         }
         usart.writeByte(value.byte, true);
         deliverNext();

@@ -4,10 +4,10 @@ import test from 'node:test';
 import { skipBusyWaits } from '../src/busy-wait.js';
 import { corrections } from '../src/corrections/index.js';
 import { addReceiveBuffer } from '../src/receive-buffer.js';
-import { makeUno, runProgram, stateOf } from './program.js';
+import { makeUno, readState, runProgram } from './program.js';
 
-// The program waits for a byte, then twice for timer 1, each time by other instructions. It stores the byte and the
-// timer's counts in SRAM from X on. Meanwhile interrupts occur at changing intervals.
+// The program waits for a byte, then twice for timer 1, each time with different instructions. It stores the byte and
+// the timer's counts in SRAM from X on. Meanwhile, interrupts occur at varying intervals.
 const PROGRAM = `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -17,7 +17,7 @@ const PROGRAM = `
     subi r22, 0x6b
     sts 0x89, r18     ; OCR1AH
     sts 0x88, r22
-    ldi r21, 252      ; so long that the next interrupt often waits
+    ldi r21, 252      ; takes so long that the next interrupt often waits
   late:
     dec r21
     brne late
@@ -62,8 +62,8 @@ const PROGRAM = `
     st X+, r24
     rjmp byte`;
 
-/** Runs the program while 40 bytes arrive; returns the board's state and the number of executed jumps back. */
-function stateAfter(extraCorrections) {
+/** Runs the program while 40 bytes arrive; returns the board's state and the number of executed backward jumps. */
+function runWithBytes(extraCorrections) {
   let jumps = 0;
   const countJumps = (board) => {
     const execute = board.executors.at(-1);
@@ -76,22 +76,22 @@ function stateAfter(extraCorrections) {
   const board = makeUno([...corrections, addReceiveBuffer, ...extras], PROGRAM);
   for (let byte = 1; byte <= 40; byte++) board.cpu.addClockEvent(() => board.receive(byte), 3989 * byte);
   board.run(170_001);
-  return { ...stateOf(board), jumps };
+  return { ...readState(board), jumps };
 }
 
-test('a program that waits for flags has the same state at the same cycle, and its iterations are skipped', () => {
-  const [slow, { jumps, ...fast }] = [stateAfter([]), stateAfter([skipBusyWaits])];
+test('skipping the iterations of flag loops does not change the state at a given cycle', () => {
+  const [slow, { jumps, ...fast }] = [runWithBytes([]), runWithBytes([skipBusyWaits])];
   delete slow.jumps;
-  for (let byte = 1; byte <= 40; byte++) assert.ok(slow.data.slice(0x100).includes(byte), `byte ${byte} was read`);
+  for (let byte = 1; byte <= 40; byte++) assert.ok(slow.data.slice(0x100).includes(byte), `byte ${byte} must be read`);
   assert.deepEqual(fast, slow);
-  assert.ok(jumps > 100 && jumps < 3000, `${jumps} jumps instead of tens of thousands`);
+  assert.ok(jumps > 100 && jumps < 3000, `${jumps} backward jumps; without skipping, there are tens of thousands`);
 });
 
-test('no iteration of a loop that waits for a count is skipped', () => {
+test('a loop that waits for a count is not skipped', () => {
   const source = PROGRAM.replace('lds r24, 0xc0 ', 'lds r24, 0x84 ');
   assert.notEqual(source, PROGRAM);
   const [slow, fast] = [[], [skipBusyWaits]].map((extraCorrections) =>
-    stateOf(runProgram([...corrections, addReceiveBuffer, ...extraCorrections], source, 50_001)),
+    readState(runProgram([...corrections, addReceiveBuffer, ...extraCorrections], source, 50_001)),
   );
   assert.deepEqual(fast, slow);
 });

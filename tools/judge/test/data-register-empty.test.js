@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { keepTransmitInterruptPending } from '../src/corrections/data-register-empty.js';
-import { fixedMessage, runProgram } from './program.js';
+import { makeFixedMessage, runProgram } from './program.js';
 
-// The handler counts its calls in r16 and sends nothing.
+// The interrupt handler counts its calls in r16 and sends nothing.
 const program = `
     jmp main
     _LOC 0x4c         ; USART_UDRE
@@ -19,7 +19,7 @@ const program = `
     rjmp stop`;
 
 test('the transmit interrupt is repeated until a byte is written', () => {
-  const callCount = (corrections) => runProgram(corrections, program, 200).cpu.data[16];
-  assert.equal(callCount([]), 1, fixedMessage('data-register-empty.js'));
-  assert.ok(callCount([keepTransmitInterruptPending]) > 10);
+  const countCalls = (corrections) => runProgram(corrections, program, 200).cpu.data[16];
+  assert.equal(countCalls([]), 1, makeFixedMessage('data-register-empty.js'));
+  assert.ok(countCalls([keepTransmitInterruptPending]) > 10);
 });

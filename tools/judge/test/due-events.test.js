@@ -2,21 +2,21 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { handleAllDueEvents } from '../src/corrections/due-events.js';
-import { fixedMessage, makeUno } from './program.js';
+import { makeFixedMessage, makeUno } from './program.js';
 
-test('two events that are due at the same cycle are handled at the same cycle', () => {
-  const eventCycles = (corrections) => {
+test('two events due at the same cycle are handled at the same cycle', () => {
+  const recordEventCycles = (corrections) => {
     const board = makeUno(corrections, 'again: rjmp again');
     const cycles = [];
     for (let i = 0; i < 2; i++) board.cpu.addClockEvent(() => cycles.push(board.cpu.cycles), 5);
     board.run(20);
     return cycles;
   };
-  assert.deepEqual(eventCycles([]), [6, 8], fixedMessage('due-events.js'));
-  assert.deepEqual(eventCycles([handleAllDueEvents]), [6, 6]);
+  assert.deepEqual(recordEventCycles([]), [6, 8], makeFixedMessage('due-events.js'));
+  assert.deepEqual(recordEventCycles([handleAllDueEvents]), [6, 6]);
 });
 
-test('the interrupt with the lowest address is served first after all due events', () => {
+test('after all due events, the interrupt with the lowest address is served first', () => {
   // Both interrupt flags are set at the same cycle.
   const board = makeUno([handleAllDueEvents], 'sei\nagain: rjmp again');
   const interruptAt = (address) => ({ address, flagRegister: 0x36, flagMask: 0, enableRegister: 0x20, enableMask: 1 });

@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { holdEepromInterrupt } from '../src/corrections/eeprom-ready.js';
-import { fixedMessage, runProgram } from './program.js';
+import { makeFixedMessage, runProgram } from './program.js';
 
-// The handler counts its calls in r20, and each call begins to write a byte.
+// The interrupt handler counts its calls in r20 and starts writing a byte in each call.
 const program = `
     jmp main
     _LOC 0x58         ; EE_READY
@@ -21,9 +21,9 @@ const program = `
   again:
     rjmp again`;
 
-test('the EEPROM interrupt waits until a byte is written', () => {
+test('the EEPROM interrupt waits until the write ends', () => {
   // A byte takes 3.4 ms, so the third call comes after 6.8 ms; the run ends after 10 ms.
-  const callCount = (corrections) => runProgram(corrections, program, 160_000).cpu.data[20];
-  assert.ok(callCount([]) > 3, fixedMessage('eeprom-ready.js'));
-  assert.equal(callCount([holdEepromInterrupt]), 3);
+  const countCalls = (corrections) => runProgram(corrections, program, 160_000).cpu.data[20];
+  assert.ok(countCalls([]) > 3, makeFixedMessage('eeprom-ready.js'));
+  assert.equal(countCalls([holdEepromInterrupt]), 3);
 });

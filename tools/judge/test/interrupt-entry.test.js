@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
-import { fixedMessage, runProgram } from './program.js';
+import { makeFixedMessage, runProgram } from './program.js';
 
-// The program reads the timer into r16 before an interrupt; the first instruction of the handler reads it into r17.
+// The program reads the timer into r16 before an interrupt; the handler's first instruction reads it into r17.
 const program = `
     jmp main
     _LOC 0x4c         ; USART_UDRE
@@ -22,13 +22,13 @@ const program = `
     sei
     rjmp stop`;
 
-/** Returns the cycles of the interrupt's entry. Between the two readings, LDS takes 2 more cycles, and SEI 1. */
-function entryCycles(corrections) {
+/** Returns the cycles of the interrupt response. Between the two readings, LDS takes 2 more cycles, and SEI 1. */
+function measureEntryCycles(corrections) {
   const { data } = runProgram(corrections, program, 100).cpu;
   return data[17] - data[16] - 3;
 }
 
-test('an interrupt is entered in four cycles', () => {
-  assert.equal(entryCycles([]), 2, fixedMessage('interrupt-entry.js'));
-  assert.equal(entryCycles([extendInterruptEntry]), 4);
+test('the response to an interrupt takes four cycles', () => {
+  assert.equal(measureEntryCycles([]), 2, makeFixedMessage('interrupt-entry.js'));
+  assert.equal(measureEntryCycles([extendInterruptEntry]), 4);
 });

@@ -2,11 +2,11 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
-import { fixedMessage, runProgram } from './program.js';
+import { makeFixedMessage, runProgram } from './program.js';
 
-// Both compare interrupts of timer 0 are pending when interrupts are switched on. Then main counts in r16, and the
+// Both compare interrupts of timer 0 are pending when the program enables interrupts. Then main counts in r16, and the
 // handlers copy that count to r20 and r21.
-const program = (switchOn) => `
+const program = (enableInstruction) => `
     jmp main
     _LOC 0x38         ; TIMER0_COMPA
     mov r20, r16
@@ -28,22 +28,22 @@ const program = (switchOn) => `
     nop
     nop
     nop
-    ${switchOn}
+    ${enableInstruction}
     inc r16
     inc r16
     inc r16
   stop:
     rjmp stop`;
 
-const countsInHandlers = (corrections, switchOn) =>
-  runProgram(corrections, program(switchOn), 100).cpu.data.slice(20, 22);
+const runForHandlerCounts = (corrections, enableInstruction) =>
+  runProgram(corrections, program(enableInstruction), 100).cpu.data.slice(20, 22);
 
 // The data address of SREG is 0x5f.
 const pointZBelowSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
 const [std, st] = [`${pointZBelowSreg} std Z+1, r18`, `${pointZBelowSreg} inc r30\n st Z, r18`];
-for (const switchOn of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', std, st]) {
-  test(`one instruction runs between \`${switchOn}\` and an interrupt, and one between two interrupts`, () => {
-    assert.deepEqual([...countsInHandlers([], switchOn)], [0, 0], fixedMessage('interrupt-waits.js'));
-    assert.deepEqual([...countsInHandlers([delayInterruptAfterEnable], switchOn)], [1, 2]);
+for (const enableInstruction of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', std, st]) {
+  test(`one instruction runs between \`${enableInstruction}\` and an interrupt, and between two interrupts`, () => {
+    assert.deepEqual([...runForHandlerCounts([], enableInstruction)], [0, 0], makeFixedMessage('interrupt-waits.js'));
+    assert.deepEqual([...runForHandlerCounts([delayInterruptAfterEnable], enableInstruction)], [1, 2]);
   });
 }

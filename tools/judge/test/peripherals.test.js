@@ -1,5 +1,5 @@
 // Peripherals other than the timers and the serial line: behaviour that firmware may rely on in this simulation, and
-// cases that are not simulated.
+// cases that avr8js cannot simulate.
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
@@ -8,7 +8,7 @@ import { makeUno, runProgram } from './program.js';
 
 const CYCLES_PER_MS = 16_000;
 
-/** Writes r16 to EEPROM address 5, counts in r24 and r25 while EEPE is set, and reads the byte back into r17. */
+/** Writes r16 to EEPROM address 5, counts in r25:r24 while EEPE is set, and reads the byte back into r17. */
 const WRITE_PROGRAM = `
     ldi r16, 0x5a
     ldi r18, 5
@@ -25,22 +25,22 @@ const WRITE_PROGRAM = `
   stop:
     rjmp stop`;
 
-test('a byte of EEPROM takes 3.4 ms to write, and can be read back', () => {
+test('an EEPROM byte takes 3.4 ms to write and can be read back', () => {
   const board = runProgram(corrections, WRITE_PROGRAM, 5 * CYCLES_PER_MS);
   const { data } = board.cpu;
-  // An iteration of the loop takes five cycles.
+  // One iteration of the loop takes five cycles.
   const busyCycles = (data[24] + 256 * data[25]) * 5;
   assert.ok(Math.abs(busyCycles - 3.4 * CYCLES_PER_MS) < 20, `${busyCycles} cycles`);
   assert.equal(data[17], 0x5a);
   assert.deepEqual([...board.eeprom.backend.memory.slice(4, 7)], [0xff, 0x5a, 0xff]);
 });
 
-test('EEPE without EEMPE just before writes nothing', () => {
+test('setting EEPE too long after EEMPE writes nothing', () => {
   const lateProgram = WRITE_PROGRAM.replace('sbi 0x1f, 1 ', 'nop\n nop\n nop\n nop\n sbi 0x1f, 1 ');
   assert.equal(runProgram(corrections, lateProgram, 5 * CYCLES_PER_MS).eeprom.backend.memory[5], 0xff);
 });
 
-test('the bandgap against 5 V reads 225', () => {
+test('the bandgap reference measured against 5 V reads 225', () => {
   const { data } = runProgram(corrections, `
       ldi r16, 0x4e
       sts 0x7c, r16     ; ADMUX: AVcc, 1.1 V
@@ -56,11 +56,11 @@ test('the bandgap against 5 V reads 225', () => {
     stop:
       rjmp stop`, CYCLES_PER_MS).cpu;
   assert.equal(data[18] + 256 * data[19], 225);
-  // The first conversion takes 25 cycles of its clock; an iteration of the loop takes seven.
+  // The first conversion takes 25 cycles of the ADC clock; one iteration of the loop takes seven cycles.
   assert.ok(Math.abs((data[24] + 256 * data[25]) * 7 - 25 * 128) < 20);
 });
 
-/** Sets the watchdog to an interrupt after 16 ms and then a reset; the handler counts its calls in r20. */
+/** A program that sets the watchdog to interrupt after 16 ms and then reset; the handler counts its calls in r20. */
 const watchdogProgram = (loop) => `
     jmp main
     _LOC 0x18         ; WDT
@@ -86,7 +86,7 @@ test('a watchdog that is not fed interrupts after 16 ms', () => {
   assert.equal(runProgram(corrections, watchdogProgram('nop'), 17 * CYCLES_PER_MS).cpu.data[20], 1);
 });
 
-test('a watchdog reset ends the run, because avr8js resets the processor alone', () => {
+test('a watchdog reset ends the run', () => {
   const board = makeUno(corrections, watchdogProgram('nop'));
   assert.throws(() => board.run(40 * CYCLES_PER_MS), /^Error: the watchdog resets the UNO at cycle 51\d{4}, /);
 });
@@ -94,5 +94,5 @@ test('a watchdog reset ends the run, because avr8js resets the processor alone',
 test('a byte that would overrun the last one ends the run', () => {
   const board = makeUno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
   board.deliver([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
-  assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte arrives before the last was read/);
+  assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte arrives before the last one was read/);
 });

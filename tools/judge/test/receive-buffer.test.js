@@ -4,7 +4,7 @@ import test from 'node:test';
 import { addReceiveBuffer } from '../src/receive-buffer.js';
 import { makeUno } from './program.js';
 
-// The program switches the receiver on, waits, and reads three bytes into r20 to r22 and then the status into r24.
+// The program enables the receiver, waits, reads three bytes into r20 to r22, and then the status into r24.
 const PROGRAM = `
     ldi r16, 0x10
     sts 0xc1, r16     ; UCSR0B: RXEN
@@ -19,15 +19,15 @@ const PROGRAM = `
   stop:
     rjmp stop`;
 
-test('three bytes wait until they are read, in order, and a fourth is lost', () => {
+test('the receiver keeps three unread bytes in order and loses a fourth', () => {
   const board = makeUno([addReceiveBuffer], PROGRAM);
-  assert.equal(board.receive(1), false, 'the receiver is off');
+  assert.equal(board.receive(1), false, 'a receiver that is off accepts no byte');
   board.run(20);
   assert.deepEqual([11, 12, 13, 14].map((byte) => board.receive(byte)), [true, true, true, false]);
   board.run(1000);
   const { data } = board.cpu;
   assert.deepEqual([...data.subarray(20, 23)], [11, 12, 13]);
-  assert.equal(data[24] & 0x80, 0, 'RXC has fallen');
+  assert.equal(data[24] & 0x80, 0, 'RXC must be clear');
 });
 
 test('only the status of a garbled byte reports the error', () => {

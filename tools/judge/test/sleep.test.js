@@ -4,10 +4,10 @@ import test from 'node:test';
 import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
 import { simulateSleep } from '../src/corrections/sleep.js';
-import { fixedMessage, makeUno, runProgram } from './program.js';
+import { makeFixedMessage, makeUno, runProgram } from './program.js';
 
-// Timer 1 matches at 200; until then main repeats a loop that begins with SLEEP. The handler stores the timer's count
-// in r20 and the number of completed iterations of the loop in r21.
+// Timer 1 matches at 200; until then, main repeats a loop that begins with SLEEP. The handler stores the timer's count
+// in r20 and the number of completed iterations in r21.
 const program = (sleepMode) => `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -36,22 +36,22 @@ const program = (sleepMode) => `
 const SLEEP_AND_INTERRUPTS = [extendInterruptEntry, delayInterruptAfterEnable, simulateSleep];
 
 test('SLEEP lasts until an interrupt', () => {
-  const iterationCount = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
-  assert.notEqual(iterationCount([]), 0, fixedMessage('sleep.js'));
-  assert.equal(iterationCount([simulateSleep]), 0);
+  const countIterations = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
+  assert.notEqual(countIterations([]), 0, makeFixedMessage('sleep.js'));
+  assert.equal(countIterations([simulateSleep]), 0);
 });
 
 test('SLEEP does nothing unless SE is set', () => {
   assert.notEqual(runProgram([simulateSleep], program(0), 400).cpu.data[21], 0);
 });
 
-test('the entry of an interrupt takes eight cycles from sleep', () => {
+test('the response to an interrupt from sleep takes eight cycles', () => {
   const { data } = runProgram(SLEEP_AND_INTERRUPTS, program(1), 400).cpu;
   // LDS reads in its second cycle.
   assert.equal(data[20], 200 + 8 + 1);
 });
 
-test('sleep is simulated event by event, not cycle by cycle', () => {
+test('sleep is simulated event by event', () => {
   const board = makeUno(SLEEP_AND_INTERRUPTS, 'ldi r16, 1\n out 0x33, r16\n sei\n sleep\n');
   let sleepStepCount = 0;
   let passTime = null;
@@ -65,6 +65,6 @@ test('sleep is simulated event by event, not cycle by cycle', () => {
     },
   });
   board.run(16_000_000);
-  assert.ok(sleepStepCount > 0 && sleepStepCount < 10, `${sleepStepCount} steps`);
+  assert.ok(sleepStepCount > 0 && sleepStepCount < 10, `${sleepStepCount} steps of sleep`);
   assert.equal(board.cpu.cycles, 16_000_000);
 });

@@ -3,11 +3,11 @@ import test from 'node:test';
 
 import { ignoreCompareBeyondTop } from '../src/corrections/compare-beyond-top.js';
 import { wakeTimersAtTheirFlags } from '../src/timer-events.js';
-import { runProgram, stateOf } from './program.js';
+import { readState, runProgram } from './program.js';
 
 // Two interrupts of timer 1: their handlers store the timer's count in SRAM from X on and change OCR1B by an odd
-// step, so that every distance occurs. (A second timer would delay the first in plain avr8js, which handles one event
-// for each instruction.)
+// step, so that every distance occurs. (A second timer would delay timer 1 in plain avr8js, which handles one event per
+// instruction.)
 const program = (mode, clock) => `
     jmp main
     _LOC 0x2c         ; TIMER1_COMPA
@@ -46,12 +46,12 @@ const program = (mode, clock) => `
 
 for (const [name, mode] of [['normal mode', 0], ['clear on match', 8]]) {
   for (const clock of [1, 2]) {
-    test(`timers give the same flags at the same cycles, ${name}, clock ${clock}`, () => {
+    test(`timer flags are set at the same cycles as in plain avr8js, ${name}, clock ${clock}`, () => {
       const [slow, fast] = [[ignoreCompareBeyondTop], [wakeTimersAtTheirFlags, ignoreCompareBeyondTop]].map((corrections) =>
-        stateOf(runProgram(corrections, program(mode, clock), 300_000)),
+        readState(runProgram(corrections, program(mode, clock), 300_000)),
       );
       const valueCount = slow.data[26] + 256 * slow.data[27] - 0x100;
-      assert.ok(valueCount > 1, `${valueCount} values`);
+      assert.ok(valueCount > 1, `${valueCount} stored values`);
       assert.deepEqual(fast, slow);
     });
   }

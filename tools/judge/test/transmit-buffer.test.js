@@ -2,10 +2,10 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { addTransmitBuffer } from '../src/corrections/transmit-buffer.js';
-import { fixedMessage, makeUno } from './program.js';
+import { makeFixedMessage, makeUno } from './program.js';
 
-// The program sends three bytes at 1 Mbaud, 16 cycles for each bit. It writes each byte as soon as UDRE0 is set, and
-// copies the status right after the first byte to r16.
+// The program sends three bytes at 1 Mbaud, 16 cycles per bit. It writes each byte as soon as UDRE0 is set, and copies
+// the status after the first byte to r16.
 const program = `
     ldi r18, 0x08
     sts 0xc1, r18     ; UCSR0B: transmitter
@@ -32,12 +32,12 @@ function transmit(corrections) {
   return { isBufferEmpty: (board.cpu.data[16] >> 5) & 1, bytes };
 }
 
-test('the transmitter takes a byte while it sends another', () => {
-  assert.equal(transmit([]).isBufferEmpty, 0, fixedMessage('transmit-buffer.js'));
+test('the transmitter accepts a byte while it sends another', () => {
+  assert.equal(transmit([]).isBufferEmpty, 0, makeFixedMessage('transmit-buffer.js'));
   assert.equal(transmit([addTransmitBuffer]).isBufferEmpty, 1);
 });
 
-test('bytes go out back to back, ten bits each', () => {
+test('bytes are sent back to back, ten bits each', () => {
   const { bytes } = transmit([addTransmitBuffer]);
   assert.deepEqual(bytes.map(({ byte }) => byte), [0x61, 0x62, 0x63]);
   assert.deepEqual([bytes[1].cycle - bytes[0].cycle, bytes[2].cycle - bytes[1].cycle], [160, 160]);

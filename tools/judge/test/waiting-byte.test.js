@@ -2,10 +2,10 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { keepWaitingByte } from '../src/corrections/waiting-byte.js';
-import { fixedMessage, makeUno } from './program.js';
+import { makeFixedMessage, makeUno } from './program.js';
 
-// A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status before that to r16 and
-// the status after that to r17.
+// A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status before the write to r16
+// and the status after the write to r17.
 const program = (control) => `
     ldi r18, 0x10
     sts 0xc1, r18     ; UCSR0B: receiver
@@ -20,22 +20,22 @@ const program = (control) => `
   stop:
     rjmp stop`;
 
-/** Returns RXC0 after UCSR0B is written. */
-function receiveFlagAfter(corrections, control) {
+/** Returns RXC0 after `control` is written to UCSR0B. */
+function runForReceiveFlag(corrections, control) {
   const board = makeUno(corrections, program(control));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   board.run(200);
   const { data } = board.cpu;
-  assert.equal(data[16] >> 7, 1, 'the byte has arrived');
+  assert.equal(data[16] >> 7, 1, 'the byte must have arrived');
   return data[17] >> 7;
 }
 
-test('a waiting byte survives a write of UCSR0B if the receiver stays on', () => {
-  assert.equal(receiveFlagAfter([], 0x18), 0, fixedMessage('waiting-byte.js'));
-  assert.equal(receiveFlagAfter([keepWaitingByte], 0x18), 1);
+test('an unread byte survives a write to UCSR0B that keeps the receiver on', () => {
+  assert.equal(runForReceiveFlag([], 0x18), 0, makeFixedMessage('waiting-byte.js'));
+  assert.equal(runForReceiveFlag([keepWaitingByte], 0x18), 1);
 });
 
-test('the interrupt of a waiting byte stays pending, too', () => {
+test('the interrupt of an unread byte stays pending after a write to UCSR0B', () => {
   const board = makeUno([keepWaitingByte], program(0x98));
   board.deliver([{ cycle: 50, byte: 0x41 }]);
   while (board.cpu.data[17] === 0) board.run(board.cpu.cycles + 1);

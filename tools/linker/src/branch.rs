@@ -1,4 +1,4 @@
-//! Replacement of a branch over a jump by the opposite branch.
+//! Replacement of a branch over a jump with the opposite branch.
 //!
 //! ```text
 //! breq 1f          brne 2f
@@ -15,13 +15,13 @@ use crate::instruction::{is_branch, is_rjmp, may_skip_next};
 /// Distance that every branch reaches, bytes. Later edits never increase a distance.
 const REACH_BYTES: u64 = 2 * 60;
 
-/// Returns the edit that replaces the first branch over a jump to which nothing else refers; `None` if there is no such
-/// branch. `targets` are the offsets that something refers to. `offset_of` returns the offset of a reference's target;
-/// `None` if the target is not in this code.
+/// Returns the edit that replaces the first branch over a jump, if no other reference leads to the jump; `None` if
+/// there is no such branch. `targets` are the offsets of all reference targets. `find_offset` returns the offset of a
+/// reference's target, or `None` if the target is not in this code.
 pub fn find_edit(
     code: &Code,
     targets: &[u64],
-    offset_of: &dyn Fn(&Reference) -> Option<u64>,
+    find_offset: &dyn Fn(&Reference) -> Option<u64>,
 ) -> Option<Edit> {
     code.instructions
         .windows(2)
@@ -34,9 +34,9 @@ pub fn find_edit(
                 return None;
             }
             let next_offset = jump.offset + 2;
-            let branch_target = offset_of(code.reference_at(branch.offset)?)?;
+            let branch_target = find_offset(code.reference_at(branch.offset)?)?;
             let reference = code.reference_at(jump.offset)?;
-            let jump_target = offset_of(reference)?;
+            let jump_target = find_offset(reference)?;
             if branch_target != next_offset
                 || jump_target.abs_diff(branch.offset) > REACH_BYTES
                 || targets.contains(&jump.offset)
@@ -46,7 +46,7 @@ pub fn find_edit(
             Some(Edit {
                 offset: branch.offset,
                 removed_bytes: 4,
-                // brbs and brbc differ in one bit; the linker fills in the distance.
+                // brbs and brbc differ in one bit. The linker inserts the distance.
                 new_words: vec![(branch.first_word ^ 0x0400) & 0xfc07],
                 references: vec![Reference {
                     offset: 0,

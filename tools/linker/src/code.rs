@@ -24,7 +24,7 @@ pub struct Code {
 }
 
 impl Code {
-    /// Decodes the code; `None` if it ends inside an instruction. Also `None` if a jump has no reference: the jump's
+    /// Decodes code. Returns `None` if the code ends inside an instruction, or if a jump has no reference: the jump's
     /// target is then unknown, so nothing may be moved.
     pub fn decode(bytes: &[u8], references: Vec<Reference>) -> Option<Self> {
         let mut instructions = Vec::new();
@@ -63,9 +63,9 @@ impl Code {
             .map(|instruction| instruction.first_word)
     }
 
-    /// Returns the offset in bytes of the instruction with this index, or the size of the code if the index is
-    /// beyond the last instruction.
-    pub fn offset_of(&self, index: usize) -> u64 {
+    /// Returns the offset of the instruction with this index in bytes, or the size of the code if the index is beyond
+    /// the last instruction.
+    pub fn instruction_offset(&self, index: usize) -> u64 {
         self.instructions
             .get(index)
             .map_or(self.size, |instruction| instruction.offset)

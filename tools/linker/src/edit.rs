@@ -1,4 +1,4 @@
-//! Replacement of a piece of code by a shorter one, and the new offsets of the remaining code.
+//! Replacement of a piece of code with a shorter piece, and the new offsets of the remaining code.
 
 use object::build::elf::SymbolId;
 use object::elf::RelocationType;
@@ -10,7 +10,7 @@ pub struct Reference {
     pub offset: u64,
     /// The form in which the linker writes the address.
     pub kind: RelocationType,
-    /// The symbol from which the address is counted.
+    /// The symbol to which the address is relative.
     pub symbol: SymbolId,
     /// Offset from the symbol, bytes.
     pub addend: i64,
@@ -21,11 +21,11 @@ pub struct Reference {
 pub struct Edit {
     /// Offset from the start of the code, bytes.
     pub offset: u64,
-    /// The number of bytes that are replaced; their references are replaced, too.
+    /// The number of bytes to replace, together with their references.
     pub removed_bytes: u64,
     /// The new code, in words.
     pub new_words: Vec<u16>,
-    /// The references of the new code; their offsets count from the start of the new code.
+    /// The references of the new code, with offsets relative to the start of the new code.
     pub references: Vec<Reference>,
 }
 
@@ -34,13 +34,13 @@ impl Edit {
         self.offset + self.removed_bytes
     }
 
-    fn new_length(&self) -> u64 {
+    fn new_size(&self) -> u64 {
         self.new_words.len() as u64 * 2
     }
 
     /// Returns the number of bytes that the edit saves.
     pub fn saved_bytes(&self) -> i64 {
-        self.removed_bytes as i64 - self.new_length() as i64
+        self.removed_bytes as i64 - self.new_size() as i64
     }
 
     /// True if an offset is inside the replaced bytes: after their first byte and before their end.
@@ -54,7 +54,7 @@ impl Edit {
 pub struct Edits(Vec<Edit>);
 
 impl Edits {
-    /// Sorts the edits; `None` if two edits overlap, or if an edit covers an offset that something refers to.
+    /// Sorts the edits. Returns `None` if two edits overlap, or if an edit covers one of the reference targets.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.offset);
         let are_apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
@@ -69,7 +69,7 @@ impl Edits {
         self.0.iter().map(Edit::saved_bytes).sum()
     }
 
-    /// Returns the new offset of the code that was at `offset`.
+    /// Returns the new offset of the code that was at `offset` before the edits.
     pub fn new_offset(&self, offset: u64) -> u64 {
         let earlier_edits = self
             .0
@@ -78,26 +78,26 @@ impl Edits {
         offset.wrapping_add_signed(-earlier_edits.map(Edit::saved_bytes).sum::<i64>())
     }
 
-    /// Returns the edited code.
-    pub fn edited_bytes(&self, old: &[u8]) -> Vec<u8> {
-        let mut new_bytes = Vec::with_capacity(old.len());
+    /// Returns the code after the edits.
+    pub fn apply_to_bytes(&self, old_bytes: &[u8]) -> Vec<u8> {
+        let mut new_bytes = Vec::with_capacity(old_bytes.len());
         let mut copied_end = 0;
         for edit in &self.0 {
-            new_bytes.extend_from_slice(&old[copied_end..edit.offset as usize]);
+            new_bytes.extend_from_slice(&old_bytes[copied_end..edit.offset as usize]);
             new_bytes.extend(edit.new_words.iter().flat_map(|word| word.to_le_bytes()));
             copied_end = edit.end() as usize;
         }
-        new_bytes.extend_from_slice(&old[copied_end..]);
+        new_bytes.extend_from_slice(&old_bytes[copied_end..]);
         new_bytes
     }
 
-    /// Returns the references of the edited code, with new offsets but old addends.
-    pub fn edited_references(&self, old: &[Reference]) -> Vec<Reference> {
+    /// Returns the references after the edits, with new offsets but old addends.
+    pub fn apply_to_references(&self, old_references: &[Reference]) -> Vec<Reference> {
         let is_replaced = |offset: u64| {
             let contains_offset = |edit: &Edit| edit.offset <= offset && offset < edit.end();
             self.0.iter().any(contains_offset)
         };
-        let kept_references = old
+        let kept_references = old_references
             .iter()
             .filter(|reference| !is_replaced(reference.offset));
         let kept_references = kept_references.map(|reference| Reference {

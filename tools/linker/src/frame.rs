@@ -1,6 +1,6 @@
 //! Prologues and epilogues of functions, and the calls of shared routines that replace them.
 //!
-//! A prologue pushes registers, from the lowest to r29, and may reserve space for variables below them:
+//! A prologue pushes registers, from the lowest register to r29, and may reserve space for variables below them:
 //!
 //! ```text
 //! push r14 .. push r29          ldi r26, 5
@@ -16,24 +16,21 @@
 //!
 //! An epilogue frees the space, pops the registers in reverse order, and returns (`ret`).
 //!
-//! The routines also change r26, r0 and the flags. By the calling convention of avr-gcc and LLVM a
-//! caller does not rely on these after a call and does not pass arguments in them: arguments are in
-//! r8 to r25 and on the stack, results in r18 to r25. With LLVM's `-enable-ipra` a caller may rely on
-//! any register that the callee does not change, so never combine that option with this program.
-//! A test checks the options in .cargo/config.toml.
+//! The routines also change r26, r0 and the flags. In the calling convention of avr-gcc and LLVM, a caller neither
+//! relies on these after a call nor passes arguments in them: arguments are in r8 to r25 and on the stack, results in
+//! r18 to r25. With LLVM's `-enable-ipra` a caller may rely on any register that the callee does not change, so never
+//! combine this option with this program. A test checks the options in .cargo/config.toml.
 //!
-//! There are routines only for a few lists of registers. If a function pushes exactly one of
-//! these lists, the layout of the stack in its body is unchanged. Otherwise the routine pushes more
-//! registers. Then the arguments on the stack, for which there were no registers, are further above
-//! the variables than the body assumes. Such a routine is used only if the body does not depend on
-//! this distance. That is the case if the body
+//! There are routines only for a few lists of registers. If a function pushes exactly one of these lists, the stack
+//! layout in its body is unchanged. Otherwise the routine pushes more registers, so arguments on the stack are further
+//! above the variables than the body assumes. Such a routine is used only if the body does not depend on this distance.
+//! This is the case in two kinds of bodies.
 //!
-//! - uses no address on the stack: it has no variables on the stack and does not use the stack
-//!   pointer; or
-//! - uses only addresses of variables, whose distances from r28 are unchanged. The body accesses Y+q
-//!   within the space for the variables, or copies r28 and immediately adds a distance within that
-//!   space; and it uses r28 and r29 for nothing else. LLVM computes every address on the stack from
-//!   r28, so each access to an argument has a distance beyond the space.
+//! - The body uses no address on the stack: it has no variables on the stack and does not use the stack pointer.
+//! - The body uses only addresses of variables, whose distances from r28 are unchanged. The body accesses Y+q within
+//!   the space for the variables, or copies r28 and immediately adds a distance within this space; the body has no
+//!   other use of r28 and r29. LLVM computes every address on the stack from r28, so each access to an argument has a
+//!   distance beyond the space.
 
 use object::build::elf::SymbolId;
 use object::elf;
@@ -67,7 +64,7 @@ pub struct Routines {
 pub struct Frame {
     /// The index in [`FIRST_REGISTERS`] of the routines that save all registers of the function.
     pub routine_index: usize,
-    /// Size of the local variables on the stack, bytes.
+    /// The size of the local variables on the stack, bytes.
     pub local_bytes: u8,
     /// The size of the prologue, bytes.
     pub prologue_size: u64,
@@ -76,8 +73,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Recognizes the frame of a function; `None` if the frame has none of the known forms.
-    pub fn of(code: &Code) -> Option<Self> {
+    /// Recognizes the frame of a function. Returns `None` if the frame has none of the known forms.
+    pub fn recognize(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words_from(0).map_while(pushed_register).collect();
         let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
@@ -89,7 +86,7 @@ impl Frame {
             return None;
         }
         let (local_bytes, reserving_count) =
-            reserved_bytes(code, registers.len()).unwrap_or_default();
+            parse_reservation(code, registers.len()).unwrap_or_default();
         let has_locals = reserving_count > 0;
         if has_locals && !registers.ends_with(&[28, 29]) {
             return None;
@@ -105,10 +102,11 @@ impl Frame {
         let mut index = body_start;
         // Every use of the stack pointer, every push, pop and return must belong to an epilogue.
         while let Some(instruction) = code.instructions.get(index) {
-            if let Some(length) = epilogue_length(code, index, &registers, local_bytes, has_locals)
+            if let Some(length) =
+                find_epilogue_length(code, index, &registers, local_bytes, has_locals)
             {
-                let start = code.offset_of(index);
-                epilogue_spans.push((start, code.offset_of(index + length) - start));
+                let start = code.instruction_offset(index);
+                epilogue_spans.push((start, code.instruction_offset(index + length) - start));
                 index += length;
             } else if accesses_stack_pointer(instruction.first_word)
                 || popped_register(instruction.first_word).is_some()
@@ -125,13 +123,13 @@ impl Frame {
         Some(Self {
             routine_index,
             local_bytes,
-            prologue_size: code.offset_of(body_start),
+            prologue_size: code.instruction_offset(body_start),
             epilogues: epilogue_spans,
         })
     }
 
-    /// Returns the edits that make the function use the shared routines.
-    pub fn edits(&self, routines: Routines) -> Vec<Edit> {
+    /// Builds the edits that make the function use the shared routines.
+    pub fn build_edits(&self, routines: Routines) -> Vec<Edit> {
         let replacement = |offset, removed_bytes, opcode, symbol| Edit {
             offset,
             removed_bytes,
@@ -151,9 +149,9 @@ impl Frame {
     }
 }
 
-/// Returns the bytes that a prologue reserves below the registers, and the number of instructions that reserve
-/// them; `None` if no such instructions are at `index`.
-fn reserved_bytes(code: &Code, index: usize) -> Option<(u8, usize)> {
+/// Parses the instructions at `index` with which a prologue reserves space below the registers. Returns the size of the
+/// space in bytes and the number of instructions; `None` if there are no such instructions.
+fn parse_reservation(code: &Code, index: usize) -> Option<(u8, usize)> {
     let words: Vec<u16> = code.words_from(index).take(9).collect();
     let (subtract_word, rest) = words.strip_prefix(&READ_STACK_POINTER)?.split_first()?;
     let (local_bytes, rest, count) = match (subtract_word, rest.split_first()) {
@@ -171,17 +169,17 @@ fn reserved_bytes(code: &Code, index: usize) -> Option<(u8, usize)> {
         .then_some((local_bytes as u8, count))
 }
 
-/// True if the instruction at an index uses the frame pointer only for the variables, from Y+1 to
-/// Y + `local_bytes`, or does not use it.
+/// True if the instruction at an index uses the frame pointer only for the variables, between Y + 1 and
+/// Y + `local_bytes`, or not at all.
 fn uses_only_locals(code: &Code, index: usize, local_bytes: u8) -> bool {
     let words: Vec<u16> = code.words_from(index).take(3).collect();
     let distance = match *words.as_slice() {
         [word, ..] if !may_use_frame_pointer(word) => return true,
-        // ldd and std with Y+q, of other registers than r28 and r29
+        // ldd and std with Y+q, of registers other than r28 and r29
         [word, ..] if word & 0xd008 == 0x8008 && word & 0x01e0 != 0x01c0 => {
             word >> 8 & 0x20 | word >> 7 & 0x18 | word & 7
         }
-        // movw r30, r28 or another pair, then adiw of the same
+        // movw r30, r28 or another pair, then adiw of the same pair
         [copy, add, ..]
             if copy & 0xffcf == 0x01ce
                 && copy & 0x0070 != 0x0060
@@ -189,7 +187,7 @@ fn uses_only_locals(code: &Code, index: usize, local_bytes: u8) -> bool {
         {
             add >> 2 & 0x30 | add & 0x0f
         }
-        // movw r16, r28 or another pair, then subi and sbci of the same
+        // movw r16, r28 or another pair, then subi and sbci of the same pair
         [copy, low, high]
             if copy & 0xff8f == 0x018e
                 && copy & 0x0070 != 0x0060
@@ -204,9 +202,9 @@ fn uses_only_locals(code: &Code, index: usize, local_bytes: u8) -> bool {
     (1..=u16::from(local_bytes)).contains(&distance)
 }
 
-/// Returns the number of instructions of the epilogue at an index; `None` if no epilogue that matches the
-/// prologue begins there.
-fn epilogue_length(
+/// Returns the number of instructions of the epilogue at an index; `None` if no epilogue that matches the prologue
+/// begins at the index.
+fn find_epilogue_length(
     code: &Code,
     index: usize,
     registers: &[u8],

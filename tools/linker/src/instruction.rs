@@ -1,4 +1,4 @@
-//! Properties of AVR instructions that decide how code may be edited, from the AVR Instruction Set Manual. Each
+//! Properties of AVR instructions that determine how code may be edited, from the AVR Instruction Set Manual. Each
 //! function takes the first word of an instruction.
 
 /// The opcode of `ret`.
@@ -9,9 +9,9 @@ pub const RETI: u16 = 0x9518;
 pub const CALL: u16 = 0x940e;
 /// The first word of `jmp`, whose target is in the next word.
 pub const JMP: u16 = 0x940c;
-/// Copies the stack pointer to the frame pointer: `in r28, SPL`, `in r29, SPH`.
+/// The instructions that copy the stack pointer to the frame pointer: `in r28, SPL`, `in r29, SPH`.
 pub const READ_STACK_POINTER: [u16; 2] = [0xb7cd, 0xb7de];
-/// Copies the frame pointer to the stack pointer, in a prologue and in an epilogue: `in r0, SREG`,
+/// The instructions that copy the frame pointer to the stack pointer, in a prologue and in an epilogue: `in r0, SREG`,
 /// `cli`, `out SPH, r29`, `out SREG, r0`, `out SPL, r28`.
 pub const WRITE_STACK_POINTER: [u16; 5] = [0xb60f, 0x94f8, 0xbfde, 0xbe0f, 0xbfcd];
 
@@ -56,28 +56,28 @@ pub const fn is_call(word: u16) -> bool {
     word & 0xfe0e == CALL || word & 0xf000 == 0xd000
 }
 
-/// True for instructions that may skip the next one: `cpse`, `sbrc`, `sbrs`, `sbic`, `sbis`.
+/// True for an instruction that may skip the next instruction: `cpse`, `sbrc`, `sbrs`, `sbic`, `sbis`.
 pub const fn may_skip_next(word: u16) -> bool {
     word & 0xfc00 == 0x1000 || word & 0xfc08 == 0xfc00 || word & 0xfd00 == 0x9900
 }
 
-/// True if an instruction reads or writes the stack pointer by `in` or `out`.
+/// True if an instruction reads or writes the stack pointer with `in` or `out`.
 pub const fn accesses_stack_pointer(word: u16) -> bool {
     let port = word >> 5 & 0x30 | word & 0x0f;
     word & 0xf000 == 0xb000 && (port == 0x3d || port == 0x3e)
 }
 
-/// True if an instruction has r28 or r29 as an operand, or uses Y. Also true for `lpm` without an operand, although it
-/// uses neither.
+/// True if an instruction has r28 or r29 as an operand, or uses Y. Also true for `lpm` without an operand, which uses
+/// neither.
 pub fn may_use_frame_pointer(word: u16) -> bool {
     let is_frame_pointer = |register: u16| register == 28 || register == 29;
     let first_operand = word >> 4 & 0x1f;
     let second_operand = word >> 5 & 0x10 | word & 0x0f;
     let upper_operand = 16 + (word >> 4 & 0x0f);
     match word {
-        // nop and movw, of register pairs
+        // nop and movw of register pairs
         0x0000..=0x01ff => upper_operand == 16 + 14 || word & 0x0f == 14,
-        // muls, mulsu and fmul*, of r16 to r31
+        // muls, mulsu and fmul* of r16 to r31
         0x0200..=0x03ff => is_frame_pointer(upper_operand) || is_frame_pointer(16 + (word & 0x0f)),
         // Two register operands; mul
         0x0400..=0x2fff | 0x9c00..=0x9fff => {
@@ -100,8 +100,8 @@ pub fn may_use_frame_pointer(word: u16) -> bool {
     }
 }
 
-/// True if execution may continue after this last instruction of a function. False for a call, since a compiler ends a
-/// function only with a call that never returns.
+/// True if execution may continue after `word`, the last instruction of a function. False for a call, because a
+/// compiler ends a function only with a call that never returns.
 pub const fn falls_through(word: u16) -> bool {
     let is_return = word == RET || word == RETI;
     let is_jump = is_rjmp(word) || word & 0xfe0e == JMP || word & 0xffef == 0x9409;

@@ -1,6 +1,5 @@
-//! `lizard-linker ARGUMENTS` shortens the object files among the arguments, then calls
-//! avr-gcc with the new files in their place. rustc calls it because .cargo/config.toml
-//! names scripts/link as the linker.
+//! `lizard-linker ARGUMENTS` shrinks the object files among the arguments, then calls avr-gcc with the new files in
+//! their place. rustc calls this program, because .cargo/config.toml names scripts/link as the linker.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -23,7 +22,7 @@ fn run() -> Result<ExitCode, String> {
     let mut arguments = Vec::new();
     let mut written_files = Vec::new();
     for argument in std::env::args_os().skip(1) {
-        if let Some(paths) = write_shortened(Path::new(&argument))? {
+        if let Some(paths) = write_shrunk_files(Path::new(&argument))? {
             arguments.extend(paths.iter().map(|path| path.clone().into_os_string()));
             written_files.extend(paths);
         } else {
@@ -35,8 +34,9 @@ fn run() -> Result<ExitCode, String> {
         // A temporary file that cannot be removed does no harm.
         let _ = fs::remove_file(path);
     }
-    let status = status
-        .map_err(|error| format!("avr-gcc, which links the firmware, does not start: {error}"))?;
+    let status = status.map_err(|error| {
+        format!("avr-gcc, which links the firmware, could not be started: {error}")
+    })?;
     Ok(if status.success() {
         ExitCode::SUCCESS
     } else {
@@ -44,9 +44,9 @@ fn run() -> Result<ExitCode, String> {
     })
 }
 
-/// Writes the routines that a shortened object calls, and the shortened object, next to the original object. Returns
-/// their paths in this order; `None` for an argument that is not an object file.
-fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
+/// Writes two files next to the original object: the routines that the shrunk object calls, and the shrunk object.
+/// Returns their paths in this order; `None` for an argument that is not an object file.
+fn write_shrunk_files(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
     // If a file cannot be read, avr-gcc reports the error.
     let (true, Ok(file)) = (path.extension() == Some(OsStr::new("o")), fs::read(path)) else {
         return Ok(None);
@@ -62,7 +62,7 @@ fn write_shortened(path: &Path) -> Result<Option<[PathBuf; 2]>, String> {
         Ok::<PathBuf, String>(path)
     };
     Ok(Some([
-        // The routines come first, so that they are placed after `.lowtext` and before the rest.
+        // The routines come first, so that the linker places them between `.lowtext` and the other sections.
         write("frames.S", ROUTINES.as_bytes())?,
         write("short.o", &new_object)?,
     ]))

@@ -1,4 +1,4 @@
-//! Reader and writer of an object file: finds the functions, shortens them, and writes the new file.
+//! Reader and writer of an object file, which finds the functions, shrinks them, and writes the new file.
 
 use std::fmt;
 
@@ -12,13 +12,13 @@ use crate::frame::{FIRST_REGISTERS, Frame, Routines};
 
 mod layout;
 
-/// The reason why an object cannot be read or written.
+/// The error of an object that cannot be read or written.
 #[derive(Debug)]
 pub struct ShrinkError(object::build::Error);
 
 impl fmt::Display for ShrinkError {
     fn fmt(&self, formatter: &mut fmt::Formatter) -> fmt::Result {
-        write!(formatter, "the object file cannot be edited: {}", self.0)
+        write!(formatter, "cannot edit the object file: {}", self.0)
     }
 }
 
@@ -30,19 +30,19 @@ impl From<object::build::Error> for ShrinkError {
     }
 }
 
-/// The number of bytes saved by each kind of edit.
+/// The number of bytes that each kind of edit saves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Savings {
-    /// Bytes saved by shared prologues and epilogues, before the linker shortens most of the new calls.
-    pub frames: i64,
-    /// Bytes saved by opposite branches.
-    pub branches: i64,
-    /// Bytes saved by functions near their callers, estimated before linking.
-    pub calls: i64,
+    /// The bytes saved by shared prologues and epilogues, before the linker shortens most of the new calls.
+    pub frame_bytes: i64,
+    /// The bytes saved by opposite branches.
+    pub branch_bytes: i64,
+    /// The bytes saved by functions near their callers, estimated before linking.
+    pub call_bytes: i64,
 }
 
-/// Shortens the functions of an object file and returns the new file and the savings; `None` if the
-/// file is not an ELF file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
+/// Shrinks the functions of an object file and returns the new file and the savings; `None` if the file is not an ELF
+/// file. The new file refers to the routines of [`ROUTINES`](crate::ROUTINES).
 ///
 /// # Errors
 /// See [`ShrinkError`].
@@ -54,17 +54,17 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
     object.add_section_name_table();
     let routines = object.add_routine_symbols();
     let mut savings = Savings::default();
-    for (section, edits) in object.frame_edits(&routines) {
-        savings.frames += edits.saved_bytes();
+    for (section, edits) in object.find_frame_edits(&routines) {
+        savings.frame_bytes += edits.saved_bytes();
         object.apply_edits(section, &edits);
     }
-    for section in object.function_sections() {
+    for section in object.find_function_sections() {
         while let Some(edits) = object.find_next_edit(section, branch::find_edit) {
-            savings.branches += edits.saved_bytes();
+            savings.branch_bytes += edits.saved_bytes();
             object.apply_edits(section, &edits);
         }
     }
-    savings.calls = object.order_functions();
+    savings.call_bytes = object.order_functions();
     let mut new_file = Vec::new();
     object.0.write(&mut new_file)?;
     Ok(Some((new_file, savings)))
@@ -73,8 +73,8 @@ pub fn shrink(file: &[u8]) -> Result<Option<(Vec<u8>, Savings)>, ShrinkError> {
 struct Object<'a>(Builder<'a>);
 
 impl Object<'_> {
-    /// Adds a table for the names of sections. LLVM keeps the names of sections and of symbols in one table, but the
-    /// writer needs two tables.
+    /// Adds a table for section names. LLVM keeps the names of sections and symbols in one table, but the writer needs
+    /// two tables.
     fn add_section_name_table(&mut self) {
         let is_table = |section: &Section| matches!(section.data, SectionData::SectionString);
         if !self.0.sections.iter().any(is_table) {
@@ -94,16 +94,16 @@ impl Object<'_> {
             symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
             symbol.id()
         };
-        let mut routines_of = |first: &u8| Routines {
+        let mut add_routines = |first: &u8| Routines {
             save: add_undefined(format!("__frame_save_{first}")),
             restore: add_undefined(format!("__frame_restore_{first}")),
         };
-        FIRST_REGISTERS.iter().map(&mut routines_of).collect()
+        FIRST_REGISTERS.iter().map(&mut add_routines).collect()
     }
 
-    /// Returns the sections that contain exactly one function, in the order of the file; without interrupt handlers and
-    /// assembly.
-    fn function_sections(&self) -> Vec<SectionId> {
+    /// Returns the sections that contain exactly one function, in the order of the file. Leaves out interrupt handlers
+    /// and assembly code.
+    fn find_function_sections(&self) -> Vec<SectionId> {
         let is_function = |section: &&Section| {
             let mut function_count = 0;
             for symbol in &self.0.symbols {
@@ -127,11 +127,11 @@ impl Object<'_> {
             .collect()
     }
 
-    /// Returns the references of a section's bytes.
-    fn references(&self, section: SectionId) -> Vec<Reference> {
+    /// Returns the references in a section's bytes.
+    fn read_references(&self, section: SectionId) -> Vec<Reference> {
         let tables = self.0.sections.iter();
         let tables = tables.filter(|table| table.sh_info_section == Some(section));
-        let reference_of = |relocation: &Relocation| {
+        let to_reference = |relocation: &Relocation| {
             Some(Reference {
                 offset: relocation.r_offset,
                 kind: relocation.r_type,
@@ -139,19 +139,19 @@ impl Object<'_> {
                 addend: relocation.r_addend,
             })
         };
-        let relocations = tables.flat_map(relocations_of);
-        relocations.filter_map(reference_of).collect()
+        let relocations = tables.flat_map(section_relocations);
+        relocations.filter_map(to_reference).collect()
     }
 
-    fn bytes(&self, section: SectionId) -> Vec<u8> {
+    fn read_bytes(&self, section: SectionId) -> Vec<u8> {
         match &self.0.sections.get(section).data {
             SectionData::Data(bytes) => bytes.to_vec(),
             _ => Vec::new(),
         }
     }
 
-    fn code(&self, section: SectionId) -> Option<Code> {
-        Code::decode(&self.bytes(section), self.references(section))
+    fn decode(&self, section: SectionId) -> Option<Code> {
+        Code::decode(&self.read_bytes(section), self.read_references(section))
     }
 
     /// Returns the offset of a symbol plus an addend; `None` if the symbol is in another section.
@@ -160,18 +160,18 @@ impl Object<'_> {
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
     }
 
-    /// Returns all offsets of a section that something refers to.
-    fn targets(&self, section: SectionId) -> Vec<u64> {
-        self.targets_without(section, None)
+    /// Returns the offsets of all reference targets in a section.
+    fn find_targets(&self, section: SectionId) -> Vec<u64> {
+        self.find_targets_without(section, None)
     }
 
-    /// Returns all offsets of a section that something refers to. References in the code that `edit` replaces do not
+    /// Returns the offsets of all reference targets in a section. References in the code that `edit` replaces do not
     /// count.
-    fn targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
+    fn find_targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
             let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
-            targets.extend(relocations_of(table).iter().filter_map(|relocation| {
+            targets.extend(section_relocations(table).iter().filter_map(|relocation| {
                 let offset = relocation.r_offset;
                 let is_replaced =
                     own_edit.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
@@ -183,37 +183,37 @@ impl Object<'_> {
     }
 
     /// Returns the edits of each function that becomes shorter with shared prologues and epilogues.
-    fn frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
-        let edits_of = |section| {
-            let frame = Frame::of(&self.code(section)?)?;
-            let edits = frame.edits(routines[frame.routine_index]);
-            let edits = Edits::new(edits, &self.targets(section))?;
+    fn find_frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
+        let build_edits = |section| {
+            let frame = Frame::recognize(&self.decode(section)?)?;
+            let edits = frame.build_edits(routines[frame.routine_index]);
+            let edits = Edits::new(edits, &self.find_targets(section))?;
             (edits.saved_bytes() > 0).then_some((section, edits))
         };
-        self.function_sections()
+        self.find_function_sections()
             .into_iter()
-            .filter_map(edits_of)
+            .filter_map(build_edits)
             .collect()
     }
 
-    /// Returns the next edit that `find_edit` finds in a section; `None` if it finds no edit.
+    /// Returns the next edit that `find_edit` finds in a section; `None` if there is no edit.
     fn find_next_edit<F>(&self, section: SectionId, find_edit: F) -> Option<Edits>
     where
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
     {
-        let code = self.code(section)?;
-        let targets = self.targets(section);
-        let offset_of =
+        let code = self.decode(section)?;
+        let targets = self.find_targets(section);
+        let find_offset =
             |reference: &Reference| self.symbol_offset(section, reference.symbol, reference.addend);
-        let edit = find_edit(&code, &targets, &offset_of)?;
-        let targets = self.targets_without(section, Some(&edit));
+        let edit = find_edit(&code, &targets, &find_offset)?;
+        let targets = self.find_targets_without(section, Some(&edit));
         Edits::new(vec![edit], &targets)
     }
 
-    /// Edits a section, and changes everything that refers to its offsets.
+    /// Edits a section, and updates all references to its offsets.
     fn apply_edits(&mut self, section: SectionId, edits: &Edits) {
-        let bytes = edits.edited_bytes(&self.bytes(section));
-        let mut references = edits.edited_references(&self.references(section));
+        let bytes = edits.apply_to_bytes(&self.read_bytes(section));
+        let mut references = edits.apply_to_references(&self.read_references(section));
         let symbol_values: Vec<(SymbolId, u64)> = self
             .0
             .symbols
@@ -221,7 +221,7 @@ impl Object<'_> {
             .filter(|symbol| symbol.section == Some(section))
             .map(|symbol| (symbol.id(), symbol.st_value))
             .collect();
-        // An addend changes by the difference between the shifts of its target and of its symbol.
+        // An addend changes by the difference between the shifts of its target and its symbol.
         let new_addend = |symbol: SymbolId, addend: i64| {
             let value = symbol_values.iter().find(|(id, _)| *id == symbol);
             value.map_or(addend, |(_, value)| {
@@ -241,7 +241,7 @@ impl Object<'_> {
             };
             if is_own {
                 relocations.clear();
-                relocations.extend(references.iter().map(relocation));
+                relocations.extend(references.iter().map(to_relocation));
             } else {
                 for relocation in relocations {
                     if let Some(symbol) = relocation.symbol {
@@ -262,8 +262,8 @@ impl Object<'_> {
     }
 }
 
-/// Returns the relocations of a section; none if it is no table of relocations.
-fn relocations_of<'a>(section: &'a Section) -> &'a [Relocation] {
+/// Returns the relocations of a section, or none if the section is not a table of relocations.
+fn section_relocations<'a>(section: &'a Section) -> &'a [Relocation] {
     match &section.data {
         SectionData::Relocation(relocations) => relocations,
         _ => &[],
@@ -271,7 +271,7 @@ fn relocations_of<'a>(section: &'a Section) -> &'a [Relocation] {
 }
 
 /// Returns the relocation for a reference.
-fn relocation(reference: &Reference) -> Relocation {
+fn to_relocation(reference: &Reference) -> Relocation {
     Relocation {
         r_offset: reference.offset,
         symbol: Some(reference.symbol),

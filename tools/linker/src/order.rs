@@ -1,41 +1,40 @@
-//! Search for an order of functions in which functions that call one another are near one another.
+//! Search for an order of functions that places functions near their callers.
 //!
-//! A `call` has two words. If the target is less than 4 KB away, the linker turns it into
-//! an `rcall` of one word, and a `jmp` into an `rjmp` (`--relax`). A compiler does not consider these
-//! distances. Nearly all functions call the routines of `frames.S`, and in the compiler's order most
-//! functions would be far from them. So this module searches for the order in
-//! which the fewest calls are out of reach; each near call also saves a cycle. The order cannot
-//! change a program's behaviour: every reference from one function to another is a
-//! relocation, and no function falls through into the next.
+//! A `call` has two words. If the target is less than 4 KB away, the linker replaces the `call` with an `rcall` of one
+//! word, and a `jmp` with an `rjmp` (`--relax`). A compiler does not consider these distances. Nearly all functions
+//! call the routines of `frames.S`, and in the compiler's order most functions would be far from these routines. This
+//! module therefore searches for the order in which the fewest calls are out of reach; each near call also saves a
+//! cycle. The order cannot change a program's behaviour: every reference from one function to another is a relocation,
+//! and no function falls through into the next.
 
-/// The reach of a relative call, bytes, less the error of the estimated sizes.
+/// The reach of a relative call minus the error of the estimated sizes, bytes.
 const REACH_BYTES: u32 = 4096 - 96;
 
-/// The cost of a call out of reach. Each byte beyond the reach adds 1, so that the search notices an improvement of the
-/// order before the call is within reach.
+/// The cost of a call out of reach. Each byte beyond the reach adds 1, so that the search detects an improvement before
+/// the call is within reach.
 const OUT_OF_REACH_COST: u32 = 16_384;
 
 /// The number of orders tried.
-const TRY_COUNT: u32 = 600_000;
+const ATTEMPT_COUNT: u32 = 600_000;
 
-/// The rise of the cost that is accepted at first; the accepted rise falls to 0 during the search.
+/// The cost increase that is accepted at first. The accepted increase falls to 0 during the search.
 const INITIAL_RISE: u32 = 4 * OUT_OF_REACH_COST;
 
-/// The seed of the search; any other number would do as well.
+/// The seed of the search; any other number would work as well.
 const SEED: u64 = 1;
 
 /// A call or a jump from one piece of code to another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Call {
     /// The piece that contains the call.
-    pub from: usize,
-    /// The offset in that piece, bytes.
+    pub caller: usize,
+    /// The offset in the calling piece, bytes.
     pub offset: u32,
     /// The piece that is called.
-    pub to: usize,
+    pub callee: usize,
 }
 
-/// Pieces of code that may be put into any order, except the last, which stays the last.
+/// Pieces of code that may be put into any order, except for the last piece, which stays last.
 #[derive(Debug, Clone, Default)]
 pub struct Pieces {
     /// The size of each piece, bytes.
@@ -45,25 +44,24 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Searches for the order in which the fewest calls are out of reach. Moves pieces at
-    /// random and undoes a move that raises the cost by more than a threshold, which falls to
-    /// zero (threshold accepting, Dueck and Scheuer 1990). Computes in integers, so that the
-    /// result is the same on every machine. The last piece stays the last.
+    /// Searches for the order in which the fewest calls are out of reach. Moves random pieces, and undoes a move that
+    /// increases the cost by more than a threshold, which falls to zero (threshold accepting, Dueck and Scheuer 1990).
+    /// Computes in integers, so that the result is the same on every machine. The last piece stays last.
     pub fn find_order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.sizes.len()).collect();
         let movable_count = self.sizes.len().saturating_sub(1);
         let mut random = fastrand::Rng::with_seed(SEED);
-        let mut current_cost = self.cost(&order);
+        let mut current_cost = self.compute_cost(&order);
         let (mut best_order, mut best_cost) = (order.clone(), current_cost);
-        for tries_left in (0..TRY_COUNT).rev() {
+        for attempts_left in (0..ATTEMPT_COUNT).rev() {
             if best_cost == 0 || movable_count < 2 {
                 break;
             }
             let accepted_rise =
-                u64::from(INITIAL_RISE) * u64::from(tries_left) / u64::from(TRY_COUNT);
+                u64::from(INITIAL_RISE) * u64::from(attempts_left) / u64::from(ATTEMPT_COUNT);
             let [from, to] = [0; 2].map(|_| random.usize(..movable_count));
             move_piece(&mut order, from, to);
-            let cost = self.cost(&order);
+            let cost = self.compute_cost(&order);
             if cost > current_cost + accepted_rise {
                 move_piece(&mut order, to, from);
                 continue;
@@ -77,21 +75,21 @@ impl Pieces {
     }
 
     /// Returns the number of calls out of reach in an order.
-    pub fn out_of_reach_count(&self, order: &[usize]) -> usize {
+    pub fn count_out_of_reach(&self, order: &[usize]) -> usize {
         self.bytes_beyond_reach(order)
             .filter(|bytes| *bytes > 0)
             .count()
     }
 
     /// Returns the cost of an order.
-    fn cost(&self, order: &[usize]) -> u64 {
+    fn compute_cost(&self, order: &[usize]) -> u64 {
         let far_distances = self.bytes_beyond_reach(order).filter(|bytes| *bytes > 0);
         far_distances
             .map(|bytes| u64::from(OUT_OF_REACH_COST + bytes))
             .sum()
     }
 
-    /// Returns the number of bytes by which each call is out of reach; 0 within reach.
+    /// Returns the number of bytes by which each call is out of reach, or 0 for a call within reach.
     fn bytes_beyond_reach(&self, order: &[usize]) -> impl Iterator<Item = u32> {
         let mut offsets = vec![0; self.sizes.len()];
         let mut offset = 0;
@@ -100,7 +98,7 @@ impl Pieces {
             offset += self.sizes[*piece];
         }
         self.calls.iter().map(move |call| {
-            let distance = (offsets[call.from] + call.offset).abs_diff(offsets[call.to]);
+            let distance = (offsets[call.caller] + call.offset).abs_diff(offsets[call.callee]);
             distance.saturating_sub(REACH_BYTES)
         })
     }
@@ -119,32 +117,38 @@ fn move_piece(order: &mut [usize], from: usize, to: usize) {
 mod tests {
     use super::*;
 
-    fn call(from: usize, offset: u32, to: usize) -> Call {
-        Call { from, offset, to }
+    fn call(caller: usize, offset: u32, callee: usize) -> Call {
+        Call {
+            caller,
+            offset,
+            callee,
+        }
     }
 
-    /// Returns 21 pieces: each of the first ten calls the piece ten places further on, and the first piece also calls
-    /// the last one.
-    fn pieces_in_pairs() -> Pieces {
+    /// Returns 21 pieces. Each of the first ten calls the piece ten places later, and the first piece also calls the
+    /// last.
+    fn build_pairs() -> Pieces {
         let mut sizes = vec![700; 20];
         sizes.push(0);
-        let mut calls: Vec<Call> = (0..10).map(|from| call(from, 100, from + 10)).collect();
+        let mut calls: Vec<Call> = (0..10)
+            .map(|caller| call(caller, 100, caller + 10))
+            .collect();
         calls.push(call(0, 200, 20));
         Pieces { sizes, calls }
     }
 
     #[test]
-    fn pieces_that_call_each_other_are_near_each_other_if_possible() {
-        let pieces = pieces_in_pairs();
+    fn pieces_are_placed_near_their_callers_if_possible() {
+        let pieces = build_pairs();
         let compiled_order: Vec<usize> = (0..21).collect();
-        assert_eq!(pieces.out_of_reach_count(&compiled_order), 11);
-        assert_eq!(pieces.out_of_reach_count(&pieces.find_order()), 0);
+        assert_eq!(pieces.count_out_of_reach(&compiled_order), 11);
+        assert_eq!(pieces.count_out_of_reach(&pieces.find_order()), 0);
     }
 
     #[test]
-    fn every_run_finds_the_same_order_of_all_pieces_with_the_last_in_its_place() {
-        let order = pieces_in_pairs().find_order();
-        assert_eq!(order, pieces_in_pairs().find_order());
+    fn every_run_finds_the_same_order_which_contains_all_pieces_and_ends_with_the_last() {
+        let order = build_pairs().find_order();
+        assert_eq!(order, build_pairs().find_order());
         assert_eq!(order.last(), Some(&20));
         let mut sorted_order = order;
         sorted_order.sort_unstable();
@@ -159,6 +163,6 @@ mod tests {
             calls: vec![call(0, 0, 1)],
         };
         assert_eq!(pieces.find_order(), [0, 1]);
-        assert_eq!(pieces.out_of_reach_count(&[0, 1]), 1);
+        assert_eq!(pieces.count_out_of_reach(&[0, 1]), 1);
     }
 }

@@ -1,5 +1,5 @@
-//! Assumptions that the contact model cannot vary but MuJoCo can, and their effect on the gaits: the floor, the
-//! printed shape of pads, the drive of an analog servo, the distribution of mass.
+//! Assumptions that MuJoCo can vary but the contact model cannot, and their effect on the gaits: the floor, the pads'
+//! printed shape, the drive of analog servos, and the mass distribution.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -8,13 +8,13 @@ use lizard_parts::{Assembly, Pads, Scene};
 use lizard_robot::Robot;
 
 use crate::case::Case;
-use crate::crate_folder;
-use crate::figures::{Displacement, Figures};
-use crate::mujoco::scene_of;
+use crate::crate_dir;
+use crate::mujoco::make_two_cycle_scene;
+use crate::results::{Displacement, WalkResults};
 use crate::surface::{self, Surface, SurfaceDisplacements};
 use crate::table::Component;
 
-/// The simulated gaits, the same as in `lizard gaits --assumptions`.
+/// The simulated gaits, as in `lizard gaits --assumptions`.
 pub const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 /// The smallest change that the table shows as a number, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
@@ -24,11 +24,11 @@ const MIN_CHANGE_PERCENT: f64 = 10.0;
 pub struct Assumption {
     /// The assumption's name in the table.
     pub description: &'static str,
-    /// A line of robot.toml, and the lines that replace it.
+    /// A line of robot.toml, and the lines that replace the line.
     line_replacement: Option<(&'static str, &'static str)>,
-    /// The floor, if it is not level and even.
+    /// The surface, unless the floor is level and even.
     surface: Option<Surface>,
-    /// The change of MuJoCo's scene.
+    /// A function that changes MuJoCo's scene.
     change_scene: fn(&mut Scene),
 }
 
@@ -40,7 +40,7 @@ const UNCHANGED: Assumption = Assumption {
 };
 
 impl Assumption {
-    /// All changed assumptions except the surfaces, which have a table of their own.
+    /// All changed assumptions except the surfaces, which `Surface::ALL` lists.
     pub const ALL: [Self; 6] = [
         Self {
             description: "analog servos that drive in bursts",
@@ -59,12 +59,12 @@ impl Assumption {
             ..UNCHANGED
         },
         Self {
-            description: "mass centre 25 mm ahead",
+            description: "centre of mass 25 mm ahead",
             line_replacement: Some(("[body]", "[body]\ncentre = [25.0, 0.0]")),
             ..UNCHANGED
         },
         Self {
-            description: "mass centre 25 mm behind",
+            description: "centre of mass 25 mm behind",
             line_replacement: Some(("[body]", "[body]\ncentre = [-25.0, 0.0]")),
             ..UNCHANGED
         },
@@ -76,23 +76,23 @@ impl Assumption {
         },
     ];
 
-    /// Returns the paper's robot with this change.
+    /// Loads the paper's robot with this change.
     ///
     /// # Panics
-    /// If robots/paper.toml does not have the table that is changed.
-    pub fn robot(&self) -> Robot {
+    /// If robots/paper.toml does not have the replaced line.
+    pub fn load_robot(&self) -> Robot {
         match self.line_replacement {
             Some((old_line, new_lines)) => parse_paper_with(old_line, new_lines),
             None => crate::load_robot("paper"),
         }
     }
 
-    /// Returns the scene of a gait's walk. `level_displacement` is the gait's displacement with the unchanged robot
-    /// on a level floor.
+    /// Returns the scene of a gait's walk. `level_displacement` is the gait's displacement on a level floor with the
+    /// unchanged robot.
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn scene(
+    pub fn make_scene(
         &self,
         name: &str,
         assembly: &Assembly,
@@ -100,42 +100,45 @@ impl Assumption {
         level_displacement: Displacement,
     ) -> Scene {
         let mut scene = match self.surface {
-            Some(surface) => surface.scene(name, assembly, gait, level_displacement),
-            None => scene_of(name, assembly, gait, Case::ALL[0]),
+            Some(surface) => surface.make_scene(name, assembly, gait, level_displacement),
+            None => make_two_cycle_scene(name, assembly, gait, Case::ALL[0]),
         };
         (self.change_scene)(&mut scene);
         scene
     }
 }
 
-/// Returns the paper's robot with a line of its file replaced by other lines.
+/// Loads the paper's robot after replacing a line of its file with other lines.
 fn parse_paper_with(old_line: &str, new_lines: &str) -> Robot {
-    let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
+    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
     let text = text.expect("robots/paper.toml is readable");
     let old_text = format!("\n{old_line}");
-    assert!(text.contains(&old_text), "{old_line}");
+    assert!(
+        text.contains(&old_text),
+        "robots/paper.toml has no line {old_line:?}"
+    );
     Robot::parse(&text.replacen(&old_text, &format!("\n{new_lines}"), 1)).expect(new_lines)
 }
 
 /// MuJoCo's displacements by assumption and gait.
 pub type AssumptionDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
-/// Returns the displacements stored in `assumptions.json`.
+/// Loads the displacements stored in `assumptions.json`.
 ///
 /// # Panics
 /// If `assumptions.json` is not a table of displacements.
-pub fn stored() -> AssumptionDisplacements {
+pub fn load_stored() -> AssumptionDisplacements {
     serde_json::from_str(include_str!("../assumptions.json"))
         .expect("assumptions.json has the expected format")
 }
 
-/// Returns a table of the changes of each gait by the assumptions and the surfaces, in percent of MuJoCo's displacement
-/// on a level floor, from the largest change to the smallest.
+/// Returns a table of each gait's change under each assumption and surface, from the largest change to the smallest,
+/// in percent of MuJoCo's displacement on a level floor.
 ///
 /// # Panics
 /// If a displacement is missing.
-pub fn table(
-    figures: &Figures,
+pub fn format_table(
+    walk_results: &WalkResults,
     surfaces: &SurfaceDisplacements,
     assumptions: &AssumptionDisplacements,
 ) -> String {
@@ -148,12 +151,12 @@ pub fn table(
         let displacements = GAITS.map(|gait| assumptions[description][gait]);
         (description.to_owned(), displacements)
     });
-    let percent_changes = |displacements: [Displacement; GAITS.len()]| {
+    let compute_percent_changes = |displacements: [Displacement; GAITS.len()]| {
         let mut changes = displacements
             .into_iter()
             .zip(GAITS)
             .map(|(displacement, gait)| {
-                let level = surface::level_displacement(figures, gait);
+                let level = surface::get_level_displacement(walk_results, gait);
                 let component = match level.0[0].abs() > level.0[2].abs() {
                     true => Component::Ahead,
                     false => Component::Turn,
@@ -162,7 +165,7 @@ pub fn table(
             });
         std::array::from_fn(|_| changes.next().expect("every gait has a change"))
     };
-    let largest_change = |changes: &[f64; GAITS.len()]| {
+    let find_largest_change = |changes: &[f64; GAITS.len()]| {
         changes
             .iter()
             .fold(0.0, |largest: f64, change| largest.max(change.abs()))
@@ -170,9 +173,9 @@ pub fn table(
     let mut rows: Vec<(String, [f64; GAITS.len()])> = surface_rows
         .into_iter()
         .chain(assumption_rows)
-        .map(|(description, displacements)| (description, percent_changes(displacements)))
+        .map(|(description, displacements)| (description, compute_percent_changes(displacements)))
         .collect();
-    rows.sort_by(|(_, a), (_, b)| largest_change(b).total_cmp(&largest_change(a)));
+    rows.sort_by(|(_, a), (_, b)| find_largest_change(b).total_cmp(&find_largest_change(a)));
     let width = rows
         .iter()
         .map(|(description, _)| description.len())
@@ -184,11 +187,11 @@ pub fn table(
     text.push('\n');
     let (large, small): (Vec<_>, Vec<_>) = rows
         .into_iter()
-        .partition(|(_, changes)| largest_change(changes) >= MIN_CHANGE_PERCENT);
+        .partition(|(_, changes)| find_largest_change(changes) >= MIN_CHANGE_PERCENT);
     for (description, changes) in large {
         _ = write!(text, "{description:width$}");
         for change in changes {
-            // Adding positive zero turns a negative one positive.
+            // Adding 0 turns -0 into 0.
             _ = write!(text, "{:>+10.0}", change.round() + 0.0);
         }
         text.push('\n');

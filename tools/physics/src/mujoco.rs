@@ -1,5 +1,4 @@
-//! Interface to MuJoCo through its Python package. The judge, the program `tools/physics/judge.py`, simulates the walks
-//! in the files of a folder.
+//! Interface to MuJoCo's Python package. The judge, `tools/physics/judge.py`, simulates the walks in a folder's files.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -9,50 +8,50 @@ use lizard_parts::{Assembly, Course, Pieces, Scene, StrutSpring};
 use serde::Deserialize;
 use tempfile::TempDir;
 
-use crate::case::{Case, Legs};
-use crate::crate_folder;
-use crate::figures::Displacement;
+use crate::case::{Case, LegDrive};
+use crate::crate_dir;
+use crate::results::Displacement;
 
-/// The reason why MuJoCo gives no answer.
+/// An error that prevents MuJoCo's answer.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
     /// Python does not start.
-    #[error("target/physics/bin/python does not start: {0}; `make physics` sets it up")]
-    Start(io::Error),
+    #[error("cannot start target/physics/bin/python: {0}; `make physics` installs it")]
+    PythonStart(io::Error),
     /// A file cannot be written, or the answer cannot be read.
-    #[error("MuJoCo's files: {0}")]
+    #[error("cannot exchange files with MuJoCo: {0}")]
     Files(#[from] io::Error),
-    /// The judge ended early.
-    #[error("tools/physics/judge.py ended with {0}")]
-    Ended(std::process::ExitStatus),
+    /// The judge failed.
+    #[error("tools/physics/judge.py failed with {0}")]
+    JudgeExit(std::process::ExitStatus),
     /// The judge printed something other than an answer.
-    #[error("tools/physics/judge.py says {0}")]
-    UnknownAnswer(String),
+    #[error("unexpected output of tools/physics/judge.py: {0}")]
+    InvalidAnswer(String),
     /// The judge could not simulate a walk, or MuJoCo warned during it.
-    #[error("{file}: {problem}")]
+    #[error("{name}: {message}")]
     FailedWalk {
-        /// Robot, gait and case.
-        file: String,
+        /// The walk's name.
+        name: String,
         /// The judge's message.
-        problem: String,
+        message: String,
     },
     /// A part of the robot cannot be built.
     #[error(transparent)]
-    Build(#[from] lizard_parts::BuildProblem),
+    Build(#[from] lizard_parts::BuildError),
 }
 
-/// The judge's answer for a walk: a line of its output.
+/// The judge's answer for a walk, a line of its output.
 #[derive(Deserialize)]
 struct JudgeAnswer {
     file: String,
-    way: Option<[f64; 3]>,
-    trouble: Option<String>,
+    displacement: Option<[f64; 3]>,
+    error: Option<String>,
 }
 
 /// A folder of files with walks for the judge.
 pub struct Jobs {
     folder: TempDir,
-    count: usize,
+    walk_count: usize,
 }
 
 /// A running judge.
@@ -69,13 +68,13 @@ impl Jobs {
     pub fn new() -> Result<Self, MujocoError> {
         Ok(Self {
             folder: tempfile::tempdir()?,
-            count: 0,
+            walk_count: 0,
         })
     }
 
     /// Returns the number of walks.
     pub fn walk_count(&self) -> usize {
-        self.count
+        self.walk_count
     }
 
     /// Adds a robot's walks, each with its legs and its scene. The names of all scenes must differ.
@@ -85,26 +84,26 @@ impl Jobs {
     pub fn add(
         &mut self,
         assembly: &Assembly,
-        walks: impl Iterator<Item = (Legs, Scene)>,
+        walks: impl Iterator<Item = (LegDrive, Scene)>,
     ) -> Result<(), MujocoError> {
         let robot = assembly.robot();
         let neutral = robot.lizard().solve(&robot.neutral_pose());
         let neutral = neutral.expect("every loop closes in the neutral pose");
-        let mut known_pieces: Vec<(Legs, Pieces)> = Vec::new();
+        let mut known_pieces: Vec<(LegDrive, Pieces)> = Vec::new();
         for (legs, scene) in walks {
             if known_pieces
                 .iter()
                 .all(|(known_legs, _)| *known_legs != legs)
             {
-                known_pieces.push((legs, Pieces::of(assembly, &scene)?));
+                known_pieces.push((legs, Pieces::compute(assembly, &scene)?));
             }
             for (_, pieces) in known_pieces
                 .iter()
                 .filter(|(known_legs, _)| *known_legs == legs)
             {
                 let file = self.folder.path().join(format!("{}.xml", scene.name));
-                std::fs::write(file, pieces.mjcf(&neutral, &scene))?;
-                self.count += 1;
+                std::fs::write(file, pieces.format_mjcf(&neutral, &scene))?;
+                self.walk_count += 1;
             }
         }
         Ok(())
@@ -115,12 +114,12 @@ impl Jobs {
     /// # Errors
     /// Fails if Python does not start.
     pub fn start(self) -> Result<RunningJudge, MujocoError> {
-        let judge = Command::new(crate_folder().join("../../target/physics/bin/python"))
-            .arg(crate_folder().join("judge.py"))
+        let judge = Command::new(crate_dir().join("../../target/physics/bin/python"))
+            .arg(crate_dir().join("judge.py"))
             .arg(self.folder.path())
             .stdout(Stdio::piped())
             .spawn()
-            .map_err(MujocoError::Start)?;
+            .map_err(MujocoError::PythonStart)?;
         Ok(RunningJudge {
             judge,
             _folder: self.folder,
@@ -128,25 +127,30 @@ impl Jobs {
     }
 }
 
-/// Returns the scene of two cycles of a gait, of which the second is measured.
-pub(crate) fn scene_of(name: &str, assembly: &Assembly, gait: &str, case: Case) -> Scene {
+/// Returns the scene of a gait's walk over two cycles, of which the second is measured.
+pub(crate) fn make_two_cycle_scene(
+    name: &str,
+    assembly: &Assembly,
+    gait: &str,
+    case: Case,
+) -> Scene {
     let robot = assembly.robot();
     let gait = robot.gait(gait).expect("the robot has this gait");
     let strut = robot.strut_with_coil(&robot.parts().spring);
     Scene {
         name: name.to_owned(),
         excess_lengths: [case.feet.excess_length_mm(), 0.0, 0.0, 0.0],
-        leaf_stiffness: case.feet.stiffness(robot),
-        // Friction is equal in all directions, as in `Case::ground`; `grains.rs` is for other pads.
+        leaf_stiffness: case.feet.leaf_stiffness(robot),
+        // Friction is equal in all directions, as in `Case::ground`; `grains.rs` covers other pads.
         friction_ratio: 1.0,
-        strut_spring: (case.legs == Legs::Strut).then_some(StrutSpring {
-            preload: strut.force,
-            rate: strut.rate,
+        strut_spring: (case.legs == LegDrive::Strut).then_some(StrutSpring {
+            preload: strut.preload,
+            rate: strut.spring_rate,
         }),
-        course: Some(Course::of(robot, gait, 2, 1)),
-        // Only pictures need shapes; without them MuJoCo reads the file ten times as fast.
+        course: Some(Course::for_gait(robot, gait, 2, 1)),
+        // Only pictures need shapes; without shapes, MuJoCo reads the file ten times faster.
         has_shapes: false,
-        ..Scene::of(assembly)
+        ..Scene::for_assembly(assembly)
     }
 }
 
@@ -154,20 +158,20 @@ impl RunningJudge {
     /// Waits for all walks and returns their displacements by name.
     ///
     /// # Errors
-    /// Fails if the judge ended early or could not simulate a walk, or if MuJoCo warned during a walk.
+    /// Fails if the judge failed or could not simulate a walk, or if MuJoCo warned during a walk.
     pub fn wait(self) -> Result<BTreeMap<String, Displacement>, MujocoError> {
         let output = self.judge.wait_with_output()?;
         if !output.status.success() {
-            return Err(MujocoError::Ended(output.status));
+            return Err(MujocoError::JudgeExit(output.status));
         }
         let mut displacements = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
             let answer: JudgeAnswer = serde_json::from_str(line)
-                .map_err(|_| MujocoError::UnknownAnswer(line.to_owned()))?;
-            let Some(displacement) = answer.way else {
+                .map_err(|_| MujocoError::InvalidAnswer(line.to_owned()))?;
+            let Some(displacement) = answer.displacement else {
                 return Err(MujocoError::FailedWalk {
-                    file: answer.file,
-                    problem: answer.trouble.unwrap_or_default(),
+                    name: answer.file,
+                    message: answer.error.unwrap_or_default(),
                 });
             };
             displacements.insert(answer.file, displacement.into());

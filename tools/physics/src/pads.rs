@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use lizard_parts::{Assembly, Pads, Scene};
 
-use crate::figures::Displacement;
+use crate::results::Displacement;
 use crate::surface::Surface;
 
 /// The gait of the comparison.
@@ -18,7 +18,7 @@ pub const SURFACES: [Surface; 4] = [
     Surface::Blocks(10),
 ];
 
-/// The shape of the pads; each shape is a row of the table.
+/// A shape of the pads; each shape is a row of the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PadShape {
     /// A flat disc, 8 mm wide.
@@ -47,15 +47,15 @@ impl PadShape {
         }
     }
 
-    /// Returns the scene of a walk; `level_displacement` is the gait's displacement on a level floor.
-    pub fn scene(
+    /// Returns the scene of a walk on a surface; `level_displacement` is the gait's displacement on a level floor.
+    pub fn make_scene(
         self,
         name: &str,
         paper: &Assembly,
         surface: Surface,
         level_displacement: Displacement,
     ) -> Scene {
-        let mut scene = surface.scene(name, paper, GAIT, level_displacement);
+        let mut scene = surface.make_scene(name, paper, GAIT, level_displacement);
         scene.pads = match self {
             Self::Flat => Pads::Flat(8.0),
             Self::Dome(radius) => Pads::Domes(f64::from(radius)),
@@ -67,16 +67,16 @@ impl PadShape {
 /// MuJoCo's displacements by shape and surface.
 pub type ShapeDisplacements = BTreeMap<String, BTreeMap<String, Displacement>>;
 
-/// Returns the displacements stored in `pads.json`.
+/// Loads the displacements stored in `pads.json`.
 ///
 /// # Panics
 /// If `pads.json` is not a table of displacements.
-pub fn stored() -> ShapeDisplacements {
+pub fn load_stored() -> ShapeDisplacements {
     serde_json::from_str(include_str!("../pads.json")).expect("pads.json has the expected format")
 }
 
 /// Returns the table in Markdown: mm forward per cycle, or a dash if a walk is missing.
-pub fn table(shapes: &ShapeDisplacements) -> String {
+pub fn format_table(shapes: &ShapeDisplacements) -> String {
     let headings = SURFACES.map(|surface| format!(" {surface} |")).concat();
     let mut text = format!(
         "| radius, mm |{headings}\n|---|{}\n",

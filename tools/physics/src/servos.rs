@@ -1,5 +1,5 @@
-//! Comparison of the contact model with motors and of MuJoCo with the motors that `lizard model` writes, for servos
-//! that lag behind their pulses. The servos have no dead band here.
+//! Comparison of the contact model and MuJoCo for servos that lag behind their pulses. MuJoCo uses the motors that
+//! `lizard model` writes. The servos have no dead band here.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -7,31 +7,30 @@ use std::fmt::Write as _;
 use lizard_parts::{Assembly, Course, Scene};
 use lizard_robot::Robot;
 
-use crate::crate_folder;
-use crate::figures::{Displacement, Results};
+use crate::crate_dir;
+use crate::results::{Displacement, Results};
 
-/// The gaits, each with the index of the component of the displacement that is compared: 0 for the distance forward, 2
-/// for the turn.
+/// The gaits, each with the index of the compared displacement component: 0 for the distance forward, 2 for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
-/// The allowed difference between the model and MuJoCo, as a share of MuJoCo's displacement.
-const MAX_DEVIATION_SHARE: f64 = 0.10;
+/// The allowed difference between the model and MuJoCo, as a fraction of MuJoCo's displacement.
+const MAX_DEVIATION: f64 = 0.10;
 
 /// The paper's robot with other servos, joints, mass and pads.
 #[derive(Clone, Copy, Debug)]
 pub struct Variant {
     /// The variant's name in the table.
     pub name: &'static str,
-    /// Lines of the table `[servo]` of robot.toml.
+    /// Lines of the table `[servo]` in robot.toml.
     servo_lines: &'static str,
-    /// Lines of the table `[joints]` of robot.toml.
+    /// Lines of the table `[joints]` in robot.toml.
     joint_lines: &'static str,
-    /// Friction of each pin of MuJoCo's robot, N mm, instead of `drag`; `None` keeps `drag`.
+    /// Friction of each pin in MuJoCo's robot, which replaces `drag`, N mm; `None` keeps `drag`.
     pin_friction: Option<f64>,
     /// Additional mass, g.
-    extra_mass: f64,
-    /// Coefficient of friction of the pads.
+    extra_mass_g: f64,
+    /// Friction coefficient of the pads.
     friction: f64,
-    /// Gaits that may differ by more than [`MAX_DEVIATION_SHARE`], with the share that is allowed instead.
+    /// Gaits that may differ by more than [`MAX_DEVIATION`], each with the fraction that is allowed instead.
     exceptions: &'static [(&'static str, f64)],
 }
 
@@ -40,14 +39,14 @@ const SG90: Variant = Variant {
     servo_lines: "",
     joint_lines: "",
     pin_friction: None,
-    extra_mass: 0.0,
+    extra_mass_g: 0.0,
     friction: 0.7,
     exceptions: &[],
 };
 const COPY: Variant = Variant {
     name: "copy, 50 g more, friction 1, joints that run easily",
     servo_lines: "model = \"copy\"",
-    extra_mass: 50.0,
+    extra_mass_g: 50.0,
     friction: 1.0,
     ..SG90
 };
@@ -66,14 +65,14 @@ impl Variant {
         Self {
             name: "the same, but 3 N mm in each pin of MuJoCo's robot",
             pin_friction: Some(3.0),
-            // The pins of head and tail turn when a single leg swings; without their friction, the error is 6 %.
+            // The head's and tail's pins turn when a single leg swings; without their friction, the error is 6 %.
             exceptions: &[("crawl", 0.17)],
             ..STIFF_JOINTS
         },
         Self {
             name: "the same copy on 4.2 V",
             servo_lines: "model = \"copy\"\nvolts = 4.2",
-            // The servos nearly stall, so small details of the robot change MuJoCo's walk by a tenth.
+            // The servos nearly stall; therefore small details of the robot change MuJoCo's walk by a tenth.
             exceptions: &[("walk", 0.21), ("left", 0.12)],
             ..STIFF_JOINTS
         },
@@ -89,16 +88,16 @@ impl Variant {
         },
     ];
 
-    /// Returns the robot of this variant.
+    /// Loads the robot of this variant.
     ///
     /// # Panics
-    /// If robots/paper.toml does not have the lines that are replaced.
-    pub fn robot(&self) -> Robot {
-        let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"));
+    /// If robots/paper.toml does not have the replaced lines.
+    pub fn load_robot(&self) -> Robot {
+        let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"));
         let mut text = text.expect("robots/paper.toml is readable");
         let own_mass = crate::load_robot("paper").ground().body.mass;
         let mut replace = |old: &str, new: &str| {
-            assert!(text.contains(old), "{old}");
+            assert!(text.contains(old), "robots/paper.toml has no {old:?}");
             text = text.replacen(old, new, 1);
         };
         replace(
@@ -114,58 +113,54 @@ impl Variant {
         );
         replace(
             &format!("mass = {own_mass:.1}"),
-            &format!("mass = {:.1}", own_mass + self.extra_mass),
+            &format!("mass = {:.1}", own_mass + self.extra_mass_g),
         );
         Robot::parse(&text).expect(self.name)
     }
 
-    /// Returns MuJoCo's scene of two cycles of a gait, of which the second is measured.
+    /// Returns MuJoCo's scene of a gait's walk over two cycles, of which the second is measured.
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
+    pub fn make_scene(&self, name: &str, assembly: &Assembly, gait: &str) -> Scene {
         let gait = assembly
             .robot()
             .gait(gait)
             .expect("the robot has this gait");
         let mut scene = Scene {
             name: name.to_owned(),
-            course: Some(Course::of(assembly.robot(), gait, 2, 1)),
+            course: Some(Course::for_gait(assembly.robot(), gait, 2, 1)),
             has_shapes: false,
-            ..Scene::of(assembly)
+            ..Scene::for_assembly(assembly)
         };
         if let Some(pin_friction) = self.pin_friction {
-            (scene.pin_friction, scene.motors.joints.pin_torque) = (pin_friction, 0.0);
+            (scene.pin_friction, scene.motors.joint_friction.pin_torque) = (pin_friction, 0.0);
         }
         scene
     }
 
-    /// Returns the displacement of a gait's second cycle by the contact model.
+    /// Simulates a gait's second cycle in the contact model and returns the displacement.
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn model_displacement(&self, gait: &str) -> Displacement {
-        let robot = self.robot();
+    pub fn simulate_model(&self, gait: &str) -> Displacement {
+        let robot = self.load_robot();
         let gait = robot.gait(gait).expect("the robot has this gait");
         gait.simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
             .into()
     }
 
-    /// Returns the share by which the model may differ from MuJoCo in a gait.
-    fn max_deviation_share(&self, gait: &str) -> f64 {
-        let exception = self.exceptions.iter().find(|(name, _)| *name == gait);
-        exception.map_or(MAX_DEVIATION_SHARE, |(_, share)| *share)
-    }
-
-    /// Returns a message if the model differs from MuJoCo too much in a gait.
-    pub fn disagreement(&self, gait: &str, results: &Results) -> Option<String> {
+    /// Returns a message if the model differs too much from MuJoCo in a gait.
+    pub fn describe_disagreement(&self, gait: &str, results: &Results) -> Option<String> {
         let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
             [results.model?, results.mujoco].map(|displacement| displacement.0[component]);
-        let error = model / mujoco - 1.0;
-        (error.abs() > self.max_deviation_share(gait)).then(|| {
-            let percent = 100.0 * error;
-            format!("the model has {model:.1}, MuJoCo {mujoco:.1}: {percent:+.0} %")
+        let exception = self.exceptions.iter().find(|(name, _)| *name == gait);
+        let max_deviation = exception.map_or(MAX_DEVIATION, |(_, deviation)| *deviation);
+        let deviation = model / mujoco - 1.0;
+        (deviation.abs() > max_deviation).then(|| {
+            let percent = 100.0 * deviation;
+            format!("the model has {model:.1}, MuJoCo has {mujoco:.1}: {percent:+.0} %")
         })
     }
 }
@@ -173,17 +168,17 @@ impl Variant {
 /// The results by variant and gait.
 pub type ServoResults = BTreeMap<String, BTreeMap<String, Results>>;
 
-/// Returns the results stored in `servos.json`.
+/// Loads the results stored in `servos.json`.
 ///
 /// # Panics
 /// If `servos.json` does not have the format of [`crate::text::format_blocks`].
-pub fn stored() -> ServoResults {
+pub fn load_stored() -> ServoResults {
     serde_json::from_str(include_str!("../servos.json"))
         .expect("servos.json has the expected format")
 }
 
 /// Returns the table of all variants in Markdown, with a dash for a missing result.
-pub fn servos_table(servos: &ServoResults) -> String {
+pub fn format_servos_table(servos: &ServoResults) -> String {
     let headings = GAITS.map(|(gait, component)| {
         let unit = if component == 2 { "deg" } else { "mm" };
         format!(" {gait}, {unit} |")

@@ -1,7 +1,7 @@
 //! Walks on sloping and uneven floors, on floors with unequal friction, and with a lost pad.
 //!
-//! The contact model knows only a level, even floor, so only MuJoCo predicts the effect of a tile's edge, of crumbs
-//! or of a slope. No gait lifts a foot, so a pad that is pushed against an edge must climb it.
+//! The contact model assumes a level, even floor. Therefore only MuJoCo predicts the effect of a tile's edge, of crumbs
+//! or of a slope. No gait lifts a foot; a pad that is pushed against an edge must climb the edge.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
@@ -11,22 +11,21 @@ use lizard_robot::Robot;
 
 use crate::case::Case;
 use crate::crossing::Crossing;
-use crate::figures::{Displacement, Figures};
 use crate::grains;
-use crate::mujoco::scene_of;
+use crate::mujoco::make_two_cycle_scene;
+use crate::results::{Displacement, WalkResults};
 use crate::table::Component;
 
-/// The names of the robots that walk on other surfaces: the paper's robot on all of them, the others only on the
-/// highest edge and blocks.
+/// The names of the robots that walk on other surfaces: `paper` walks on all surfaces, and the other robots walk only
+/// on the highest edge and blocks.
 pub const ROBOT_NAMES: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
-/// The smallest displacement in a cycle, mm and deg, of a gait that walks; other gaits only look around or wag the
-/// tail.
+/// The smallest displacement per cycle of a gait that walks, mm and deg; other gaits only look around or wag the tail.
 const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
 
-/// Returns the purposes of a gait with this displacement on a level floor: distance, turn, or both; none for a gait
-/// that does not walk.
-pub(crate) fn gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec<Component> {
+/// Returns the purposes of a gait with this displacement on a level floor: distance, turn, or both. A gait that does
+/// not walk has no purpose.
+pub(crate) fn list_gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec<Component> {
     let purposes = [
         (Component::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
         (Component::Turn, turn.abs() > MIN_DISPLACEMENT.1),
@@ -38,18 +37,18 @@ pub(crate) fn gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec
         .collect()
 }
 
-/// Returns the gaits of a robot that walk, each with MuJoCo's displacement on a level floor.
+/// Returns a robot's walking gaits, each with MuJoCo's displacement on a level floor.
 ///
 /// # Panics
 /// If no displacement of a gait is stored.
-pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacement)> {
+pub fn list_walking_gaits(walk_results: &WalkResults, robot: &str) -> Vec<(String, Displacement)> {
     if robot == grains::ROBOT {
-        let stored = grains::stored();
+        let stored = grains::load_stored();
         return grains::GAITS
             .map(|(gait, _)| {
                 (
                     gait.to_owned(),
-                    grains::results_at_own_ratio(&stored[gait]).mujoco,
+                    grains::find_results_at_own_ratio(&stored[gait]).mujoco,
                 )
             })
             .into();
@@ -60,32 +59,32 @@ pub fn walking_gaits(figures: &Figures, robot: &str) -> Vec<(String, Displacemen
         .iter()
         .filter(|gait| gait.has_movement());
     let level_results = moving.map(|gait| {
-        let results = figures.get(robot, gait.name(), Case::ALL[0]);
+        let results = walk_results.get(robot, gait.name(), Case::ALL[0]);
         (
             gait.name().to_owned(),
             *results.expect("figures.json has the result"),
         )
     });
-    // If two feet pull against the other two, the contact model has no result and the gait has no definite path.
+    // If two feet pull against the other two, the contact model has no result, and the gait has no definite path.
     level_results
         .filter(|(_, results)| results.model.is_some())
         .map(|(gait, results)| (gait, results.mujoco))
-        .filter(|(_, level)| !gait_purposes(*level).is_empty())
+        .filter(|(_, level)| !list_gait_purposes(*level).is_empty())
         .collect()
 }
 
 /// A kind of floor, or a level floor on which a foot is damaged.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surface {
-    /// A step up across the path, such as the edge of a tile or of a thin carpet; its height in tenths of a mm.
+    /// A step up of this height across the path, such as the edge of a tile or of a thin carpet; tenths of a mm.
     Edge(u8),
-    /// Blocks that cover a quarter of the floor; their height in tenths of a mm.
+    /// Blocks of this height that cover a quarter of the floor; tenths of a mm.
     Blocks(u8),
-    /// A slope that rises ahead; its angle in deg.
+    /// A slope of this angle that rises ahead, deg.
     Slope(u8),
-    /// Friction of 0.4 for the left feet and 0.8 for the right ones.
+    /// A floor with a friction of 0.4 for the left feet and 0.8 for the right feet.
     UnequalFriction,
-    /// The front left foot has lost its pad.
+    /// A level floor for a robot whose front left foot has lost its pad.
     NoPad,
 }
 
@@ -102,44 +101,41 @@ impl Surface {
         Self::NoPad,
     ];
 
-    /// Returns the surfaces that a robot walks on.
-    pub fn of(robot: &str) -> Vec<Self> {
+    /// Returns the surfaces on which a robot walks.
+    pub fn for_robot(robot: &str) -> Vec<Self> {
         match robot {
             "paper" => Self::ALL.into(),
             _ => vec![Self::Edge(20), Self::Blocks(10)],
         }
     }
 
-    /// True for edges and blocks, which a pad must climb.
+    /// Returns true for edges and blocks, which a pad must climb.
     pub fn is_climbed(self) -> bool {
         matches!(self, Self::Edge(_) | Self::Blocks(_))
     }
 
-    /// Returns the smallest share of its distance that a gait must keep on this surface if its purpose is distance;
-    /// `None` if any share is accepted.
-    pub fn min_distance_share(self) -> Option<f64> {
-        self.is_climbed().then_some(0.85)
+    /// Returns the smallest fraction of a displacement component that a gait must keep on this surface; `None` if any
+    /// fraction is accepted. A lost pad halves some turns; this is accepted because the user must repair the foot.
+    fn min_fraction(self, component: Component) -> Option<f64> {
+        match component {
+            Component::Ahead => self.is_climbed().then_some(0.85),
+            Component::Turn => (self != Self::NoPad).then_some(0.75),
+        }
     }
 
-    /// Returns the smallest share of its turn that a gait must keep on this surface; `None` if any share is accepted. A
-    /// lost pad halves some turns; that is accepted, since the user must repair the foot.
-    pub fn min_turn_share(self) -> Option<f64> {
-        (self != Self::NoPad).then_some(0.75)
-    }
-
-    /// Returns the floor on the path of a gait. `direction` is -1 for a gait that walks back, so that it also walks
-    /// up a slope; otherwise it is 1.
-    fn floor(self, assembly: &Assembly, crossing: &Crossing, direction: f64) -> Floor {
+    /// Returns the floor on the path of a gait. `direction` is -1 for a gait that walks backward, so that this gait
+    /// also walks up a slope; otherwise `direction` is 1.
+    fn make_floor(self, assembly: &Assembly, crossing: &Crossing, direction: f64) -> Floor {
         let robot = assembly.robot();
-        let mut floor = Floor::of(robot);
+        let mut floor = Floor::for_robot(robot);
         match self {
-            Self::Edge(tenths) => floor.blocks.push(crossing.block(mm_of_tenths(tenths))),
-            Self::Blocks(tenths) => floor.blocks = strewn_blocks(robot, mm_of_tenths(tenths)),
+            Self::Edge(tenths) => floor.blocks.push(crossing.make_block(tenths_to_mm(tenths))),
+            Self::Blocks(tenths) => floor.blocks = scatter_blocks(robot, tenths_to_mm(tenths)),
             Self::Slope(deg) => floor.slope = direction * f64::from(deg),
             Self::UnequalFriction => {
-                let friction_of = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
+                let choose_friction = |[_, left]: [f64; 2]| if left > 0.0 { 0.4 } else { 0.8 };
                 floor.friction_coefficients =
-                    robot.ground().feet.positions([0.0; 4]).map(friction_of);
+                    robot.ground().feet.positions([0.0; 4]).map(choose_friction);
             }
             // The foot slides on the steel head of its screw.
             Self::NoPad => floor.friction_coefficients[0] = 0.2,
@@ -147,11 +143,11 @@ impl Surface {
         floor
     }
 
-    /// Returns the scene of a gait on this surface; `level_displacement` is the gait's displacement on a level floor.
+    /// Returns the scene of a gait's walk on this surface; `level_displacement` is the displacement on a level floor.
     ///
     /// # Panics
     /// If the robot has no such gait.
-    pub fn scene(
+    pub fn make_scene(
         self,
         name: &str,
         assembly: &Assembly,
@@ -164,21 +160,21 @@ impl Surface {
         } else {
             1.0
         };
-        let mut scene = scene_of(name, assembly, gait, Case::ALL[0]);
+        let mut scene = make_two_cycle_scene(name, assembly, gait, Case::ALL[0]);
         scene.friction_ratio = robot.ground().friction_ratio;
         let gait = robot.gait(gait).expect("the robot has this gait");
-        // On pads without a grain, a gait has its full speed from the first cycle on.
+        // On pads without a grain, a gait has its full speed from the beginning.
         let settling_cycles = match scene.friction_ratio == 1.0 {
             true => 0,
-            false => grains::settling_cycle_count(gait),
+            false => grains::count_settling_cycles(gait),
         };
-        let crossing = Crossing::of(robot, level_displacement, settling_cycles);
+        let crossing = Crossing::find(robot, level_displacement, settling_cycles);
         let [cycles, measured_cycles] = match self.is_climbed() {
             true => [settling_cycles + crossing.cycle_count, crossing.cycle_count],
             false => [2, 1],
         };
-        scene.course = Some(Course::of(robot, gait, cycles, measured_cycles));
-        scene.floor = self.floor(assembly, &crossing, direction);
+        scene.course = Some(Course::for_gait(robot, gait, cycles, measured_cycles));
+        scene.floor = self.make_floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
             scene.excess_lengths[0] = -assembly.stack().pad_head_height(robot.parts());
@@ -188,19 +184,19 @@ impl Surface {
 }
 
 /// Converts tenths of a mm to mm.
-fn mm_of_tenths(tenths: u8) -> f64 {
+fn tenths_to_mm(tenths: u8) -> f64 {
     f64::from(tenths) / 10.0
 }
 
-/// Returns blocks of 10 to 20 mm at pseudo-random places, the same in each call: one block in each square of
-/// 30 mm, so that they cover a quarter of the floor. No block is under a foot at the start.
-fn strewn_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
+/// Returns blocks of 10 to 20 mm at pseudo-random places, the same in each call. One block lies in each square of 30
+/// mm; the blocks therefore cover a quarter of the floor. No block is under a foot at the start.
+fn scatter_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
     const SQUARE_MM: f64 = 30.0;
     const REACH_SQUARES: i32 = 12;
     let feet = robot.ground().feet.positions([0.0; 4]);
     let mut seed: u32 = 1;
     let mut random_between = |min: f64, max: f64| {
-        // The generator of Numerical Recipes; only the upper 16 bits are random enough.
+        // The generator is from Numerical Recipes; only the upper 16 bits are random enough.
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         min + (max - min) * f64::from(seed >> 16) / 65536.0
     };
@@ -230,8 +226,8 @@ fn strewn_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
 impl fmt::Display for Surface {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::Edge(tenths) => write!(f, "edge of {} mm", mm_of_tenths(*tenths)),
-            Self::Blocks(tenths) => write!(f, "blocks of {} mm", mm_of_tenths(*tenths)),
+            Self::Edge(tenths) => write!(f, "edge of {} mm", tenths_to_mm(*tenths)),
+            Self::Blocks(tenths) => write!(f, "blocks of {} mm", tenths_to_mm(*tenths)),
             Self::Slope(deg) => write!(f, "rises {deg} deg"),
             Self::UnequalFriction => f.write_str("friction .4, .8"),
             Self::NoPad => f.write_str("a pad lost"),
@@ -242,11 +238,11 @@ impl fmt::Display for Surface {
 /// MuJoCo's displacements by robot, gait and surface.
 pub type SurfaceDisplacements = BTreeMap<String, BTreeMap<String, BTreeMap<String, Displacement>>>;
 
-/// Returns the displacements stored in `surfaces.json`.
+/// Loads the displacements stored in `surfaces.json`.
 ///
 /// # Panics
 /// If `surfaces.json` is not a table of displacements.
-pub fn stored() -> SurfaceDisplacements {
+pub fn load_stored() -> SurfaceDisplacements {
     serde_json::from_str(include_str!("../surfaces.json"))
         .expect("surfaces.json has the expected format")
 }
@@ -255,79 +251,79 @@ pub fn stored() -> SurfaceDisplacements {
 ///
 /// # Panics
 /// If no displacement of the gait is stored.
-pub fn level_displacement(figures: &Figures, gait: &str) -> Displacement {
-    let results = figures.get("paper", gait, Case::ALL[0]);
+pub fn get_level_displacement(walk_results: &WalkResults, gait: &str) -> Displacement {
+    let results = walk_results.get("paper", gait, Case::ALL[0]);
     results.expect("figures.json has the result").mujoco
 }
 
-/// Gaits that are known to keep less of their displacement than required, each with its robot and surface. On pads with
-/// a grain, `back` pushes against the grain.
+/// Gaits that keep less of their displacement than required, each with its robot and surface. On pads with a grain,
+/// `back` pushes against the grain.
 pub const KNOWN_SHORTFALLS: [(&str, &str, Surface); 2] = [
     (grains::ROBOT, "back", Surface::Edge(20)),
     (grains::ROBOT, "back", Surface::Blocks(10)),
 ];
 
-/// True for a gait in [`KNOWN_SHORTFALLS`].
+/// Returns true for a gait in [`KNOWN_SHORTFALLS`].
 pub fn is_known_shortfall(robot: &str, gait: &str, surface: Surface) -> bool {
     KNOWN_SHORTFALLS.contains(&(robot, gait, surface))
 }
 
-/// Returns the smallest share of a component that a gait must keep on a surface; `None` if any share is accepted.
-fn min_share(surface: Surface, component: Component) -> Option<f64> {
-    match component {
-        Component::Ahead => surface.min_distance_share(),
-        Component::Turn => surface.min_turn_share(),
-    }
-}
-
-/// Returns a message for each of the gait's purposes (distance, turn) of which the gait loses more than is allowed on
-/// the surface.
-pub fn excess_losses(
+/// Returns a message for each purpose (distance, turn) of which the gait loses more than allowed on the surface.
+pub fn describe_excess_losses(
     surface: Surface,
     level_displacement: Displacement,
     displacement: Displacement,
 ) -> Vec<String> {
-    let loss_message = |component: Component| {
+    let describe_loss = |component: Component| {
         let [level_value, value] =
             [level_displacement, displacement].map(|displacement| component.value(displacement));
         let unit = component.unit();
-        let least_share = min_share(surface, component)?;
-        (value / level_value < least_share).then(|| {
-            format!("{value:.1} {unit} a cycle of {level_value:.1} on a level floor; {least_share:.2} must be kept")
+        let min_fraction = surface.min_fraction(component)?;
+        let fraction = value / level_value;
+        (fraction < min_fraction).then(|| {
+            format!(
+                "{value:.1} {unit} per cycle, {level_value:.1} {unit} on a level floor; \
+                 the fraction {fraction:.2} must be at least {min_fraction:.2}"
+            )
         })
     };
-    gait_purposes(level_displacement)
+    list_gait_purposes(level_displacement)
         .into_iter()
-        .filter_map(loss_message)
+        .filter_map(describe_loss)
         .collect()
 }
 
 /// Returns the table of a robot's gaits on its surfaces in Markdown.
-pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &SurfaceDisplacements) -> String {
-    let robot_surfaces = Surface::of(robot);
+pub fn format_surfaces_table(
+    robot: &str,
+    walk_results: &WalkResults,
+    surfaces: &SurfaceDisplacements,
+) -> String {
+    let robot_surfaces = Surface::for_robot(robot);
     let headings = robot_surfaces.iter().map(|surface| format!(" {surface} |"));
     let lines = "---|".repeat(robot_surfaces.len());
     let mut text = format!(
         "| gait | level |{}\n|---|---|{lines}\n",
         headings.collect::<String>()
     );
-    for (gait, level) in walking_gaits(figures, robot) {
+    for (gait, level) in list_walking_gaits(walk_results, robot) {
         let stored = surfaces.get(robot).and_then(|by_gait| by_gait.get(&gait));
-        for component in gait_purposes(level) {
-            let cell_of = |displacement| format!(" {:+.1}", component.value(displacement));
+        for component in list_gait_purposes(level) {
+            let format_cell = |displacement| format!(" {:+.1}", component.value(displacement));
             let displacements = robot_surfaces.iter().map(|surface| {
                 let displacement =
                     stored.and_then(|by_surface| by_surface.get(&surface.to_string()));
                 let Some(displacement) = displacement else {
                     return " - |".to_owned();
                 };
-                let share = component.value(*displacement) / component.value(level);
-                let is_shortfall =
-                    min_share(*surface, component).is_some_and(|least_share| share < least_share);
+                let fraction = component.value(*displacement) / component.value(level);
+                let min_fraction = surface.min_fraction(component);
+                let is_shortfall = min_fraction.is_some_and(|min_fraction| fraction < min_fraction);
                 let mark = if is_shortfall { "!" } else { "" };
-                format!("{}{mark} |", cell_of(*displacement))
+                format!("{}{mark} |", format_cell(*displacement))
             });
-            let (level_cell, displacements) = (cell_of(level), displacements.collect::<String>());
+            let (level_cell, displacements) =
+                (format_cell(level), displacements.collect::<String>());
             _ = writeln!(
                 text,
                 "| {gait}, {} |{level_cell} |{displacements}",
@@ -341,8 +337,8 @@ pub fn surfaces_table(robot: &str, figures: &Figures, surfaces: &SurfaceDisplace
     ] {
         let cells = robot_surfaces
             .iter()
-            .map(|surface| match min_share(*surface, component) {
-                Some(share) => format!(" {:.0} % |", 100.0 * share),
+            .map(|surface| match surface.min_fraction(component) {
+                Some(fraction) => format!(" {:.0} % |", 100.0 * fraction),
                 None => " - |".to_owned(),
             });
         let cells = cells.collect::<String>();

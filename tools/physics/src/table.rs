@@ -1,13 +1,13 @@
-//! Tables of the stored figures: a text table of all figures of a robot, and a Markdown table with one row per gait.
+//! Tables of the stored results: a text table of all results of a robot, and a Markdown table with one row per gait.
 
 use std::fmt::Write as _;
 
 use lizard_robot::Robot;
 
-use crate::case::{Case, Feet, Legs};
-use crate::figures::{Displacement, Figures};
+use crate::case::{Case, FootSetup, LegDrive};
+use crate::results::{Displacement, WalkResults};
 
-/// The displacement per cycle up to which a component counts as zero: mm ahead, and deg of turn.
+/// The largest displacement per cycle that counts as zero: mm ahead, and deg of turn.
 const NEGLIGIBLE_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
 
 /// A component of a displacement: the distance ahead, or the turn.
@@ -18,8 +18,8 @@ pub(crate) enum Component {
 }
 
 impl Component {
-    /// Returns the components of a displacement that are not negligible; `Ahead` if both are negligible.
-    pub(crate) fn of(displacement: Displacement) -> Vec<Self> {
+    /// Returns a displacement's components that are not negligible; `Ahead` if both are negligible.
+    pub(crate) fn for_displacement(displacement: Displacement) -> Vec<Self> {
         let [ahead, _, turn] = displacement.0.map(f64::abs);
         let mut components = Vec::new();
         if ahead > NEGLIGIBLE_DISPLACEMENT.0 || turn <= NEGLIGIBLE_DISPLACEMENT.1 {
@@ -46,30 +46,30 @@ impl Component {
     }
 }
 
-/// Returns a table of all figures of a robot as plain text, with the model and MuJoCo side by side and one block for
-/// each kind of legs.
-pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
+/// Returns a plain-text table of all results of a robot, with the model and MuJoCo side by side and one block for each
+/// kind of leg drive.
+pub fn format_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
     let mut text = String::new();
-    for legs in [Legs::Rigid, Legs::Strut] {
+    for legs in [LegDrive::Rigid, LegDrive::Strut] {
         let title = match legs {
-            Legs::Rigid => "rigid struts",
-            Legs::Strut => "struts with springs",
+            LegDrive::Rigid => "rigid struts",
+            LegDrive::Strut => "struts with springs",
         };
         _ = writeln!(text, "robots/{name}.toml, {title}");
-        let cases = Feet::ALL.map(|feet| Case { legs, feet });
+        let cases = FootSetup::ALL.map(|feet| Case { legs, feet });
         let cases: Vec<Case> = cases
             .into_iter()
             .filter(|case| Case::ALL.contains(case))
             .collect();
-        let width = moving_gait_names(robot).map(str::len).max().unwrap_or(0);
+        let width = list_moving_gaits(robot).map(str::len).max().unwrap_or(0);
         _ = write!(text, "{:width$}    ", "");
         let headings = cases.iter().map(|case| match case.feet {
-            Feet::Level => "level",
-            Feet::Stiff => "0.6 mm long, 2 N/mm",
-            Feet::Soft => "1.0 mm long",
+            FootSetup::Level => "level",
+            FootSetup::Stiff => "0.6 mm long, 2 N/mm",
+            FootSetup::Soft => "1.0 mm long",
         });
-        for head in headings {
-            _ = write!(text, "  {head:<20}");
+        for heading in headings {
+            _ = write!(text, "  {heading:<20}");
         }
         text = text.trim_end().to_owned();
         _ = write!(text, "\n{:<width$}    ", "gait");
@@ -77,15 +77,17 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
             _ = write!(text, "  {:>6}  {:>6}      ", "model", "MuJoCo");
         }
         text = text.trim_end().to_owned() + "\n";
-        for gait in moving_gait_names(robot) {
-            let Some(first_results) = figures.get(name, gait, cases[0]) else {
+        for gait in list_moving_gaits(robot) {
+            let Some(first_results) = walk_results.get(name, gait, cases[0]) else {
                 continue;
             };
-            for component in Component::of(first_results.model.unwrap_or(first_results.mujoco)) {
+            for component in
+                Component::for_displacement(first_results.model.unwrap_or(first_results.mujoco))
+            {
                 _ = write!(text, "{gait:<width$} {:>3}", component.unit());
                 for results in cases
                     .iter()
-                    .filter_map(|case| figures.get(name, gait, *case))
+                    .filter_map(|case| walk_results.get(name, gait, *case))
                 {
                     for displacement in [results.model, Some(results.mujoco)] {
                         _ = match displacement {
@@ -105,33 +107,35 @@ pub fn table(name: &str, robot: &Robot, figures: &Figures) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// Returns the names of the gaits that move, in the order of robot.toml.
-fn moving_gait_names(robot: &Robot) -> impl Iterator<Item = &str> {
+/// Returns the names of the moving gaits, in the order of robot.toml.
+fn list_moving_gaits(robot: &Robot) -> impl Iterator<Item = &str> {
     let moving = robot.gaits().iter().filter(|gait| gait.has_movement());
     moving.map(|gait| gait.name())
 }
 
-/// Returns the displacement per cycle of each gait as a Markdown table. For level feet: the model's prediction with
-/// ideal servos and with the robot's servos, and MuJoCo's result. For a foot 1.0 mm too long: the range from the
-/// model's prediction with ideal servos to MuJoCo's result.
-pub fn displacement_table(name: &str, robot: &Robot, figures: &Figures) -> String {
+/// Returns the displacement per cycle of each gait as a Markdown table. For level feet, the table has the model's
+/// prediction with ideal servos and with the robot's servos, and MuJoCo's result. For a foot that is 1.0 mm too long,
+/// it has the range between the model's prediction with ideal servos and MuJoCo's result.
+pub fn format_displacement_table(name: &str, robot: &Robot, walk_results: &WalkResults) -> String {
     let mut text = "| gait | cycle, s | ideal servos | its servos | MuJoCo | ideal servos and MuJoCo, a foot 1.0 mm too long |\n|---|---|---|---|---|---|\n".to_owned();
     for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-        let results_with = |feet: Feet| {
-            let legs = Legs::Rigid;
-            figures.get(name, gait.name(), Case { legs, feet })
+        let find_results = |feet: FootSetup| {
+            let legs = LegDrive::Rigid;
+            walk_results.get(name, gait.name(), Case { legs, feet })
         };
-        let (Some(level), Some(long_foot)) = (results_with(Feet::Level), results_with(Feet::Soft))
-        else {
+        let (Some(level), Some(long_foot)) = (
+            find_results(FootSetup::Level),
+            find_results(FootSetup::Soft),
+        ) else {
             continue;
         };
         let (Some(model), Some(long_model)) = (level.model, long_foot.model) else {
             continue;
         };
-        let cell_of = |displacements: &[Displacement]| {
-            let components = Component::of(model)
+        let format_cell = |displacements: &[Displacement]| {
+            let components = Component::for_displacement(model)
                 .into_iter()
-                .map(|component| range_text(component, displacements));
+                .map(|component| format_range(component, displacements));
             components.collect::<Vec<_>>().join(", ")
         };
         _ = writeln!(
@@ -139,18 +143,18 @@ pub fn displacement_table(name: &str, robot: &Robot, figures: &Figures) -> Strin
             "| {} | {} | {} | {} | {} | {} |",
             gait.name(),
             gait.period(),
-            cell_of(&[model]),
-            cell_of(&[gait
+            format_cell(&[model]),
+            format_cell(&[gait
                 .simulate_driven_cycle(robot.ground(), &robot.motors(), 1.0)
                 .into()]),
-            cell_of(&[level.mujoco]),
-            cell_of(&[long_model, long_foot.mujoco])
+            format_cell(&[level.mujoco]),
+            format_cell(&[long_model, long_foot.mujoco])
         );
     }
     text
 }
 
-fn range_text(component: Component, displacements: &[Displacement]) -> String {
+fn format_range(component: Component, displacements: &[Displacement]) -> String {
     let values = displacements
         .iter()
         .map(|displacement| component.value(*displacement));

@@ -1,12 +1,12 @@
-//! The text of stored displacements: JSON with one entry per line, so that a diff shows each change, and the
-//! tables of the documentation.
+//! Text files: JSON of stored displacements with one entry per line, so that a diff shows each change, and the tables
+//! in the documentation.
 
 use std::collections::BTreeMap;
 use std::fs;
 
 use serde::Serialize;
 
-use crate::crate_folder;
+use crate::crate_dir;
 
 /// Formats a map as a JSON object with one line per key.
 ///
@@ -36,10 +36,10 @@ pub fn format_nested_blocks<T: Serialize>(
     }) + "\n"
 }
 
-fn join_lines<T>(map: &BTreeMap<String, T>, text_of: impl Fn(&T) -> String) -> String {
+fn join_lines<T>(map: &BTreeMap<String, T>, format_value: impl Fn(&T) -> String) -> String {
     let lines = map
         .iter()
-        .map(|(key, value)| format!("{key:?}: {}", text_of(value)));
+        .map(|(key, value)| format!("{key:?}: {}", format_value(value)));
     format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
 }
 
@@ -47,13 +47,13 @@ fn to_json<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).expect("numbers can be written as JSON")
 }
 
-/// Compares the text between `begin` and `end` in a file of the project with `expected_text`; replaces it if
-/// `BLESS_PHYSICS` is set.
+/// Compares the text between `begin` and `end` in one of the project's files with `expected_text`. Replaces the text
+/// instead if `BLESS_PHYSICS` is set.
 ///
 /// # Panics
-/// If the text there differs, or if `begin` or `end` is missing.
+/// If the texts differ, or if `begin` or `end` is missing.
 pub fn check_block(path: &str, begin: &str, end: &str, expected_text: &str) {
-    let file = crate_folder().join("../..").join(path);
+    let file = crate_dir().join("../..").join(path);
     let text = fs::read_to_string(&file).expect(path);
     let start = text.find(begin).expect(begin) + begin.len();
     let end_index = start + text[start..].find(end).expect(end);

@@ -1,17 +1,17 @@
-//! Tests of the figures in the documentation: they are equal to the stored figures, and the contact model agrees with
-//! MuJoCo within the bounds.
+//! Tests of the stored results: the documentation has the same values, and the contact model agrees with MuJoCo within
+//! the tolerances.
 //!
-//! With `BLESS_PHYSICS=1`, as in `make docs`, the tables are written instead of compared.
+//! With `BLESS_PHYSICS=1`, as in `make docs`, the tests write the tables instead of comparing them.
 
 use lizard_robot::Robot;
 
 use lizard_physics::assumptions::{self, Assumption};
 use lizard_physics::pads::{self, PadShape, SURFACES};
-use lizard_physics::surface::{self, Surface, surfaces_table};
+use lizard_physics::surface::{self, Surface, format_surfaces_table};
 use lizard_physics::text::{check_block, format_blocks, format_lines};
 use lizard_physics::{
-    Case, Crossing, Displacement, Feet, Figures, Legs, ROBOT_NAMES, crate_folder,
-    displacement_table, expected_table, load_robot, table, walks_of,
+    Case, Crossing, Displacement, FootSetup, LegDrive, ROBOT_NAMES, WalkResults, crate_dir,
+    format_displacement_table, format_expected_table, format_table, list_walks, load_robot,
 };
 
 /// Compares the text between a marker and the next end marker of a page with `expected_text`.
@@ -21,48 +21,55 @@ fn check_page(page: &str, marker: &str, expected_text: &str) {
 }
 
 #[test]
-fn the_pages_have_the_displacements_by_the_model_and_by_mujoco() {
-    let figures = Figures::stored();
+fn the_documentation_has_the_stored_displacements() {
+    let walk_results = WalkResults::load_stored();
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
-        let fenced_table = format!("```text\n{}```\n", table(name, &robot, &figures));
+        let fenced_table = format!(
+            "```text\n{}```\n",
+            format_table(name, &robot, &walk_results)
+        );
         check_page(
             "docs/judges.md",
             &format!("physics of robots/{name}.toml"),
             &fenced_table,
         );
         if name == "paper" {
-            let displacements = displacement_table(name, &robot, &figures);
+            let displacements = format_displacement_table(name, &robot, &walk_results);
             for page in ["README.md", "docs/gaits.md", "docs/twin.md"] {
                 check_page(page, "ways of robots/paper.toml", &displacements);
             }
         }
     }
-    let surfaces = surface::stored();
+    let surfaces = surface::load_stored();
     for name in surface::ROBOT_NAMES {
-        let table = surfaces_table(name, &figures, &surfaces);
+        let table = format_surfaces_table(name, &walk_results, &surfaces);
         let marker = format!("surfaces of robots/{name}.toml");
         check_page("docs/judges.md", &marker, &table);
     }
-    check_page("docs/judges.md", "pads", &pads::table(&pads::stored()));
-    let changes = assumptions::table(&figures, &surfaces, &assumptions::stored());
+    check_page(
+        "docs/judges.md",
+        "pads",
+        &pads::format_table(&pads::load_stored()),
+    );
+    let changes = assumptions::format_table(&walk_results, &surfaces, &assumptions::load_stored());
     let fenced = format!("```text\n{changes}```\n");
     check_page("docs/limits.md", "assumptions by MuJoCo", &fenced);
     let robot = load_robot("paper");
     check_page(
         "docs/measure.md",
         "expected of robots/paper.toml",
-        &expected_table(&robot),
+        &format_expected_table(&robot),
     );
 }
 
 #[test]
-fn the_stored_figures_are_written_as_they_are_read() {
-    let file = crate_folder().join("figures.json");
-    let text = std::fs::read_to_string(&file).expect("figures.json is readable");
-    let new_text = Figures::stored().to_json();
+fn to_json_reproduces_the_stored_results() {
+    let path = crate_dir().join("figures.json");
+    let text = std::fs::read_to_string(&path).expect("figures.json is readable");
+    let new_text = WalkResults::load_stored().to_json();
     if std::env::var_os("BLESS_PHYSICS").is_some() {
-        std::fs::write(&file, new_text).expect("figures.json is readable");
+        std::fs::write(&path, new_text).expect("figures.json is writable");
     } else {
         assert_eq!(text, new_text);
     }
@@ -70,13 +77,13 @@ fn the_stored_figures_are_written_as_they_are_read() {
 
 #[test]
 fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_floor() {
-    let (figures, stored_surfaces) = (Figures::stored(), surface::stored());
+    let (walk_results, stored_surfaces) = (WalkResults::load_stored(), surface::load_stored());
     let mut walk_count = 0;
     for name in surface::ROBOT_NAMES {
-        for (gait, level) in surface::walking_gaits(&figures, name) {
-            for surface in Surface::of(name) {
+        for (gait, level) in surface::list_walking_gaits(&walk_results, name) {
+            for surface in Surface::for_robot(name) {
                 let displacement = stored_surfaces[name][&gait][&surface.to_string()];
-                let losses = surface::excess_losses(surface, level, displacement);
+                let losses = surface::describe_excess_losses(surface, level, displacement);
                 let is_known_shortfall = surface::is_known_shortfall(name, &gait, surface);
                 assert_eq!(
                     !losses.is_empty(),
@@ -92,60 +99,63 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
     assert_eq!(
         stored_counts.sum::<usize>(),
         walk_count,
-        "and no others are stored"
+        "no other walks may be stored"
     );
-    assert!(walk_count > 100, "{walk_count}");
-    // The check reports a robot that cannot move or turn at an edge, and a robot that turns in the wrong direction.
+    assert!(walk_count > 100, "{walk_count} walks");
+    // The check reports robots that cannot move or turn at an edge, and a robot that turns in the wrong direction.
     let no_displacement = Displacement([0.0; 3]);
     for (gait, loss_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
-        let level = surface::level_displacement(&figures, gait);
-        let messages = surface::excess_losses(Surface::Edge(20), level, no_displacement);
+        let level = surface::get_level_displacement(&walk_results, gait);
+        let messages = surface::describe_excess_losses(Surface::Edge(20), level, no_displacement);
         assert_eq!(messages.len(), loss_count, "{gait}: {messages:?}");
     }
-    let [left, right] = ["left", "right"].map(|gait| surface::level_displacement(&figures, gait));
+    let [left, right] =
+        ["left", "right"].map(|gait| surface::get_level_displacement(&walk_results, gait));
     assert_eq!(
-        surface::excess_losses(Surface::Slope(8), left, right),
-        ["-14.9 deg a cycle of 14.9 on a level floor; 0.75 must be kept"]
+        surface::describe_excess_losses(Surface::Slope(8), left, right),
+        [
+            "-14.9 deg per cycle, 14.9 deg on a level floor; the fraction -1.00 must be at least 0.75"
+        ]
     );
 }
 
 #[test]
-fn every_foot_of_a_gait_that_does_not_only_turn_starts_before_the_edge_and_ends_beyond_it() {
-    let figures = Figures::stored();
+fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
+    let walk_results = WalkResults::load_stored();
     let mut turning_gaits = Vec::new();
     for name in surface::ROBOT_NAMES {
         let feet = load_robot(name).ground().feet.positions([0.0; 4]);
-        for (gait, level) in surface::walking_gaits(&figures, name) {
-            let crossing = Crossing::of(&load_robot(name), level, 0);
+        for (gait, level) in surface::list_walking_gaits(&walk_results, name) {
+            let crossing = Crossing::find(&load_robot(name), level, 0);
             if !crossing.is_crossed {
                 turning_gaits.push(gait);
                 continue;
             }
-            let block = crossing.block(2.0);
-            // A point on the edge and the direction across it are computed from the block alone, so that a wrong block
-            // is noticed.
+            let block = crossing.make_block(2.0);
+            // A point on the edge and the direction across the edge come from the block alone, so that the test detects
+            // a wrong block.
             let (sin, cos) = block.rotation.to_radians().sin_cos();
             let half_length = block.size[1] / 2.0;
             let edge = [
                 block.centre[0] + half_length * sin,
                 block.centre[1] - half_length * cos,
             ];
-            let distance_beyond =
+            let compute_distance_beyond =
                 |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
-            let mut pose = [0.0; 3];
+            let mut place = [0.0; 3];
             for [ahead, left] in feet {
                 assert!(
-                    distance_beyond([-left, ahead]) < -20.0,
+                    compute_distance_beyond([-left, ahead]) < -20.0,
                     "{name}: {gait} does not start before the edge"
                 );
             }
             for _ in 0..crossing.cycle_count {
-                pose = move_pose(pose, level.0);
+                place = move_place(place, level.0);
             }
             for [ahead, left] in feet {
-                let [ahead, left, _] = move_pose(pose, [ahead, left, 0.0]);
+                let [ahead, left, _] = move_place(place, [ahead, left, 0.0]);
                 assert!(
-                    distance_beyond([-left, ahead]) > 20.0,
+                    compute_distance_beyond([-left, ahead]) > 20.0,
                     "{name}: {gait} does not end beyond the edge"
                 );
             }
@@ -162,8 +172,8 @@ fn every_foot_of_a_gait_that_does_not_only_turn_starts_before_the_edge_and_ends_
     assert_eq!(turning_gaits, expected_gaits);
 }
 
-/// Returns a pose (mm ahead, mm to the left, deg) after a displacement in the pose's own frame.
-fn move_pose([x, y, heading]: [f64; 3], [ahead, left, turn]: [f64; 3]) -> [f64; 3] {
+/// Returns a place (mm ahead, mm to the left, deg) after a displacement in the place's own frame.
+fn move_place([x, y, heading]: [f64; 3], [ahead, left, turn]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = heading.to_radians().sin_cos();
     [
         x + ahead * cos - left * sin,
@@ -173,8 +183,8 @@ fn move_pose([x, y, heading]: [f64; 3], [ahead, left, turn]: [f64; 3]) -> [f64; 
 }
 
 #[test]
-fn every_other_assumption_and_pad_shape_is_stored_in_the_format_that_is_written() {
-    let (stored_assumptions, shapes) = (assumptions::stored(), pads::stored());
+fn results_of_all_assumptions_and_pad_shapes_are_stored_as_they_are_formatted() {
+    let (stored_assumptions, shapes) = (assumptions::load_stored(), pads::load_stored());
     for Assumption { description, .. } in Assumption::ALL {
         assert_eq!(
             stored_assumptions[description].len(),
@@ -190,35 +200,35 @@ fn every_other_assumption_and_pad_shape_is_stored_in_the_format_that_is_written(
     for (file, text) in [
         ("assumptions.json", format_lines(&stored_assumptions)),
         ("pads.json", format_lines(&shapes)),
-        ("surfaces.json", format_blocks(&surface::stored())),
+        ("surfaces.json", format_blocks(&surface::load_stored())),
     ] {
         assert_eq!(
-            std::fs::read_to_string(crate_folder().join(file)).expect(file),
+            std::fs::read_to_string(crate_dir().join(file)).expect(file),
             text
         );
     }
-    // The shape `30` is that of the pads in robot.toml, so surfaces.json must have the same displacements for `walk`.
+    // The pads in robot.toml have the shape `30`; therefore surfaces.json must have the same displacements for `walk`.
     let default_displacements = &shapes["30"];
     for surface in SURFACES {
         let name = surface.to_string();
-        let (mm, _) =
-            default_displacements[&name].distance_to(&surface::stored()["paper"]["walk"][&name]);
-        assert!(mm < 0.05, "{name}: {mm}");
+        let (mm, _) = default_displacements[&name]
+            .compute_difference(surface::load_stored()["paper"]["walk"][&name]);
+        assert!(mm < 0.05, "{name}: {mm} mm");
     }
 }
 
 #[test]
-fn every_walk_is_stored_and_close_to_the_model() {
-    let figures = Figures::stored();
+fn every_walk_is_stored_and_agrees_with_the_model() {
+    let walk_results = WalkResults::load_stored();
     let mut count = 0;
     for name in ROBOT_NAMES {
         let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-            let results_for = |case| figures.get(name, gait.name(), case);
+            let find_results = |case| walk_results.get(name, gait.name(), case);
             let is_decided =
-                results_for(Case::ALL[0]).is_some_and(|results| results.model.is_some());
+                find_results(Case::ALL[0]).is_some_and(|results| results.model.is_some());
             for case in Case::ALL {
-                let Some(results) = results_for(case) else {
+                let Some(results) = find_results(case) else {
                     assert!(
                         !is_decided && case != Case::ALL[0],
                         "{name}: {}",
@@ -226,7 +236,12 @@ fn every_walk_is_stored_and_close_to_the_model() {
                     );
                     continue;
                 };
-                assert_eq!(results.disagreement(case), None, "{name}: {}", gait.name());
+                assert_eq!(
+                    results.describe_disagreement(case),
+                    None,
+                    "{name}: {}",
+                    gait.name()
+                );
                 assert_eq!(
                     results.model.is_some(),
                     is_decided,
@@ -237,40 +252,40 @@ fn every_walk_is_stored_and_close_to_the_model() {
             }
         }
     }
-    assert_eq!(figures.walk_count(), count, "and no others are stored");
+    assert_eq!(
+        walk_results.walk_count(),
+        count,
+        "no other walks may be stored"
+    );
 }
 
 #[test]
 fn the_stored_results_of_the_model_are_up_to_date() {
-    let (figures, robot) = (Figures::stored(), load_robot("paper"));
+    let (walk_results, robot) = (WalkResults::load_stored(), load_robot("paper"));
     let mut count = 0;
-    for walk in walks_of(&robot) {
-        let results = figures
+    for walk in list_walks(&robot) {
+        let results = walk_results
             .get("paper", &walk.gait, walk.case)
             .expect("the walk is stored");
         assert_eq!(results.model.is_some(), walk.is_decided, "{}", walk.gait);
-        let (Some(stored), Some(computed)) = (results.model, walk.model_displacement(&robot))
-        else {
+        let (Some(stored), Some(computed)) = (results.model, walk.simulate_model(&robot)) else {
             continue;
         };
-        let (mm, deg) = stored.distance_to(&computed);
+        let (mm, deg) = stored.compute_difference(computed);
         assert!(
             mm < 0.05 && deg < 0.05,
-            "{}: {stored:?} {computed:?}",
+            "{}: stored {stored:?}, computed {computed:?}",
             walk.gait
         );
         count += 1;
     }
-    assert!(count >= 40, "{count}");
+    assert!(count >= 40, "{count} walks");
 }
 
 #[test]
-fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
-    let figures = Figures::stored();
-    let case_with = |feet| Case {
-        legs: Legs::Rigid,
-        feet,
-    };
+fn a_foot_1_mm_too_long_costs_less_than_a_tenth_of_the_distance() {
+    let walk_results = WalkResults::load_stored();
+    let legs = LegDrive::Rigid;
     let mut count = 0;
     for name in ROBOT_NAMES {
         for gait in load_robot(name)
@@ -278,47 +293,43 @@ fn a_foot_a_millimetre_too_long_costs_less_than_a_tenth_of_the_distance() {
             .iter()
             .filter(|gait| gait.has_movement())
         {
-            let results_for = |feet| figures.get(name, gait.name(), case_with(feet));
-            let (Some(level), Some(long)) = (results_for(Feet::Level), results_for(Feet::Soft))
-            else {
+            let find_results = |feet| walk_results.get(name, gait.name(), Case { legs, feet });
+            let (Some(level), Some(long)) = (
+                find_results(FootSetup::Level),
+                find_results(FootSetup::Soft),
+            ) else {
                 continue;
             };
             let model = level.model.zip(long.model);
             for (level_displacement, long_displacement) in
                 model.into_iter().chain([(level.mujoco, long.mujoco)])
             {
-                let distance_of =
-                    |displacement: Displacement| displacement.0[0].hypot(displacement.0[1]);
-                let turn_of = |displacement: Displacement| displacement.0[2].abs();
-                // A gait is judged by its distance if it has one, else by its turn; a gait without either is skipped.
-                let (level_value, long_value) = match (
-                    distance_of(level_displacement) > 4.0,
-                    turn_of(level_displacement) > 1.0,
-                ) {
-                    (true, _) => (
-                        distance_of(level_displacement),
-                        distance_of(long_displacement),
-                    ),
-                    (false, true) => (turn_of(level_displacement), turn_of(long_displacement)),
+                let [(level_distance, level_turn), (long_distance, long_turn)] =
+                    [level_displacement, long_displacement]
+                        .map(|Displacement([x, y, turn])| (x.hypot(y), turn.abs()));
+                // The test checks a gait's distance, or the turn of a gait without distance; it skips other gaits.
+                let (level_value, long_value) = match (level_distance > 4.0, level_turn > 1.0) {
+                    (true, _) => (level_distance, long_distance),
+                    (false, true) => (level_turn, long_turn),
                     (false, false) => continue,
                 };
                 assert!(
                     long_value > 0.9 * level_value,
-                    "{name}: {} {level_displacement:?} {long_displacement:?}",
+                    "{name}: {}: level feet {level_displacement:?}, long foot {long_displacement:?}",
                     gait.name()
                 );
                 count += 1;
             }
         }
     }
-    assert!(count >= 60, "{count}");
+    assert!(count >= 60, "{count} displacements");
 }
 
 #[test]
-fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
-    let text = std::fs::read_to_string(crate_folder().join("../../robots/paper.toml"))
+fn robot_toml_accepts_every_key_of_the_trials() {
+    let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"))
         .expect("robots/paper.toml is readable");
-    let table = expected_table(&load_robot("paper"));
+    let table = format_expected_table(&load_robot("paper"));
     let keys = table.lines().skip(2).flat_map(|line| {
         let cell = line
             .rsplit(" | ")
@@ -332,9 +343,9 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
     for key in keys {
         let (section, name) = key.split_once("] ").expect(key);
         let header = format!("\n{section}]");
-        // No key takes an array, so a known key is refused because of its type, and an unknown key because it is
-        // unknown.
-        let wrong_text = match text.contains(&header) {
+        // No key takes an array. Therefore a known key is rejected because of its type, and an unknown key because it
+        // is unknown.
+        let invalid_text = match text.contains(&header) {
             true => {
                 let header_start = text.find(&header).expect("the text contains the header") + 1;
                 let body_start = header_start
@@ -361,7 +372,7 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
             }
             false => format!("{text}\n{section}]\n{name} = []\n"),
         };
-        let message = Robot::parse(&wrong_text).expect_err(key).to_string();
+        let message = Robot::parse(&invalid_text).expect_err(key).to_string();
         let path = format!("{}.{name}", section.trim_start_matches('['));
         assert!(
             message.contains(&path) && !message.contains("not a known key"),
@@ -369,5 +380,5 @@ fn every_key_that_a_trial_sets_is_valid_in_robot_toml() {
         );
         count += 1;
     }
-    assert!(count >= 10, "{count}");
+    assert!(count >= 10, "{count} keys");
 }

@@ -1,17 +1,17 @@
-//! Tests of the contact model against the physics engine rapier: at two friction coefficients, with legs mounted
+//! Tests that compare the contact model with the physics engine rapier: at two friction coefficients, with legs mounted
 //! outward, and for a tuned gait.
 //!
 //! The engine, rapier 0.36, computed the displacements without the model, for a chassis with inertia and four balls
-//! that are dragged over the floor. rapier is no longer a dependency. Its results are reference values, so that a
-//! regression of the model is noticed. Gaits that depend on inertia were simulated at a slower pace.
+//! dragged over the floor. rapier is no longer a dependency; its results are reference values that reveal a regression
+//! of the model. Gaits that depend on inertia were simulated at a slower pace.
 
 use lizard_physics::{Displacement, load_robot};
 use lizard_robot::{Body, Feet, Ground};
 
-/// The compared gaits; no gait is a mirror image or the reversal of another.
+/// The compared gaits; no gait mirrors or reverses another.
 const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 
-/// The displacement in one cycle of each gait: mm forward, mm to the left, deg counter-clockwise.
+/// Each gait's displacement in one cycle: mm forward, mm to the left, deg counter-clockwise.
 type Displacements = [[f64; 3]; 5];
 
 /// Returns the ground of the paper's robot with a body of 280 g.
@@ -25,7 +25,7 @@ fn ground_with_280_g() -> Ground {
     }
 }
 
-/// Asserts that the model's displacement of each gait is within `max_mm` and `max_deg` of the engine's, `expected`.
+/// Asserts that each gait's displacement in the model differs from `expected` by at most `max_mm` and `max_deg`.
 fn assert_agreement(ground: &Ground, expected: &Displacements, max_mm: f64, max_deg: f64) {
     let paper = load_robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
@@ -36,17 +36,17 @@ fn assert_agreement(ground: &Ground, expected: &Displacements, max_mm: f64, max_
                 .simulate_cycle(ground)
                 .travel,
         );
-        let (distance, turn) = model_displacement.distance_to(&Displacement(*displacement));
+        let (distance, turn) = model_displacement.compute_difference(Displacement(*displacement));
         assert!(
             distance <= max_mm && turn <= max_deg,
-            "{name}: {displacement:?} by the engine, {model_displacement:?} by the model, with {:?}",
+            "{name}: engine {displacement:?}, model {model_displacement:?}, drive {:?}",
             ground.drive
         );
     }
 }
 
 #[test]
-fn rigid_legs_move_as_in_the_engine_on_a_slippery_and_on_a_rough_floor() {
+fn rigid_legs_match_the_engine_on_a_slippery_and_on_a_rough_floor() {
     for (friction, displacements) in [(0.4, SLIPPERY_FLOOR), (1.0, ROUGH_FLOOR)] {
         let ground = Ground {
             friction_coefficient: friction,
@@ -57,7 +57,7 @@ fn rigid_legs_move_as_in_the_engine_on_a_slippery_and_on_a_rough_floor() {
 }
 
 #[test]
-fn legs_mounted_outward_move_as_in_the_engine() {
+fn legs_mounted_outward_match_the_engine() {
     let ground = ground_with_280_g();
     let feet = Feet {
         mount_angle: 45.0,
@@ -67,23 +67,23 @@ fn legs_mounted_outward_move_as_in_the_engine() {
 }
 
 #[test]
-fn the_tuned_gait_agrees_with_rapier_and_is_faster_than_walk_in_mujoco() {
+fn the_tuned_gait_matches_rapier_and_is_faster_than_walk_in_mujoco() {
     let (paper, tuned) = (load_robot("paper"), load_robot("own-gaits"));
     let stride = tuned.gait("stride").expect("own-gaits.toml has this gait");
     let walk = paper.gait("walk").expect("paper.toml has this gait");
     let model_displacement = Displacement::from(stride.simulate_cycle(&ground_with_280_g()).travel);
-    let (distance, turn) = model_displacement.distance_to(&Displacement([40.95, -0.44, 0.0]));
+    let (distance, turn) = model_displacement.compute_difference(Displacement([40.95, -0.44, 0.0]));
     assert!(distance <= 0.5 && turn <= 0.3, "{model_displacement:?}");
-    let stored = lizard_physics::Figures::stored();
-    let speed_of = |robot: &str, gait: &str, period: f64| {
+    let stored = lizard_physics::WalkResults::load_stored();
+    let compute_speed = |robot: &str, gait: &str, period: f64| {
         let level_case = lizard_physics::Case::ALL[0];
         stored.get(robot, gait, level_case).expect(gait).mujoco.0[0] / period
     };
-    let walk_speed = speed_of("paper", "walk", walk.period());
-    let stride_speed = speed_of("own-gaits", "stride", stride.period());
+    let walk_speed = compute_speed("paper", "walk", walk.period());
+    let stride_speed = compute_speed("own-gaits", "stride", stride.period());
     assert!(
         stride_speed > 1.25 * walk_speed,
-        "walk {walk_speed:.1} mm/s, stride {stride_speed:.1}"
+        "walk {walk_speed:.1} mm/s, stride {stride_speed:.1} mm/s"
     );
 }
 
@@ -105,7 +105,7 @@ const ROUGH_FLOOR: Displacements = [
     [17.67, 0.84, 5.24],
 ];
 
-/// The engine's displacements on rigid legs mounted 45 degrees outward, at half the pace.
+/// The engine's displacements on rigid legs mounted 45 deg outward, at half the pace.
 const MOUNTED_OUTWARD: Displacements = [
     [5.57, 0.0, 0.0],
     [12.87, 0.27, 0.0],

@@ -1,4 +1,4 @@
-//! The rules for the robot's answers, and for the promises in them.
+//! Rules for the robot's answers, and for the promises that the answers make.
 
 use lizard_core::console::word::Effect;
 
@@ -27,26 +27,26 @@ const INVALID_LINES: [&str; 7] = [
 ];
 
 impl Observer {
-    /// Judges the answer to a line that was sent at `sent_at`, and records the promises in it.
-    pub(crate) fn judge_answer(&mut self, line: &str, effect: Effect, sent_at: Time, answer: &str) {
+    /// Checks the answer to a line that was sent at `sent_at`, and records the answer's promises.
+    pub(crate) fn check_answer(&mut self, line: &str, effect: Effect, sent_at: Time, answer: &str) {
         let now = self.now;
         if answer.starts_with("ok gait=") {
-            return self.judge_status(answer);
+            return self.check_status(answer);
         }
         if !answer.starts_with("ok") {
             return;
         }
         if INVALID_LINES.contains(&line) {
-            self.fail(Rule::InvalidRefused, format!("{line}: {answer}"));
+            self.record_violation(Rule::InvalidRefused, format!("answer to {line}: {answer}"));
         }
         self.note_accepted_command(answer);
         match effect {
             Effect::Moves if !self.was_disturbed_since(now) => {
-                self.pending.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
+                self.pending_promises.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
             }
             Effect::Rests => {
                 if self.disturbed_until <= sent_at {
-                    self.pending.no_pulses = Some((
+                    self.pending_promises.no_pulses = Some((
                         now + self.limits.max_frame_remainder,
                         now + NO_PULSES_TIME,
                         Rule::RestEndsPulses,
@@ -57,7 +57,7 @@ impl Observer {
                 let is_repeated = self.first_rest_at > self.started_at
                     && sent_at > self.first_rest_at + MAX_SAVE_TIME;
                 if is_repeated && is_good && self.limits.is_memory_reliable {
-                    self.pending.no_writes_until = Some(sent_at + 500 * MS);
+                    self.pending_promises.no_writes_until = Some(sent_at + 500 * MS);
                 } else if self.first_rest_at < self.started_at {
                     self.first_rest_at = sent_at;
                 }
@@ -66,50 +66,50 @@ impl Observer {
         }
     }
 
-    /// Judges the promises whose time has ended.
-    pub(crate) fn judge_expired_promises(&mut self) {
-        if let Some((from, until, has_pulses)) = self.pending.motion
+    /// Checks the promises whose time has ended.
+    pub(crate) fn check_expired_promises(&mut self) {
+        if let Some((from, until, has_pulses)) = self.pending_promises.motion
             && self.now > until
         {
-            self.pending.motion = None;
+            self.pending_promises.motion = None;
             let missing_servo = has_pulses.iter().position(|has_pulse| !has_pulse);
             if let Some(servo) = missing_servo
                 && !self.was_disturbed_since(from)
             {
-                self.fail(
+                self.record_violation(
                     Rule::MotionHasPulses,
                     format!("A{} has no pulses", servo + 1),
                 );
             }
         }
         if let Some((until, answer)) = self
-            .pending
+            .pending_promises
             .pulses_after_status
             .take_if(|(until, _)| self.now > *until)
             && !self.was_disturbed_since(until - 600 * MS)
         {
-            self.fail(Rule::StatusNamesCause, answer);
+            self.record_violation(Rule::StatusNamesCause, answer);
         }
-        self.pending
+        self.pending_promises
             .no_writes_until
             .take_if(|until| self.now > *until);
     }
 
-    /// Judges the promises about pulses at the start of a pulse.
-    pub(crate) fn judge_pulse_promises(&mut self, servo: usize) {
+    /// Checks the promises about pulses at the start of a pulse.
+    pub(crate) fn check_pulse_promises(&mut self, servo: usize) {
         let now = self.now;
-        if let Some((_, _, has_pulses)) = &mut self.pending.motion {
+        if let Some((_, _, has_pulses)) = &mut self.pending_promises.motion {
             has_pulses[servo] = true;
         }
-        self.pending.pulses_after_status = None;
-        if let Some((from, until, rule)) = self.pending.no_pulses
+        self.pending_promises.pulses_after_status = None;
+        if let Some((from, until, rule)) = self.pending_promises.no_pulses
             && (from..until).contains(&now)
             && (rule == Rule::RestEndsPulses
                 || !self.was_disturbed_since(from - self.limits.max_frame_remainder))
         {
             let ms = (now - from + self.limits.max_frame_remainder) / MS;
-            self.fail(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
-            self.pending.no_pulses = None;
+            self.record_violation(rule, format!("A{} has a pulse {ms} ms later", servo + 1));
+            self.pending_promises.no_pulses = None;
         }
     }
 

@@ -19,20 +19,20 @@ pub struct Pulse {
     pub servo: usize,
     /// The width, cycles.
     pub width: u32,
-    /// True if a reset or the loss of the supply cut the pulse short.
+    /// True if a reset or a power loss cut the pulse short.
     pub is_cut: bool,
-    /// True if interrupts were blocked when the pulse should have ended, so that it may be too long.
+    /// True if interrupts were blocked when the pulse should have ended, so the pulse may be too long.
     pub is_end_late: bool,
 }
 
 /// An event that a tool observes from outside the robot.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// Nothing happens, but promises may become due.
+    /// No event other than the passing of time, which may make promises due.
     TimePasses,
     /// The program starts.
     ProgramStart(Cause),
-    /// The program is cut off: RESET is pulled low, or power is lost.
+    /// The program is interrupted: RESET is pulled low, or power is lost.
     ProgramCut,
     /// The main loop is stalled until this time.
     MainStalled(Time),
@@ -42,9 +42,9 @@ pub enum Event<'a> {
     SupplyMv(u32),
     /// A byte arrives at the robot.
     ByteReceived,
-    /// The last byte of a line that needs an answer arrives.
+    /// The last byte arrives of a line that needs an answer.
     LineReceived {
-        /// True if the line is a command, accepted or not. Only a command restarts the time of `deadman`.
+        /// True if the line is a command, accepted or not. Only a command restarts the `deadman` time.
         is_command: bool,
     },
     /// A command that moves, freezes or rests the robot.
@@ -72,7 +72,7 @@ pub enum Event<'a> {
     },
     /// The line that was sent at this time got no answer.
     Unanswered(Time, &'a str),
-    /// The robot has printed this line, which may be an answer; its first byte was written at this time.
+    /// The robot has printed this line, which may be an answer. The line's first byte was written at this time.
     LinePrinted(Time, &'a str),
     /// A pulse begins.
     Pulse(Pulse),

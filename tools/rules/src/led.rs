@@ -1,5 +1,5 @@
-//! The LED's patterns: for a fault, as many short flashes as the fault's code, then a pause; without a fault, slow
-//! regular flashes.
+//! The LED's patterns. For a fault, the LED flashes as many times as the fault's code, then pauses. Without a fault,
+//! the LED flashes slowly and regularly.
 
 use crate::event::{MS, Time};
 
@@ -15,7 +15,7 @@ const FAULT_WORDS: [&str; 8] = [
 pub fn fault_code(fault: &str) -> Result<u8, String> {
     let code = FAULT_WORDS.iter().position(|word| *word == fault);
     code.map(|code| code as u8)
-        .ok_or_else(|| format!("fault={fault} is unknown"))
+        .ok_or_else(|| format!("fault={fault}: unknown fault"))
 }
 
 /// Checks that the LED shows only the pattern of the fault `code` in `from..to`; code 0 means no fault. `edges` are the
@@ -39,16 +39,18 @@ pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> 
                 if let Some(count) = flash_count
                     && count != code
                 {
-                    return Err(format!("fault {code}: the LED flashes {count} times"));
+                    return Err(format!(
+                        "fault {code}: expected {code} flashes, got {count}"
+                    ));
                 }
                 flash_count = Some(0);
             }
             (_, 630..=650) if code == 0 => {}
             _ => {
                 let start_ms = start as f64 / MS as f64;
-                let message =
-                    format!("the LED is high={is_high} for {ms} ms from {start_ms:.3} ms on");
-                return Err(format!("fault {code}: {message}"));
+                return Err(format!(
+                    "fault {code}: unexpected interval of {ms} ms (LED on: {is_high}) from {start_ms:.3} ms on"
+                ));
             }
         }
     }

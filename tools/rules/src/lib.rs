@@ -1,17 +1,17 @@
-//! The safety rules: a list of sentences on which a user may rely, and an observer that judges a robot by these rules.
+//! The safety rules: a list of sentences on which a user may rely, and an observer that checks a robot against them.
 //!
 //! Three tools test these rules: the model checker (`tools/explore`), the search with combined faults on the simulated
-//! UNO (`make trouble`) and the fuzzer (`tools/fuzz`). Each tool converts the behaviour of its robot to a sequence of
-//! [`Event`]s with times, and the [`Observer`] judges these events. The observer does not know the robot's inner state,
+//! UNO (`make trouble`) and the fuzzer (`tools/fuzz`). Each tool converts its robot's behaviour to a sequence of
+//! [`Event`]s with times, and the [`Observer`] checks these events. The observer sees no internal state of the robot,
 //! only lines, pulses, resets, the supply and writes to the EEPROM.
 //!
-//! [`Rule`] also lists rules about the inner state. Only the tools that see the inner state check these.
+//! [`Rule`] also lists rules about the internal state. Only tools that see the internal state check these rules.
 
 mod answers;
+mod coarse_state;
 mod event;
 pub mod led;
 mod observer;
-mod print;
 mod reports;
 mod rule;
 mod servos;
@@ -19,4 +19,4 @@ mod supply;
 
 pub use event::{Event, MS, Pulse, Time};
 pub use observer::{Limits, Observer};
-pub use rule::{BrokenRule, Rule};
+pub use rule::{Rule, Violation};

@@ -1,42 +1,42 @@
-//! The observer: records the history that the rules need, and judges each event.
+//! The observer, which records the history that the rules need and checks each event.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
 use crate::event::{Event, MS, NEVER, Pulse, Time};
 use crate::reports::Reports;
-use crate::rule::{BrokenRule, Rule};
+use crate::rule::{Rule, Violation};
 use crate::servos::{Permission, ServoHistory};
 use crate::supply::SupplyHistory;
 
-/// The limits of the robot, and of the accuracy with which a tool observes it.
+/// The limits of the robot, and the accuracy with which a tool observes the robot.
 #[derive(Clone, Debug)]
 pub struct Limits {
-    /// The largest change of a servo's pulse from one frame to the next, cycles.
+    /// The largest change in each servo's pulse width from one frame to the next, cycles.
     pub max_change_cycles: [u32; 4],
-    /// The shortest and the longest pulse of each servo, cycles.
+    /// The shortest and the longest pulse width of each servo, cycles.
     pub width_ranges: [(u32, u32); 4],
     /// The supply voltages below which EEPROM writes, motions and pulses are forbidden, mV.
     pub levels_mv: [u32; 3],
-    /// The largest error of the robot's own measurement of the supply, mV: a step of the converter, and the rounding to
-    /// two decimals.
+    /// The largest error of the robot's own supply measurement, mV: a step of the converter, and the rounding to two
+    /// decimals.
     pub supply_error_mv: u32,
-    /// The longest time that remains of the current frame when a line has been answered.
+    /// The longest time from an answer to the end of the current frame.
     pub max_frame_remainder: Time,
     /// The longest time from a fault to its report on the console.
     pub max_report_time: Time,
-    /// The longest time for which a line of the robot waits until it is printed.
+    /// The longest time for which the robot's line waits in the queue before it is printed.
     pub max_queue_time: Time,
     /// The longest rest within a routine; 0 if no routine rests.
     pub max_routine_rest: Time,
     /// True if the robot's `boot` setting may be `rest`.
-    pub may_boot_to_rest: bool,
+    pub can_boot_to_rest: bool,
     /// True if the EEPROM keeps every byte that is written to it.
     pub is_memory_reliable: bool,
     /// True if a brown-out may clear RAM.
-    pub may_brown_outs_clear_ram: bool,
+    pub can_brown_outs_clear_ram: bool,
     /// True if the saved travel may be narrower than the travel in use.
-    pub may_saved_travel_be_narrower: bool,
+    pub can_saved_travel_be_narrower: bool,
 }
 
 impl Default for Limits {
@@ -51,29 +51,29 @@ impl Default for Limits {
             max_report_time: 60 * MS - 1,
             max_queue_time: 0,
             max_routine_rest: 0,
-            may_boot_to_rest: false,
+            can_boot_to_rest: false,
             is_memory_reliable: true,
-            may_brown_outs_clear_ram: false,
-            may_saved_travel_be_narrower: false,
+            can_brown_outs_clear_ram: false,
+            can_saved_travel_be_narrower: false,
         }
     }
 }
 
 impl Limits {
-    /// Returns the lowest supply that counts as good, mV.
+    /// Returns the lowest supply voltage that counts as good, mV.
     pub(crate) fn min_good_mv(&self) -> u32 {
-        /// Margin above the level for writing.
+        /// Margin above the level for EEPROM writes.
         const MARGIN_MV: u32 = 200;
         self.levels_mv[0] + MARGIN_MV
     }
 }
 
-/// An observer that judges a robot's events by the rules.
+/// An observer that checks a robot's events against the rules.
 #[derive(Clone, Debug)]
 pub struct Observer {
     /// The robot's limits.
     pub limits: Limits,
-    pub(crate) broken_rules: Vec<BrokenRule>,
+    pub(crate) violations: Vec<Violation>,
     pub(crate) now: Time,
     pub(crate) started_at: Time,
     pub(crate) start_cause: Cause,
@@ -82,31 +82,31 @@ pub struct Observer {
     pub(crate) disturbed_until: Time,
     /// Start and end of each recent stall of main.
     pub(crate) stalls: Vec<(Time, Time)>,
-    /// Time of the last motion, stop or rest command that was not refused.
+    /// The time of the last motion, stop or rest command that was not refused.
     pub(crate) last_motion_command_at: Time,
-    /// Time of the last `rest` that was not refused.
+    /// The time of the last `rest` that was not refused.
     pub(crate) rest_command_at: Time,
-    /// Time at which `boot` reported that the robot rests.
+    /// The time at which `boot` reported that the robot rests.
     pub(crate) boot_rest_at: Time,
     pub(crate) unanswered_line_count: i32,
     pub(crate) last_command_at: Time,
     pub(crate) deadman_time: Time,
     /// The latest time at which the last command may have been read.
     pub(crate) last_command_read_at: Time,
-    /// True if the last motion is a gait other than `stand`, or a routine: `deadman` ends these.
+    /// True if the last motion is one that `deadman` ends: a gait other than `stand`, or a routine.
     pub(crate) is_gait_or_routine: bool,
     pub(crate) has_unsaved_settings: bool,
-    /// Number of motions begun since the last reset, minus the number of motions reported as done.
+    /// The number of motions begun since the last reset, minus the number of motions reported as done.
     pub(crate) unfinished_motion_count: i32,
     pub(crate) permission: Permission,
     pub(crate) servos: [ServoHistory; 4],
     /// The servo that woke last, the time of its first pulse, and true if a hang had interrupted its pulses.
     pub(crate) last_wake: (usize, Time, bool),
-    pub(crate) is_pulse_end_judged: bool,
+    pub(crate) is_pulse_end_checked: bool,
     pub(crate) supply: SupplyHistory,
     pub(crate) reports: Reports,
-    pub(crate) pending: PendingPromises,
-    /// Time of the first of consecutive `rest` commands; `NEVER` after any other command.
+    pub(crate) pending_promises: PendingPromises,
+    /// The time of the first of consecutive `rest` commands; `NEVER` after any other command.
     pub(crate) first_rest_at: Time,
     pub(crate) brown_out_times: [Time; 5],
 }
@@ -114,11 +114,11 @@ pub struct Observer {
 /// Promises in the robot's answers that are not due yet.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct PendingPromises {
-    /// Start and end of the time in which every servo must get a pulse; true for each servo that has got a pulse.
+    /// Start and end of the time in which every servo must get a pulse, and true for each servo that has got a pulse.
     pub motion: Option<(Time, Time, [bool; 4])>,
     /// Start and end of the time in which no pulse may begin, and the rule that forbids pulses.
     pub no_pulses: Option<(Time, Time, Rule)>,
-    /// The time by which a pulse must begin, and the answer to `status` that named no cause for a lack of pulses.
+    /// The time by which a pulse must begin, and the answer to `status` that named no cause for missing pulses.
     pub pulses_after_status: Option<(Time, String)>,
     /// The time before which no byte of the EEPROM may be written.
     pub no_writes_until: Option<Time>,
@@ -129,7 +129,7 @@ impl Observer {
     pub fn new(limits: Limits) -> Self {
         Self {
             limits,
-            broken_rules: Vec::new(),
+            violations: Vec::new(),
             now: NEVER,
             started_at: NEVER,
             start_cause: Cause::Power,
@@ -149,10 +149,10 @@ impl Observer {
             permission: Permission::default(),
             servos: [ServoHistory::UNKNOWN; 4],
             last_wake: (0, NEVER, false),
-            is_pulse_end_judged: true,
+            is_pulse_end_checked: true,
             supply: SupplyHistory::default(),
             reports: Reports::default(),
-            pending: PendingPromises::default(),
+            pending_promises: PendingPromises::default(),
             first_rest_at: NEVER,
             brown_out_times: [NEVER; 5],
         }
@@ -172,32 +172,32 @@ impl Observer {
                 is_cut: false,
                 is_end_late: false,
             };
-            // Nominal times, to about a millisecond: A1's pulse begins 4 ms after the tick, each further servo's
-            // pulse one slot of 4 ms later.
+            // The times are nominal, to about a millisecond: A1's pulse begins 4 ms after the tick, and each further
+            // servo's pulse one slot of 4 ms later.
             self.observe(start + (5 + 4 * servo as Time) * MS, Event::Pulse(pulse));
         }
         self.observe(start + 20 * MS, Event::TimePasses);
     }
 
-    /// Returns `Ok` if no rule was broken since the last call, and forgets all broken rules.
+    /// Returns `Ok` if no rule was violated since the last call, and forgets all violations.
     ///
     /// # Errors
-    /// Returns the first rule that was broken.
-    pub fn verdict(&mut self) -> Result<(), BrokenRule> {
-        self.take_broken_rules()
+    /// Returns the first violation.
+    pub fn take_verdict(&mut self) -> Result<(), Violation> {
+        self.take_violations()
             .into_iter()
             .next()
             .map_or(Ok(()), Err)
     }
 
-    /// Returns all rules that were broken since the last call, and forgets them.
-    pub fn take_broken_rules(&mut self) -> Vec<BrokenRule> {
-        std::mem::take(&mut self.broken_rules)
+    /// Returns all violations since the last call, and forgets them.
+    pub fn take_violations(&mut self) -> Vec<Violation> {
+        std::mem::take(&mut self.violations)
     }
 
-    /// Records a broken rule.
-    pub(crate) fn fail(&mut self, rule: Rule, observation: impl Into<String>) {
-        self.broken_rules.push(BrokenRule::new(rule, observation));
+    /// Records a violation.
+    pub(crate) fn record_violation(&mut self, rule: Rule, observation: impl Into<String>) {
+        self.violations.push(Violation::new(rule, observation));
     }
 
     /// True while the robot has not answered every line.
@@ -211,7 +211,7 @@ impl Observer {
     }
 
     /// The time at which a fault stopped the robot; `None` without a fault, or if a command has ended the stop.
-    pub const fn stopped_since(&self) -> Option<Time> {
+    pub const fn stop_time(&self) -> Option<Time> {
         self.reports.stopped_at
     }
 
@@ -220,31 +220,33 @@ impl Observer {
         self.reports.stopped_at.is_some() && !self.reports.is_reported
     }
 
-    /// True if the supply was below a level during the time `within` before now. `level` is an index of
+    /// True if the supply was below a level at any time in the last `duration`. `level_index` is an index of
     /// [`Limits::levels_mv`].
-    pub fn was_low(&self, level: usize, within: Time) -> bool {
-        let mv = self.limits.levels_mv[level];
-        self.supply.time_below(mv, self.now - within, self.now + 1) > 0
+    pub fn was_supply_low(&self, level_index: usize, duration: Time) -> bool {
+        let mv = self.limits.levels_mv[level_index];
+        self.supply
+            .time_below(mv, self.now - duration, self.now + 1)
+            > 0
     }
 
     /// The time until the last pending promise is due; `None` if no promise is pending.
-    pub fn time_until_due(&self) -> Option<Time> {
-        let pending = &self.pending;
+    pub fn time_until_promises_due(&self) -> Option<Time> {
+        let promises = &self.pending_promises;
         let ends = [
-            pending.motion.map(|(_, until, _)| until),
-            pending.no_pulses.map(|(_, until, _)| until),
-            pending
+            promises.motion.map(|(_, until, _)| until),
+            promises.no_pulses.map(|(_, until, _)| until),
+            promises
                 .pulses_after_status
                 .as_ref()
                 .map(|(until, _)| *until),
-            pending.no_writes_until,
+            promises.no_writes_until,
         ];
         ends.into_iter().flatten().max().map(|end| end - self.now)
     }
 
     /// Drops all pending promises.
-    pub fn drop_pending(&mut self) {
-        self.pending = PendingPromises::default();
+    pub fn drop_pending_promises(&mut self) {
+        self.pending_promises = PendingPromises::default();
     }
 
     /// The time since the last reset.
@@ -252,7 +254,7 @@ impl Observer {
         self.now - self.started_at
     }
 
-    /// True if a cause outside the firmware may have ended the pulses since a time: a reset, a stall, blocked
+    /// True if a cause outside the firmware may have ended the pulses since the time `since`: a reset, a stall, blocked
     /// interrupts or a low supply.
     pub(crate) fn was_disturbed_since(&self, since: Time) -> bool {
         let rest_mv = self.limits.levels_mv[2] + self.limits.supply_error_mv;
@@ -262,7 +264,7 @@ impl Observer {
             || self.supply.time_below(rest_mv, since - 400 * MS, self.now) > 0
     }
 
-    /// Records an event and judges it by the rules.
+    /// Records an event and checks it against the rules.
     pub fn observe(&mut self, time: Time, event: Event<'_>) {
         self.advance(time);
         match event {
@@ -311,25 +313,25 @@ impl Observer {
                 effect,
                 sent_at,
                 answer,
-            } => self.judge_answer(line, effect, sent_at, answer),
+            } => self.check_answer(line, effect, sent_at, answer),
             Event::Unanswered(sent_at, line) => {
                 if !self.was_disturbed_since(sent_at - MS) {
-                    self.fail(Rule::AnswersAgain, format!("no answer to {line}"));
+                    self.record_violation(Rule::AnswersAgain, format!("no answer to {line}"));
                 }
             }
-            Event::LinePrinted(first_byte_at, line) => self.judge_printed_line(first_byte_at, line),
-            Event::Pulse(pulse) => self.judge_pulse(pulse),
-            Event::ByteWritten => self.judge_write(),
+            Event::LinePrinted(first_byte_at, line) => self.check_printed_line(first_byte_at, line),
+            Event::Pulse(pulse) => self.check_pulse(pulse),
+            Event::ByteWritten => self.check_write(),
             Event::Fault => self.reports.note_stop(time),
         }
     }
 
-    /// Advances the time, and judges every promise that was due by now.
+    /// Advances the time, and checks every promise that was due by now.
     fn advance(&mut self, time: Time) {
         self.now = self.now.max(time);
         self.permission.advance(self.now);
-        self.judge_end_of_pulses();
-        self.judge_expired_promises();
+        self.check_end_of_pulses();
+        self.check_expired_promises();
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = self.now - 280 * MS;
         let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;
@@ -342,27 +344,28 @@ impl Observer {
     }
 
     fn cancel_promises(&mut self) {
-        self.permission.cancel_order();
-        self.pending.motion = None;
-        self.pending.no_pulses = None;
-        self.pending.pulses_after_status = None;
+        self.permission.cancel_commanded_expiry();
+        self.pending_promises.motion = None;
+        self.pending_promises.no_pulses = None;
+        self.pending_promises.pulses_after_status = None;
     }
 
     fn note_program_start(&mut self, cause: Cause) {
         let now = self.now;
-        // A brown-out may last a long time: the program hung if a disturbance came shortly before the brown-out began.
+        // A brown-out may last a long time, so the program hung if a disturbance came shortly before the brown-out
+        // began.
         let ran_until = if cause == Cause::BrownOut {
             self.cut_at.max(self.started_at)
         } else {
             now
         };
         let has_hung = cause == Cause::Watchdog || self.disturbed_until > ran_until - 300 * MS;
-        self.judge_reset(cause);
+        self.check_reset(cause);
         for servo in 0..4 {
             let is_rest_pose_saved = self.must_keep_rest_pose(servo);
-            let keeps_position = cause != Cause::Power && !self.limits.may_saved_travel_be_narrower;
+            let keeps_position = cause != Cause::Power && !self.limits.can_saved_travel_be_narrower;
             let is_ram_lost = match cause {
-                Cause::BrownOut => self.limits.may_brown_outs_clear_ram && !has_hung,
+                Cause::BrownOut => self.limits.can_brown_outs_clear_ram && !has_hung,
                 cause => cause == Cause::Power,
             };
             self.servos[servo].is_position_lost |= is_ram_lost;
@@ -382,13 +385,16 @@ impl Observer {
         self.first_rest_at = NEVER;
         self.unfinished_motion_count = 0;
         self.permission
-            .note_start(cause, now, self.limits.may_boot_to_rest);
-        let is_rest_promised = matches!(self.pending.no_pulses, Some((.., Rule::RestEndsPulses)));
+            .note_start(cause, now, self.limits.can_boot_to_rest);
+        let is_rest_promised = matches!(
+            self.pending_promises.no_pulses,
+            Some((.., Rule::RestEndsPulses))
+        );
         let no_pulses = self
-            .pending
+            .pending_promises
             .no_pulses
             .filter(|_| is_rest_promised && cause != Cause::Power);
-        self.pending = PendingPromises {
+        self.pending_promises = PendingPromises {
             no_pulses,
             ..PendingPromises::default()
         };
@@ -401,15 +407,15 @@ impl Observer {
         recent.map(|(start, end)| end.min(&time) - start).sum()
     }
 
-    fn judge_reset(&mut self, cause: Cause) {
+    fn check_reset(&mut self, cause: Cause) {
         let now = self.now;
         if cause == Cause::Watchdog {
             let stalled_time = self.stalled_time_before(now);
-            // 100 ms is the first stage of the watchdog, less the frame in which it was fed last. The pulses end after
-            // the first stage; the reset follows after the second stage.
+            // 100 ms is the first stage of the watchdog minus the frame in which main last reset the watchdog. The
+            // pulses end after the first stage, and the reset follows after the second stage.
             if stalled_time < 100 * MS {
                 let ms = stalled_time / MS;
-                self.fail(
+                self.record_violation(
                     Rule::NoNeedlessReset,
                     format!("main was stalled for only {ms} ms"),
                 );
@@ -419,7 +425,7 @@ impl Observer {
             let first_brown_out = self.brown_out_times[0];
             if first_brown_out > now - 4_000 * MS && self.last_motion_command_at < first_brown_out {
                 let ms = (now - first_brown_out) / MS;
-                self.fail(Rule::BrownOutsEnd, format!("six brown-outs in {ms} ms"));
+                self.record_violation(Rule::BrownOutsEnd, format!("six brown-outs in {ms} ms"));
             }
             self.brown_out_times.rotate_left(1);
             self.brown_out_times[4] = now;
@@ -427,12 +433,12 @@ impl Observer {
     }
 
     fn note_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
-        self.pending.motion = None;
+        self.pending_promises.motion = None;
         if is_accepted == Some(false) {
             return;
         }
         self.last_motion_command_at = self.now;
-        self.pending = PendingPromises::default();
+        self.pending_promises = PendingPromises::default();
         if effect == Effect::Rests {
             self.rest_command_at = self.now;
             for servo in &mut self.servos {

@@ -1,4 +1,4 @@
-//! The rules about reports of a stop: in `status` and on the console.
+//! Rules for the reports of a stop, in `status` and on the console.
 
 use lizard_core::console::word::{Effect, Word};
 use lizard_core::memory::restart::Cause;
@@ -12,14 +12,14 @@ use crate::rule::Rule;
 /// The last stop by a fault, and its report on the console.
 #[derive(Clone, Debug)]
 pub(crate) struct Reports {
-    /// Time at which a fault stopped the robot; `None` if no fault has occurred since the last motion command.
+    /// The time at which a fault stopped the robot; `None` if no fault has occurred since the last motion command.
     pub stopped_at: Option<Time>,
     /// True if the console has reported the cause of the stop.
     pub is_reported: bool,
-    /// True if a command after the report may not have reached the robot. If the robot is then still stopped, it does
-    /// not report the stop again.
+    /// True if a command after the report may not have reached the robot. A robot that is still stopped does not report
+    /// the stop again.
     may_still_be_stopped: bool,
-    /// Time of the last report of a fault on the console.
+    /// The time of the last report of a fault on the console.
     pub reported_at: Time,
 }
 
@@ -50,7 +50,7 @@ impl Reports {
         }
     }
 
-    /// Records a motion command, which ends a stop. If `is_certain` is false, the command may have been lost.
+    /// Records a motion command, which ends a stop. `is_certain` is false if the command may have been lost.
     pub(crate) const fn note_motion_command(&mut self, is_certain: bool) {
         let was_reported = self.stopped_at.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_certain && (was_reported || self.may_still_be_stopped);
@@ -59,13 +59,13 @@ impl Reports {
 }
 
 impl Observer {
-    /// Judges a line that the robot has printed; `first_byte_at` is the time at which its first byte was written.
-    pub(crate) fn judge_printed_line(&mut self, first_byte_at: Time, line: &str) {
+    /// Checks a line that the robot has printed. `first_byte_at` is the time at which its first byte was written.
+    pub(crate) fn check_printed_line(&mut self, first_byte_at: Time, line: &str) {
         // If a reset cuts a line off, the banner follows in the same line. Such a line is not an answer.
         if is_answer(line) && !line.contains("# lizard ") {
             self.unanswered_line_count -= 1;
             if self.unanswered_line_count < 0 {
-                self.fail(Rule::OneAnswer, format!("unsolicited answer: {line}"));
+                self.record_violation(Rule::OneAnswer, format!("unsolicited answer: {line}"));
             }
             if self.unanswered_line_count > 0 {
                 // The robot may have read the next command only now, after this answer.
@@ -76,7 +76,7 @@ impl Observer {
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
-            if line.contains("no line for") {
+            if line.contains("no command within") {
                 // Soon after a command, the line may report a stop that the command has already ended.
                 if first_byte_at - self.last_motion_command_at >= self.limits.max_queue_time {
                     self.reports.note_stop(self.now);
@@ -84,9 +84,9 @@ impl Observer {
                 let silence = first_byte_at - self.last_command_at;
                 if (self.limits.max_queue_time..self.deadman_time).contains(&silence) {
                     let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
-                    self.fail(
+                    self.record_violation(
                         Rule::DeadmanNotEarly,
-                        format!("deadman {deadman_ms}, after {silence_ms} ms"),
+                        format!("deadman {deadman_ms}, but stopped after {silence_ms} ms"),
                     );
                 }
             }
@@ -94,11 +94,11 @@ impl Observer {
         if line == "# done" {
             self.unfinished_motion_count -= 1;
             if self.unfinished_motion_count < 0 {
-                self.fail(Rule::DoneOncePerMotion, "one report too many");
+                self.record_violation(Rule::DoneOncePerMotion, "one `# done` too many");
             }
         }
         if let Some(report) = line.strip_prefix("# supply: ") {
-            self.judge_supply_report(report);
+            self.check_supply_report(report);
         }
         if let Some(boot_action) = line.strip_prefix("# boot: ") {
             if boot_action == "rest" {
@@ -107,8 +107,7 @@ impl Observer {
             self.unfinished_motion_count += 1;
             self.permission.note_boot(self.now, boot_action);
         }
-        let reports_rest =
-            line.ends_with("pulses ended") || line.contains("several times in a row");
+        let reports_rest = line.ends_with("pulses off") || line.contains("several times in a row");
         // If a command arrived while the line waited or was printed, the line no longer describes the robot.
         if reports_rest && first_byte_at - self.last_motion_command_at > self.limits.max_queue_time
         {
@@ -124,53 +123,53 @@ impl Observer {
         let (word, arguments) = accepted.split_once(' ').unwrap_or((accepted, ""));
         match Word::find(word.as_bytes()) {
             Some(Word::Deadman) => self.deadman_time = arguments.parse().unwrap_or(0) * MS,
-            // The saved `deadman` time may differ, so the observer stops judging by it.
+            // The saved `deadman` time may differ, so the observer stops checking it.
             Some(Word::Load | Word::Factory) => self.deadman_time = 0,
             _ => {}
         }
         match Word::find(word.as_bytes()).map(Word::effect) {
-            // The word is not a command, so it is the name of a gait or a routine.
+            // A word that is not a command is the name of a gait or a routine.
             None if !word.starts_with("gait=") => self.is_gait_or_routine = word != "stand",
             Some(Effect::Moves | Effect::Calibrates) => self.is_gait_or_routine = false,
             _ => {}
         }
     }
 
-    /// Checks that the console has reported a stop by now. Must be called only while a host reads the console.
+    /// Checks that the console has reported a stop by now. Call this only while a host reads the console.
     pub fn check_stop_is_reported(&mut self) {
         let stopped_at = self.reports.stopped_at;
         let is_due = |time| self.now - time > self.limits.max_report_time;
         if stopped_at.is_some_and(is_due) && !self.reports.is_reported {
-            self.fail(Rule::StopReported, "no report on the console");
+            self.record_violation(Rule::StopReported, "no report on the console");
         }
     }
 
-    /// Judges an answer to `status`.
-    pub(crate) fn judge_status(&mut self, answer: &str) {
+    /// Checks an answer to `status`.
+    pub(crate) fn check_status(&mut self, answer: &str) {
         let now = self.now;
-        let value_of = |key: &str| {
+        let status_value = |key: &str| {
             let mut pairs = answer.split(' ').filter_map(|pair| pair.split_once('='));
             pairs.find(|(name, _)| *name == key).map(|(_, value)| value)
         };
-        let (gait, fault) = (value_of("gait"), value_of("fault"));
+        let (gait, fault) = (status_value("gait"), status_value("fault"));
         let has_fault = fault != Some("none");
-        if !has_fault && value_of("guard") == Some("held") {
-            self.fail(Rule::GuardFaultNamed, answer);
+        if !has_fault && status_value("guard") == Some("held") {
+            self.record_violation(Rule::GuardFaultNamed, answer);
         }
         let max_report_time = self.limits.max_report_time;
         let is_due = |since| now - since > max_report_time;
         if !has_fault && self.reports.stopped_at.is_some_and(is_due) {
-            self.fail(Rule::StopReported, answer);
+            self.record_violation(Rule::StopReported, answer);
         }
         let is_watchdog_reset_due = self.start_cause == Cause::Watchdog && is_due(self.started_at);
-        if is_watchdog_reset_due && value_of("reset") != Some("watchdog") {
-            self.fail(Rule::StopReported, answer);
+        if is_watchdog_reset_due && status_value("reset") != Some("watchdog") {
+            self.record_violation(Rule::StopReported, answer);
         }
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = now - 340 * MS;
         if !has_fault && low_since > self.started_at && self.supply.is_low_since(stop_mv, low_since)
         {
-            self.fail(Rule::StopReported, format!("the supply is low: {answer}"));
+            self.record_violation(Rule::StopReported, format!("the supply is low: {answer}"));
         }
         self.check_stop_is_reported();
         if has_fault && self.reports.stopped_at.is_none() {
@@ -178,7 +177,7 @@ impl Observer {
             self.reports.is_reported = true;
         }
         if gait == Some("rest") {
-            self.pending.no_pulses = Some((
+            self.pending_promises.no_pulses = Some((
                 now + self.limits.max_frame_remainder,
                 now + NO_PULSES_TIME,
                 Rule::NoPulsesInRest,
@@ -191,7 +190,7 @@ impl Observer {
                 .servos
                 .iter()
                 .all(|servo| servo.last_start < now - 200 * MS);
-            self.pending.pulses_after_status =
+            self.pending_promises.pulses_after_status =
                 has_no_pulses.then(|| (now + 200 * MS, answer.to_owned()));
         }
     }

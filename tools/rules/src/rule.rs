@@ -1,10 +1,10 @@
-//! The rules that the robot must keep, each as a sentence for the user.
+//! The rules that the robot must obey, each as a sentence for the user.
 
 use std::fmt;
 
 macro_rules! rules {
     ($($name:ident = $sentence:literal;)*) => {
-        /// A rule that the robot must keep.
+        /// A rule that the robot must obey.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Rule { $(#[doc = $sentence] $name),* }
 
@@ -21,10 +21,10 @@ macro_rules! rules {
 }
 
 rules! {
-    KeepsRunning = "the program neither crashes nor halts, and never uses the chip in a way that it does not allow";
+    KeepsRunning = "the program neither crashes nor halts, and uses the chip only as its data sheet allows";
     OneAnswer = "every line gets exactly one answer";
     AnswersAgain = "the console answers again after every disturbance";
-    PulsesPermitted = "pulses begin only on a command, by boot three seconds after a start, or at power-on";
+    PulsesPermitted = "pulses begin only on a command, on boot three seconds after a start, or at power-on";
     WakeOneByOne = "no two servos wake in the same frame, except after a hang";
     HeldAfterHang = "after a hang the servos hold their positions";
     ResetAfterHang = "a hang that ends the pulses ends in a reset";
@@ -33,7 +33,7 @@ rules! {
     StatusNamesCause = "status says rest or a fault when there are no pulses";
     NoPulsesInRest = "status says rest only when there are no pulses";
     RestEndsPulses = "rest ends the pulses within a frame";
-    StandWorks = "after stand the robot stands, whatever its state before";
+    StandWorks = "after stand the robot stands, whatever its previous state";
     RefusalChangesNothing = "a refused command changes nothing";
     InvalidRefused = "a line that is not a valid command is refused";
     OtherRateIgnored = "a line sent at another baud rate than the robot's has no effect";
@@ -43,15 +43,15 @@ rules! {
     DeadmanNotEarly = "a gait ends without a command only if no line arrived for the time of deadman";
     DeadmanNotLate = "without a command a gait ends at most 40 ms after the time of deadman";
     OnlySentLines = "the robot acts only on lines that were sent";
-    StopRepeated = "a stop that a link has lost is sent again until it is answered";
+    StopRepeated = "a stop that is lost on the link is sent again until it is answered";
     CountedMotionEnds = "a motion with a count comes to an end";
-    ContactsOnlyInRoutine = "a contact moves the robot only within a routine";
+    ContactsOnlyInRoutine = "a contact moves the robot only during a routine";
     DoneOncePerMotion = "no more motions are reported done than have begun";
     SecondRestWritesNothing = "a repeated rest writes nothing to the EEPROM";
     PulseWidth = "no pulse is too short or too long";
     SlewLimit = "no pulse width differs from the previous one by more than the slew limit";
     PulsePeriod = "whatever arrives on the serial line, pulses begin 20 ms apart, to the cycle";
-    NoLeapByReset = "no reset of a robot with pulses makes a servo jump";
+    NoStepByReset = "no reset of a robot with pulses makes a servo jump";
     WakesInRestPose = "a robot that has rested wakes in its rest pose, whatever reset it";
     RestPoseKept = "the rest pose stays in the EEPROM, even across a reset";
     StopReported = "status and the console name the cause of a stop until the next motion command";
@@ -64,24 +64,24 @@ rules! {
     MemoryValid = "the EEPROM holds valid records or nothing, and only what was saved";
 }
 
-/// A broken rule.
+/// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BrokenRule {
+pub struct Violation {
     /// The rule.
     pub rule: Rule,
-    /// A description of the observation that breaks the rule.
+    /// A description of the observation that violates the rule.
     pub observation: String,
 }
 
-impl BrokenRule {
-    /// Creates a report of a rule broken by an observation.
+impl Violation {
+    /// Creates a violation from the rule and the observation.
     pub fn new(rule: Rule, observation: impl Into<String>) -> Self {
         let observation = observation.into();
         Self { rule, observation }
     }
 }
 
-impl fmt::Display for BrokenRule {
+impl fmt::Display for Violation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.rule.sentence(), self.observation)
     }

@@ -1,4 +1,4 @@
-//! The rules for pulses: when they may begin and must end, and how much their widths may change.
+//! Rules for pulses: the times at which they may begin and must end, and the largest change in their widths.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -10,22 +10,22 @@ use crate::rule::Rule;
 /// Longest time between consecutive pulses of a servo that gets a pulse in every frame.
 const MAX_PULSE_GAP: Time = 30 * MS;
 
-/// Longest time for which a gait may continue after the time of `deadman`.
+/// Longest time for which a gait may continue after the `deadman` time.
 const MAX_DEADMAN_DELAY: Time = 40 * MS;
 
-/// Largest difference between consecutive pulses of a servo that stands still, cycles.
+/// Largest width difference between consecutive pulses of a servo that stands still, cycles.
 const MAX_STEADY_CHANGE: u32 = 16;
 
 /// Longest time from a `rest` command to the end of the last pulse.
 const MAX_TIME_TO_REST: Time = 45 * MS;
 
-/// Shortest time from a reset until `boot` acts: 3 s minus about a frame, since the first tick comes early.
+/// Shortest time from a reset to the `boot` action: 3 s minus about a frame, since the first tick comes early.
 const MIN_BOOT_TIME: Time = 2_975 * MS;
 
-/// Shortest time between the first pulses of two servos that wake: 0.1 s minus about a frame.
+/// Shortest time between the first pulses of two waking servos: 0.1 s minus about a frame.
 const MIN_WAKE_GAP: Time = 75 * MS;
 
-/// Longest time from the end of the pulses in a hang to the reset: the watchdog's second stage and a frame.
+/// Longest time from the end of the pulses in a hang to the reset: the watchdog's second stage plus a frame.
 const MAX_TIME_TO_RESET: Time = 160 * MS;
 
 /// The permission for pulses to begin.
@@ -33,8 +33,8 @@ const MAX_TIME_TO_RESET: Time = 160 * MS;
 pub(crate) struct Permission {
     /// True while pulses may begin.
     pub is_granted: bool,
-    /// The time at which the permission ends, and true if a command has set this time; `None` if the permission has no
-    /// end.
+    /// The time at which the permission expires, and true if a command has set this time; `None` if the permission does
+    /// not expire.
     expiry: Option<(Time, bool)>,
     /// The earliest time at which `boot` grants the permission; `None` if `boot` does not grant it.
     pub boot_grant_at: Option<Time>,
@@ -50,21 +50,21 @@ impl Permission {
         }
     }
 
-    /// Cancels an end of the permission that a command has set. Another event came first, so the robot may not have
-    /// carried out the command.
-    pub(crate) fn cancel_order(&mut self) {
-        self.expiry.take_if(|(_, is_order)| *is_order);
+    /// Cancels an expiry that a command has set. Another event came first, so the robot may not have carried out the
+    /// command.
+    pub(crate) fn cancel_commanded_expiry(&mut self) {
+        self.expiry.take_if(|(_, is_commanded)| *is_commanded);
     }
 
-    pub(crate) fn note_start(&mut self, cause: Cause, time: Time, may_boot_to_rest: bool) {
-        self.cancel_order();
+    pub(crate) fn note_start(&mut self, cause: Cause, time: Time, can_boot_to_rest: bool) {
+        self.cancel_commanded_expiry();
         self.is_granted |= cause == Cause::Power;
-        let can_boot = cause != Cause::Watchdog && !may_boot_to_rest;
+        let can_boot = cause != Cause::Watchdog && !can_boot_to_rest;
         self.boot_grant_at = can_boot.then_some(time + MIN_BOOT_TIME);
     }
 
     pub(crate) fn note_motion_command(&mut self, time: Time, effect: Effect, is_certain: bool) {
-        self.cancel_order();
+        self.cancel_commanded_expiry();
         match effect {
             Effect::Rests if is_certain => self.expiry = Some((time + MAX_TIME_TO_REST, true)),
             Effect::Moves => {
@@ -182,8 +182,8 @@ impl ServoHistory {
 }
 
 impl Observer {
-    /// Judges a pulse by its width, its permission and the servo's previous pulses.
-    pub(crate) fn judge_pulse(&mut self, pulse: Pulse) {
+    /// Checks a pulse's width, its permission and its difference from the servo's previous pulses.
+    pub(crate) fn check_pulse(&mut self, pulse: Pulse) {
         let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format_args!("A{}", pulse.servo + 1);
@@ -192,32 +192,34 @@ impl Observer {
         // Blocked interrupts delay a falling edge, at most until the next slot.
         let is_long = pulse.width > max && !pulse.is_end_late || pulse.width > 65_000;
         if is_short || is_long {
-            let observation = format!("{name} gets {} cycles", pulse.width);
-            self.fail(Rule::PulseWidth, observation);
+            let observation = format!("{name} gets a pulse of {} cycles", pulse.width);
+            self.record_violation(Rule::PulseWidth, observation);
         }
         let is_first = now - servo.last_start > MAX_PULSE_GAP;
         if is_first {
-            self.judge_first_pulse(pulse);
+            self.check_first_pulse(pulse);
         }
-        self.judge_pulse_promises(pulse.servo);
+        self.check_pulse_promises(pulse.servo);
         let change = pulse.width.abs_diff(servo.last_complete_width);
         let is_complete = !pulse.is_cut && !pulse.is_end_late;
         let is_comparable =
             servo.last_complete_pulse_start > NEVER && !(is_first && servo.is_recalibrated);
         if is_complete && is_comparable && change > self.limits.max_change_cycles[pulse.servo] {
             let observation = format!(
-                "{name} has {} cycles and then {}",
+                "{name} gets pulses of {} and then {} cycles",
                 servo.last_complete_width, pulse.width
             );
             match servo.interruption {
-                Interruption::Nothing => self.fail(Rule::SlewLimit, observation),
-                Interruption::Reset => self.fail(Rule::NoLeapByReset, observation),
-                Interruption::ResetInRest => self.fail(Rule::WakesInRestPose, observation),
+                Interruption::Nothing => self.record_violation(Rule::SlewLimit, observation),
+                Interruption::Reset => self.record_violation(Rule::NoStepByReset, observation),
+                Interruption::ResetInRest => {
+                    self.record_violation(Rule::WakesInRestPose, observation)
+                }
                 Interruption::Unknown => {}
             }
         }
         if is_complete && !is_first && change > MAX_STEADY_CHANGE {
-            self.judge_deadman(pulse.servo);
+            self.check_deadman(pulse.servo);
         }
         let servo = &mut self.servos[pulse.servo];
         servo.last_start = now;
@@ -237,11 +239,11 @@ impl Observer {
                 ..*servo
             };
         }
-        self.is_pulse_end_judged = false;
+        self.is_pulse_end_checked = false;
     }
 
-    /// Judges a pulse that moves a servo: the last command must not be older than the time of `deadman` allows.
-    fn judge_deadman(&mut self, servo: usize) {
+    /// Checks a pulse that moves a servo: the last command must not be older than `deadman` allows.
+    fn check_deadman(&mut self, servo: usize) {
         let silence = self.now - self.last_command_read_at;
         // Main is late for about a frame after a stall.
         let is_undisturbed = self.disturbed_until + 25 * MS <= self.last_command_read_at;
@@ -252,20 +254,20 @@ impl Observer {
         {
             let (silence_ms, deadman_ms) = (silence / MS, self.deadman_time / MS);
             let observation = format!(
-                "deadman {deadman_ms}, A{} moves after {silence_ms} ms",
+                "deadman {deadman_ms}, but A{} moves after {silence_ms} ms without a command",
                 servo + 1
             );
-            self.fail(Rule::DeadmanNotLate, observation);
+            self.record_violation(Rule::DeadmanNotLate, observation);
         }
     }
 
-    /// Judges a servo's first pulse after a pause.
-    fn judge_first_pulse(&mut self, pulse: Pulse) {
+    /// Checks a servo's first pulse after a pause.
+    fn check_first_pulse(&mut self, pulse: Pulse) {
         let now = self.now;
         let servo = self.servos[pulse.servo];
         let name = format!("A{}", pulse.servo + 1);
         if !self.permission.is_granted {
-            self.fail(Rule::PulsesPermitted, format!("{name} begins"));
+            self.record_violation(Rule::PulsesPermitted, format!("{name} gets a pulse"));
         }
         // The frame after a hang is completed even if a `rest` command arrives within it.
         let hung_until = self.started_at.max(servo.last_complete_pulse_start);
@@ -284,37 +286,40 @@ impl Observer {
             && change > self.limits.max_change_cycles[pulse.servo]
         {
             let observation = format!(
-                "{name} had {} cycles before and {} after",
+                "{name} gets pulses of {} cycles before and {} cycles after",
                 servo.last_complete_width, pulse.width
             );
-            self.fail(Rule::HeldAfterHang, observation);
+            self.record_violation(Rule::HeldAfterHang, observation);
         }
         let (last_servo, last_wake_at, was_after_hang) = self.last_wake;
         let is_soon = now - last_wake_at < MIN_WAKE_GAP;
         let was_blocked =
             servo.blocked_until > servo.last_start && now - servo.last_start <= 2 * MAX_PULSE_GAP;
         if is_soon && pulse.servo == last_servo || was_blocked {
-            // The servo has missed a frame or two, so it does not wake now.
+            // The servo has missed a frame or two; this is not a wake-up.
             return;
         }
         if is_soon && !(is_after_hang && was_after_hang) {
             let ms = (now - last_wake_at) / MS;
-            self.fail(Rule::WakeOneByOne, format!("{name}, {ms} ms after another"));
+            self.record_violation(
+                Rule::WakeOneByOne,
+                format!("{name} wakes {ms} ms after another servo"),
+            );
         }
         self.last_wake = (pulse.servo, now, is_after_hang);
     }
 
-    /// Judges the end of all pulses: if it has no other cause, the program hung, and a reset must follow.
-    pub(crate) fn judge_end_of_pulses(&mut self) {
+    /// Checks the end of all pulses: without another cause, the program hung, and a reset must follow.
+    pub(crate) fn check_end_of_pulses(&mut self) {
         let Some(end) = self.servos.iter().map(|servo| servo.last_end).max() else {
             return;
         };
-        if self.is_pulse_end_judged
+        if self.is_pulse_end_checked
             || self.now - end < MAX_TIME_TO_RESET + self.limits.max_routine_rest
         {
             return;
         }
-        self.is_pulse_end_judged = true;
+        self.is_pulse_end_checked = true;
         let [_, stop_mv, rest_mv] = self
             .limits
             .levels_mv
@@ -324,12 +329,12 @@ impl Observer {
             || self.started_at > end - 25 * MS
             || self.boot_rest_at > end - 60 * MS
             || self.supply.time_below(rest_mv, end - 600 * MS, end) > 0
-            // A rest within a routine does not end if the supply forbids motions or if no line arrives.
+            // A rest during a routine does not end if the supply forbids motions or if no line arrives.
             || self.supply.time_below(stop_mv, end, end + self.limits.max_routine_rest) > 0
             || self.reports.reported_at > end;
         if !has_reason {
             let ms = (self.now - end) / MS;
-            self.fail(
+            self.record_violation(
                 Rule::ResetAfterHang,
                 format!("no pulses for {ms} ms, and no reset"),
             );

@@ -1,11 +1,11 @@
-//! The history of the supply's voltage, and the rules that depend on it.
+//! The history of the supply voltage, and the rules that depend on it.
 
 use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Time for which the supply must be low before the robot may react: six frames, minus one frame before the first
-/// reading and one frame after the last.
+/// Time for which the supply must be low before the robot may react: six frames, minus one frame each before the first
+/// reading and after the last.
 const MIN_LOW_TIME: Time = 80 * MS;
 
 /// Time within which the robot must detect a low supply: six frames and two readings.
@@ -14,12 +14,12 @@ const MAX_LOW_DETECTION_TIME: Time = 220 * MS;
 /// Time from a start to the first reading, which is in the second frame.
 const FIRST_READING_TIME: Time = 20 * MS;
 
-/// The history of the supply's voltage over two seconds.
+/// The history of the supply voltage over two seconds.
 #[derive(Clone, Debug)]
 pub(crate) struct SupplyHistory {
-    /// Each voltage, mV, with the time of its start.
+    /// The voltages in mV, each with the time of its start.
     voltages: Vec<(Time, u32)>,
-    /// The time of the last change from or to a voltage below the good range.
+    /// The time of the last change to or from a voltage below the good range.
     pub last_poor_change: Time,
 }
 
@@ -53,7 +53,7 @@ impl SupplyHistory {
         self.current_mv() >= min_good_mv && self.last_poor_change <= since
     }
 
-    /// Returns the total time within `from..to` for which the supply was below `mv`.
+    /// Returns the total time in `from..to` during which the supply was below `mv`.
     pub(crate) fn time_below(&self, mv: u32, from: Time, to: Time) -> Time {
         let ends = self.voltages.iter().skip(1).map(|(time, _)| *time);
         let spans = self.voltages.iter().zip(ends.chain([Time::MAX]));
@@ -73,8 +73,8 @@ impl SupplyHistory {
         first_low.is_some_and(|(start, _)| *start <= since)
     }
 
-    /// Returns the time since the supply last crossed each level. The time is positive while the supply is below the
-    /// level, otherwise zero or negative.
+    /// Returns the time since the supply last crossed each level: a positive time while the supply is below the level,
+    /// otherwise a time of zero or less.
     pub(crate) fn times_since_crossed(&self, levels_mv: [u32; 3], now: Time) -> [Time; 3] {
         levels_mv.map(|mv| {
             let is_low = self.current_mv() < mv;
@@ -87,11 +87,11 @@ impl SupplyHistory {
 }
 
 impl Observer {
-    /// Judges a report on the console that the supply has stopped or rested the robot.
-    pub(crate) fn judge_supply_report(&mut self, report: &str) {
+    /// Checks a report on the console that the robot stopped or rested because of the supply.
+    pub(crate) fn check_supply_report(&mut self, report: &str) {
         let [_, stop_mv, rest_mv] = self.limits.levels_mv;
         let level_mv = match () {
-            () if report.ends_with("pulses ended") => rest_mv,
+            () if report.ends_with("pulses off") => rest_mv,
             () if report.ends_with("stopped") => stop_mv,
             () => return,
         };
@@ -99,19 +99,19 @@ impl Observer {
         let low_time = self.supply.time_below(level_mv, from, self.now);
         if low_time < MIN_LOW_TIME {
             let ms = low_time / MS;
-            self.fail(
+            self.record_violation(
                 Rule::LowForSixFrames,
-                format!("{report:?}, below for {ms} ms"),
+                format!("{report:?}, but the supply was low for only {ms} ms"),
             );
         }
     }
 
-    /// Judges the write of a byte to the EEPROM.
-    pub(crate) fn judge_write(&mut self) {
+    /// Checks the write of a byte to the EEPROM.
+    pub(crate) fn check_write(&mut self) {
         let now = self.now;
         if now - self.started_at < FIRST_READING_TIME {
             let us = (now - self.started_at) / 16;
-            self.fail(
+            self.record_violation(
                 Rule::SafeWrites,
                 format!("a byte is written {us} us after a start"),
             );
@@ -122,17 +122,17 @@ impl Observer {
             slow_mv,
             now - MAX_LOW_DETECTION_TIME - self.stalled_time_before(now),
         ) {
-            self.fail(
+            self.record_violation(
                 Rule::SafeWrites,
                 "a byte is written while the supply is too low",
             );
         }
         if self
-            .pending
+            .pending_promises
             .no_writes_until
             .is_some_and(|until| now < until)
         {
-            self.fail(Rule::SecondRestWritesNothing, "a byte is written");
+            self.record_violation(Rule::SecondRestWritesNothing, "a byte is written");
         }
     }
 }

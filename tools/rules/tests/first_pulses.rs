@@ -1,4 +1,4 @@
-//! Tests of the rules for a servo's first pulses after a pause, with the exceptions after a hang or a reset.
+//! Tests of the rules for a servo's first pulse after a pause, with their exceptions after a hang or a reset.
 
 use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
@@ -24,15 +24,15 @@ fn pulse(servo: usize) -> Event<'static> {
     })
 }
 
-/// Passes to the observer a pulse of each servo, 4 ms apart from `start_ms` on.
+/// Passes one pulse of each servo to the observer, 4 ms apart from `start_ms` on.
 fn observe_pulses_of_all_servos(observer: &mut Observer, start_ms: Time) {
     for servo in 0..4 {
         observer.observe((start_ms + 4 * servo as Time) * MS, pulse(servo));
     }
 }
 
-/// Returns an observer of a robot whose servos woke after power-on, one every 100 ms from 100 ms on. The last pulses
-/// are those of the frame at 440 ms.
+/// Returns an observer of a robot whose servos woke after power-on, one every 100 ms from 100 ms on. The last frame
+/// with pulses is at 440 ms.
 fn observer_of_awake_robot() -> Observer {
     let mut observer = Observer::new(Limits {
         max_queue_time: 150 * MS,
@@ -46,7 +46,7 @@ fn observer_of_awake_robot() -> Observer {
             observer.observe(ms * MS, pulse(servo as usize));
         }
     }
-    assert_eq!(observer.verdict(), Ok(()));
+    assert_eq!(observer.take_verdict(), Ok(()));
     observer
 }
 
@@ -66,30 +66,37 @@ fn observer_of_hung_robot(rest_ms: Time) -> Observer {
     observer
 }
 
-fn broken_rules(observer: &mut Observer) -> Vec<Rule> {
-    let all_broken = observer.take_broken_rules();
-    all_broken.into_iter().map(|broken| broken.rule).collect()
+fn take_violated_rules(observer: &mut Observer) -> Vec<Rule> {
+    let violations = observer.take_violations();
+    violations
+        .into_iter()
+        .map(|violation| violation.rule)
+        .collect()
 }
 
 #[test]
-fn the_frame_after_a_hang_is_completed_even_if_rest_arrives_within_it_or_was_lost_in_the_hang() {
+fn a_rest_in_or_soon_after_a_hang_does_not_forbid_the_pulses_of_the_next_frame() {
     for rest_ms in [500, 620] {
         let mut observer = observer_of_hung_robot(rest_ms);
         observe_pulses_of_all_servos(&mut observer, 625);
-        assert_eq!(broken_rules(&mut observer), [], "rest at {rest_ms} ms");
+        assert_eq!(
+            take_violated_rules(&mut observer),
+            [],
+            "rest at {rest_ms} ms"
+        );
     }
 }
 
 #[test]
-fn servos_that_rest_after_a_hang_wake_one_by_one() {
+fn servos_that_rested_after_a_hang_must_wake_one_by_one() {
     let mut observer = observer_of_hung_robot(620);
     observer.observe(740 * MS, STAND);
     observe_pulses_of_all_servos(&mut observer, 825);
-    assert_eq!(broken_rules(&mut observer), [Rule::WakeOneByOne; 3]);
+    assert_eq!(take_violated_rules(&mut observer), [Rule::WakeOneByOne; 3]);
 }
 
 #[test]
-fn a_gap_caused_by_blocked_interrupts_is_not_a_wake_up_but_any_other_gap_is() {
+fn only_a_gap_caused_by_blocked_interrupts_does_not_count_as_a_wake_up() {
     for (are_interrupts_blocked, expected) in [(true, &[][..]), (false, &[Rule::WakeOneByOne])] {
         let mut observer = observer_of_awake_robot();
         if are_interrupts_blocked {
@@ -98,20 +105,20 @@ fn a_gap_caused_by_blocked_interrupts_is_not_a_wake_up_but_any_other_gap_is() {
         // A2's pulse of the frame at 460 ms is missing; A4 woke at 412 ms.
         observer.observe(460 * MS, pulse(0));
         observer.observe(484 * MS, pulse(1));
-        let broken = broken_rules(&mut observer);
+        let violated_rules = take_violated_rules(&mut observer);
         assert_eq!(
-            broken, expected,
+            violated_rules, expected,
             "interrupts blocked: {are_interrupts_blocked}"
         );
     }
 }
 
 #[test]
-fn servos_without_pulses_for_longer_than_interrupts_were_blocked_wake_one_by_one() {
+fn servos_without_pulses_long_after_blocked_interrupts_must_wake_one_by_one() {
     let mut observer = observer_of_awake_robot();
     observer.observe(455 * MS, Event::InterruptsBlocked(457 * MS));
     observe_pulses_of_all_servos(&mut observer, 540);
-    assert_eq!(broken_rules(&mut observer), [Rule::WakeOneByOne; 3]);
+    assert_eq!(take_violated_rules(&mut observer), [Rule::WakeOneByOne; 3]);
 }
 
 #[test]
@@ -124,7 +131,10 @@ fn a_rest_report_that_may_have_been_queued_before_a_command_does_not_forbid_its_
         let report = Event::LinePrinted(printed_from_ms * MS, REPEATED_RESETS_REPORT);
         observer.observe(710 * MS, report);
         observer.observe(760 * MS, pulse(0));
-        let broken = broken_rules(&mut observer);
-        assert_eq!(broken, expected, "printed from {printed_from_ms} ms");
+        let violated_rules = take_violated_rules(&mut observer);
+        assert_eq!(
+            violated_rules, expected,
+            "printed from {printed_from_ms} ms"
+        );
     }
 }

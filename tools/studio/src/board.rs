@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use fastrand::Rng;
-use lizard_film::Picture;
+use lizard_video::Frame;
 
 use crate::render::Studio;
 
-/// Acceleration of free fall, mm/s^2.
+/// Acceleration of gravity, mm/s^2.
 const GRAVITY_MM_S2: f64 = 9806.65;
 /// Time step of the simulation, s.
 const STEP_S: f64 = 0.0005;
@@ -77,13 +77,13 @@ impl Board {
         (0..(seconds / STEP_S) as usize).map(advance).collect()
     }
 
-    /// Takes pictures of the board and passes each with its time to `use_picture`. The full rate is used only around
+    /// Records the board and passes each frame with its time to `use_frame`. The full frame rate is used only around
     /// the slide.
-    pub fn take_pictures(
+    pub fn record(
         &self,
         studio: &Studio,
-        pictures_per_s: f64,
-        mut use_picture: impl FnMut(f64, &Picture),
+        frames_per_s: f64,
+        mut use_frame: impl FnMut(f64, &Frame),
     ) {
         let mut rng = Rng::with_seed(11);
         let duration = self.lift_start_s
@@ -107,10 +107,13 @@ impl Board {
                     heading,
                 ]
             };
-            let background = tilted_studio.background(&mut rng);
-            use_picture(seconds, &background.picture(seconds, pose_at, &mut rng));
+            let background = tilted_studio.render_background(&mut rng);
+            use_frame(
+                seconds,
+                &background.render_frame(seconds, pose_at, &mut rng),
+            );
             seconds += if distance_at(seconds + 0.25) > 0.5 {
-                1.0 / pictures_per_s
+                1.0 / frames_per_s
             } else {
                 0.2
             };
@@ -118,7 +121,7 @@ impl Board {
     }
 }
 
-/// Returns a studio with few pixels, in which the sheet fills the picture.
+/// Returns a studio with few pixels, in which the sheet fills the frame.
 pub fn small_studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(5));
     (studio.size, studio.focal_length) = ([640, 480], 0.85);

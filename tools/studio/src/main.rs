@@ -1,5 +1,5 @@
-//! Renders a film of a walk with a known displacement, for the page's tests. Writes FOLDER/film.y4m, which a browser
-//! uses as its camera; the same pictures in FOLDER/pictures; and the true displacement per cycle in FOLDER/truth.json.
+//! Renders a video of a walk with a known displacement, for the page's tests. Writes FOLDER/video.y4m, which a browser
+//! uses as its camera, the same frames in FOLDER/frames, and the true displacement per cycle in FOLDER/truth.json.
 //!
 //! `studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...`: WIDTH is in pixels. The robot walks CYCLES cycles of the paper's
 //! `walk` and rests before and after them. Each HIDDEN_TAG is the id of a tag that is covered.
@@ -13,14 +13,14 @@ use lizard_studio::encode_jpeg;
 use lizard_studio::render::Studio;
 use lizard_studio::walk::{Variation, Walk, paper_gait, true_displacement};
 
-/// Pictures per second. Chromium shows a late picture at the right time if the delay is shorter than the interval
-/// between pictures, so a low rate is reliable on a busy machine.
-const PICTURES_PER_S: u32 = 10;
-/// The value of both chroma planes of a grey picture.
+/// Frames per second. Chromium shows a late frame at the right time if its delay is shorter than the frame interval,
+/// so a low rate is reliable on a busy machine.
+const FRAMES_PER_S: u32 = 10;
+/// The value of both chroma planes of a grey frame.
 const NEUTRAL_CHROMA: u8 = 128;
 /// Standard deviations of a cycle's displacement from the gait's: mm forward, mm to the left, rad.
 const CYCLE_DEVIATION: [f64; 3] = [0.1, 0.1, 0.002];
-/// Quality of the JPEG pictures, 1 to 100.
+/// Quality of the JPEG frames, 1 to 100.
 const JPEG_QUALITY: u8 = 85;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -31,7 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             .ok_or("usage: studio FOLDER WIDTH CYCLES [HIDDEN_TAG]...")
     };
     let folder = PathBuf::from(next_argument()?);
-    let (width, cycles): (usize, usize) = (next_argument()?.parse()?, next_argument()?.parse()?);
+    let (width, cycle_count): (usize, usize) =
+        (next_argument()?.parse()?, next_argument()?.parse()?);
     let rng = &mut Rng::with_seed(4);
     let mut studio = Studio::random(rng);
     (studio.size, studio.focal_length) = ([width, width * 9 / 16], 0.95);
@@ -45,29 +46,29 @@ fn main() -> Result<(), Box<dyn Error>> {
     studio.hidden_tags = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
     let gait = paper_gait("walk");
     let truth = true_displacement(&gait);
-    let start = -truth.forward * cycles as f64 / 2.0;
+    let start = -truth.forward * cycle_count as f64 / 2.0;
     let variation = Variation {
         cycle_deviation: CYCLE_DEVIATION,
         ..Variation::default()
     };
-    let walk = Walk::new(&gait, [start, 0.0, 0.0], cycles, variation, rng);
-    let background = studio.background(rng);
-    let pictures = folder.join("pictures");
-    fs::create_dir_all(&pictures)?;
-    let [film_width, film_height] = studio.size;
-    let mut film =
-        format!("YUV4MPEG2 W{film_width} H{film_height} F{PICTURES_PER_S}:1 Ip A1:1 C420jpeg\n")
+    let walk = Walk::new(&gait, [start, 0.0, 0.0], cycle_count, variation, rng);
+    let background = studio.render_background(rng);
+    let frames_dir = folder.join("frames");
+    fs::create_dir_all(&frames_dir)?;
+    let [video_width, video_height] = studio.size;
+    let mut video =
+        format!("YUV4MPEG2 W{video_width} H{video_height} F{FRAMES_PER_S}:1 Ip A1:1 C420jpeg\n")
             .into_bytes();
-    for i in 0..(walk.duration_s() * f64::from(PICTURES_PER_S)) as usize {
-        let seconds = i as f64 / f64::from(PICTURES_PER_S);
-        let picture = background.picture(seconds, |time| walk.pose_at(time), rng);
-        let jpeg = encode_jpeg(&picture, JPEG_QUALITY)?;
-        fs::write(pictures.join(format!("{seconds:.4}s.jpg")), jpeg)?;
-        film.extend(b"FRAME\n");
-        film.extend(picture.grey());
-        film.resize(film.len() + film_width * film_height / 2, NEUTRAL_CHROMA);
+    for i in 0..(walk.duration_s() * f64::from(FRAMES_PER_S)) as usize {
+        let seconds = i as f64 / f64::from(FRAMES_PER_S);
+        let frame = background.render_frame(seconds, |time| walk.pose_at(time), rng);
+        let jpeg = encode_jpeg(&frame, JPEG_QUALITY)?;
+        fs::write(frames_dir.join(format!("{seconds:.4}s.jpg")), jpeg)?;
+        video.extend(b"FRAME\n");
+        video.extend(frame.grey());
+        video.resize(video.len() + video_width * video_height / 2, NEUTRAL_CHROMA);
     }
-    fs::write(folder.join("film.y4m"), film)?;
+    fs::write(folder.join("video.y4m"), video)?;
     let truth_json = format!(
         "{{\"forward\":{},\"left\":{},\"turn\":{}}}\n",
         truth.forward, truth.left, truth.turn

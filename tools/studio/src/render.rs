@@ -1,12 +1,13 @@
-//! Renderer of the picture that a camera would take of the sheet and the robot, with noise, blur, distortion and uneven
+//! Renders frames as a camera would take them of the sheet and the robot, with noise, blur, distortion and uneven
 //! light.
 //!
-//! The renderer shares only the design of the sheet with the tested code: it traces rays and uses no matrices.
+//! The renderer and the tested code have only the design of the sheet in common: the renderer traces rays and uses no
+//! matrices.
 
 use std::f64::consts::PI;
 
 use fastrand::Rng;
-use lizard_film::{Picture, sheet};
+use lizard_video::{Frame, sheet};
 
 /// Position on the floor and heading: mm, mm, rad.
 pub type Pose = [f64; 3];
@@ -36,14 +37,14 @@ const NOISE_RUN_LENGTH: usize = 64;
 /// The scene: the floor, the sheet and the camera.
 #[derive(Clone)]
 pub struct Studio {
-    /// Width and height of the picture, pixels.
+    /// Width and height of the frame, pixels.
     pub size: [usize; 2],
-    /// Focal length as a share of the picture's width.
+    /// Focal length as a fraction of the frame's width.
     pub focal_length: f64,
-    /// Distortion of the lens: the share by which it moves an image point at a distance of one focal length from the
+    /// Distortion of the lens: the relative displacement of an image point at a distance of one focal length from the
     /// axis.
     pub distortion: f64,
-    /// Height of the camera above the middle of the scene, mm.
+    /// Height of the camera above the floor, mm.
     pub camera_height: f64,
     /// Tilt of the camera's axis from straight down, deg.
     pub camera_tilt: f64,
@@ -51,19 +52,19 @@ pub struct Studio {
     pub camera_direction: f64,
     /// Roll of the camera about its axis, deg.
     pub camera_roll: f64,
-    /// The point of the floor at which the camera's axis points, mm.
+    /// The point where the camera's axis meets the floor, mm.
     pub aim: [f64; 2],
-    /// Tilt of the board with the strips and the robot about its edge at x = `TILT_EDGE_X_MM`, deg.
+    /// Tilt of the board about its edge at x = `TILT_EDGE_X_MM`, deg. The strips and the robot are on the board.
     pub board_tilt: f64,
-    /// Poses of the strips' middles.
+    /// Poses of the strips' centres.
     pub strips: [Pose; 2],
     /// Printed mm per designed mm, along a strip and across it.
     pub print_scale: [f64; 2],
-    /// Factor of the distance between a strip's tags; 1 unless the strip was cut apart.
+    /// Ratio of the true to the designed distance between a strip's tags; 1 unless the strip was cut apart.
     pub tag_distance_factor: f64,
     /// Height of the deck tag, mm.
     pub deck_tag_height: f64,
-    /// Ids of the covered tags.
+    /// Ids of the tags that are covered.
     pub hidden_tags: Vec<usize>,
     /// Round objects or reflections on the floor: x, y, radius, mm, and their grey.
     pub discs: Vec<[f64; 4]>,
@@ -71,13 +72,13 @@ pub struct Studio {
     pub exposure_s: f64,
     /// Time from the first row to the last one, s.
     pub readout_s: f64,
-    /// Light, as a share of normal light.
+    /// Light, as a fraction of normal light.
     pub light: f64,
     /// Standard deviation of the noise, grey levels.
     pub noise: f64,
     /// Grey of the floor.
     pub floor_grey: f64,
-    /// Loss of light from one corner of the picture to the opposite one, as a share.
+    /// Loss of light from one corner of the frame to the opposite one, as a fraction.
     pub shading: f64,
 }
 
@@ -92,7 +93,7 @@ impl Studio {
         }
     }
 
-    /// True if the corners of both strips are in the picture.
+    /// True if the corners of both strips are in the frame.
     fn sees_strips(&self) -> bool {
         let view = self.view();
         let [half_length, half_width] = sheet::STRIP_SIZE.map(|length| length / 2.0);
@@ -105,7 +106,7 @@ impl Studio {
                 [-half_length, -half_width],
             ]
             .into_iter()
-            .map(|[u, v]| view.pixel_of([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
+            .map(|[u, v]| view.project([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
             .all(|pixel| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&pixel[i])))
         })
     }
@@ -149,7 +150,7 @@ impl Studio {
         }
     }
 
-    /// Returns the camera's position and its axes (right, down, ahead), in the frame of the tilted board.
+    /// Returns the camera's position and its axes (right, down, ahead), in the axes of the tilted board.
     fn camera(&self) -> (Vector, [Vector; 3]) {
         let (tilt, direction) = (
             self.camera_tilt.to_radians(),
@@ -168,14 +169,13 @@ impl Studio {
         let down = cross_product(ahead, level_right);
         let (sin, cos) = self.camera_roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level_right[i] + sin * down[i]);
-        let [x, y, z] = self.to_board_frame([eye[0] - TILT_EDGE_X_MM, eye[1], eye[2]]);
-        let axes =
-            [right, cross_product(ahead, right), ahead].map(|axis| self.to_board_frame(axis));
+        let [x, y, z] = self.to_board_axes([eye[0] - TILT_EDGE_X_MM, eye[1], eye[2]]);
+        let axes = [right, cross_product(ahead, right), ahead].map(|axis| self.to_board_axes(axis));
         ([x + TILT_EDGE_X_MM, y, z], axes)
     }
 
-    /// Converts a direction from the frame of the room to the frame of the tilted board.
-    fn to_board_frame(&self, [x, y, z]: Vector) -> Vector {
+    /// Converts a direction from the room's axes to the axes of the tilted board.
+    fn to_board_axes(&self, [x, y, z]: Vector) -> Vector {
         let (sin, cos) = self.board_tilt.to_radians().sin_cos();
         [x * cos + z * sin, y, z * cos - x * sin]
     }
@@ -192,20 +192,20 @@ impl Studio {
         }
     }
 
-    /// Returns the picture of the floor and the strips without the robot.
-    pub fn background(&self, rng: &mut Rng) -> Background {
+    /// Renders the floor and the strips without the robot.
+    pub fn render_background(&self, rng: &mut Rng) -> Background {
         let [width, height] = self.size;
         let view = self.view();
         let mut grey_levels = vec![0f32; width * height];
         for (i, grey) in grey_levels.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
-            let pixel_middle = view.point_at_height([x, y], 0.0);
+            let pixel_centre = view.point_at_height([x, y], 0.0);
             let is_near = (0..2).any(|strip| {
-                let [u, v] = PoseFrame::new(self.strips[strip]).to_local(pixel_middle);
+                let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
             *grey = match is_near {
-                true => mean_of_samples(|dx, dy| {
+                true => average_over_pixel(|dx, dy| {
                     self.floor_grey_at(view.point_at_height([x + dx, y + dy], 0.0))
                 }) as f32,
                 false => self.floor_grey as f32,
@@ -229,13 +229,13 @@ impl Studio {
             return *grey;
         }
         for (strip, pose) in self.strips.iter().enumerate() {
-            let [u, v] = PoseFrame::new(*pose).to_local(point);
+            let [u, v] = LocalAxes::new(*pose).to_local(point);
             let [u, v] = [u / self.print_scale[0], v / self.print_scale[1]];
             if u.abs() > sheet::STRIP_SIZE[0] / 2.0 || v.abs() > sheet::STRIP_SIZE[1] / 2.0 {
                 continue;
             }
             for id in 2 * strip..2 * strip + 2 {
-                let [x, y] = sheet::middle_on_strip(id);
+                let [x, y] = sheet::centre_on_strip(id);
                 if let Some(grey) = tag_grey(id, [u - self.tag_distance_factor * x, v - y]) {
                     return if self.hidden_tags.contains(&id) {
                         BLACK_GREY
@@ -249,8 +249,8 @@ impl Studio {
         self.floor_grey
     }
 
-    /// Returns the grey of a point of the robot's card; `None` outside of the card. The point is given to the right and
-    /// ahead of the middle of the card's tag.
+    /// Returns the grey of a point on the robot's card; `None` outside the card. The point's coordinates are to the
+    /// right and ahead of the tag's centre.
     fn card_grey_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [x, y] = [x / self.print_scale[0], y / self.print_scale[1]];
         let min_y = -sheet::DECK_TAG_EDGE / 2.0 - sheet::CARD_MARGIN;
@@ -265,12 +265,12 @@ impl Studio {
     }
 }
 
-/// The picture of a studio without the robot.
+/// A rendered studio without the robot.
 pub struct Background {
     studio: Studio,
     view: View,
     grey_levels: Vec<f32>,
-    /// Random numbers for the noise; each run of successive pixels begins at a random index.
+    /// Random numbers for the noise; each run of successive pixels starts at a random index.
     noise: Vec<f32>,
 }
 
@@ -284,14 +284,14 @@ struct View {
 }
 
 impl View {
-    /// Returns the point at a height that a pixel shows: the intersection of the pixel's ray with the plane at that
+    /// Returns the point that a pixel shows at a height: the intersection of the pixel's ray with the plane at that
     /// height.
     fn point_at_height(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let distorted = [
             (x - self.image_centre[0]) / self.focal_length,
             (y - self.image_centre[1]) / self.focal_length,
         ];
-        // Inverts the distortion of the lens by iteration, which converges fast since the distortion is small.
+        // Inverts the lens distortion by iteration, which converges fast because the distortion is small.
         let [mut u, mut v] = distorted;
         for _ in 0..3 {
             let factor = self.distortion_factor(u, v);
@@ -307,7 +307,7 @@ impl View {
     }
 
     /// Returns the pixel that shows a point at a height.
-    fn pixel_of(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
+    fn project(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let offset = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
         let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
         let [right, down, ahead] = &self.axes;
@@ -322,26 +322,31 @@ impl View {
         ]
     }
 
-    /// Returns the factor by which the lens moves a point away from the axis.
+    /// Returns the factor by which the lens changes a point's distance from the axis.
     fn distortion_factor(&self, u: f64, v: f64) -> f64 {
         1.0 + self.distortion * (u * u + v * v)
     }
 }
 
 impl Background {
-    /// Returns the picture with the robot; the exposure is centred on this time. `pose_at` returns the robot's pose
-    /// at a time.
-    pub fn picture(&self, seconds: f64, pose_at: impl Fn(f64) -> Pose, rng: &mut Rng) -> Picture {
+    /// Renders a frame with the robot; the exposure is centred on `seconds`. `pose_at` returns the robot's pose at a
+    /// time.
+    pub fn render_frame(
+        &self,
+        seconds: f64,
+        pose_at: impl Fn(f64) -> Pose,
+        rng: &mut Rng,
+    ) -> Frame {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut grey_levels = self.grey_levels.clone();
         // The poses of the robot during the exposure of a row.
-        let poses_in_row = |row: usize| -> [PoseFrame; SHUTTER_SAMPLES] {
+        let poses_in_row = |row: usize| -> [LocalAxes; SHUTTER_SAMPLES] {
             let row_delay = (row as f64 / height as f64 - 0.5) * studio.readout_s;
             std::array::from_fn(|i| {
                 let shutter_delay =
                     ((i as f64 + 0.5) / SHUTTER_SAMPLES as f64 - 0.5) * studio.exposure_s;
-                PoseFrame::new(pose_at(seconds + row_delay + shutter_delay))
+                LocalAxes::new(pose_at(seconds + row_delay + shutter_delay))
             })
         };
         let rows: Vec<_> = (0..height).map(poses_in_row).collect();
@@ -364,8 +369,8 @@ impl Background {
             |i, [x, y]| {
                 let poses = &rows[i / width];
                 let background_grey = f64::from(grey_levels[i]);
-                let grey_of = |pose: &PoseFrame| {
-                    mean_of_samples(|dx, dy| {
+                let card_grey = |pose: &LocalAxes| {
+                    average_over_pixel(|dx, dy| {
                         let point = pose.to_robot(
                             self.view
                                 .point_at_height([x + dx, y + dy], studio.deck_tag_height),
@@ -374,14 +379,15 @@ impl Background {
                     })
                 };
                 grey_levels[i] =
-                    (poses.iter().map(grey_of).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
+                    (poses.iter().map(card_grey).sum::<f64>() / SHUTTER_SAMPLES as f64) as f32;
             },
         );
         let mut grey = Vec::with_capacity(grey_levels.len());
         for (i, pixels) in grey_levels.chunks(NOISE_RUN_LENGTH).enumerate() {
             let (row, column) = (i * NOISE_RUN_LENGTH / width, i * NOISE_RUN_LENGTH % width);
-            let share = (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
-            let brightness = (studio.light * (1.0 - studio.shading * share)) as f32;
+            let diagonal_fraction =
+                (row as f64 / height as f64 + column as f64 / width as f64) / 2.0;
+            let brightness = (studio.light * (1.0 - studio.shading * diagonal_fraction)) as f32;
             let noise = &self.noise[rng.usize(..NOISE_COUNT - NOISE_RUN_LENGTH)..];
             grey.extend(
                 pixels
@@ -390,14 +396,14 @@ impl Background {
                     .map(|(grey, noise)| (grey * brightness + noise + 0.5) as u8),
             );
         }
-        Picture::new(width, height, grey).expect("the picture has a grey for each pixel")
+        Frame::new(width, height, grey).expect("the frame has a grey for each pixel")
     }
 
-    /// Calls `visit` for every pixel around the robot's body or card, with the pixel's index, and its column and row.
+    /// Calls `visit` for every pixel around the robot's body or card, with the pixel's index, column and row.
     /// `half_size` is half the width and length of the body or card, mm.
     fn for_each_pixel(
         &self,
-        PoseFrame([x, y], [cos, sin]): PoseFrame,
+        LocalAxes([x, y], [cos, sin]): LocalAxes,
         half_size: [f64; 2],
         height: f64,
         mut visit: impl FnMut(usize, [f64; 2]),
@@ -405,10 +411,10 @@ impl Background {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
             let (right, ahead) = (a * half_size[0], b * half_size[1]);
             let floor = [x + ahead * cos + right * sin, y + ahead * sin - right * cos];
-            self.view.pixel_of(floor, height)
+            self.view.project(floor, height)
         });
         let size = self.studio.size;
-        let range_of = |i: usize| {
+        let pixel_range = |i: usize| {
             let low = corners
                 .iter()
                 .map(|corner| corner[i])
@@ -416,8 +422,8 @@ impl Background {
             let high = corners.iter().map(|corner| corner[i]).fold(0.0, f64::max);
             (low.max(0.0) as usize)..((high + 1.0).max(0.0) as usize).min(size[i])
         };
-        for row in range_of(1) {
-            for column in range_of(0) {
+        for row in pixel_range(1) {
+            for column in pixel_range(0) {
                 visit(row * size[0] + column, [column as f64, row as f64]);
             }
         }
@@ -425,14 +431,14 @@ impl Background {
 }
 
 /// Returns the mean of `sample` over a pixel.
-fn mean_of_samples(sample: impl Fn(f64, f64) -> f64) -> f64 {
+fn average_over_pixel(sample: impl Fn(f64, f64) -> f64) -> f64 {
     let offset = |i: usize| (i as f64 + 0.5) / PIXEL_SAMPLES as f64 - 0.5;
     let values = (0..PIXEL_SAMPLES * PIXEL_SAMPLES)
         .map(|i| sample(offset(i % PIXEL_SAMPLES), offset(i / PIXEL_SAMPLES)));
     values.sum::<f64>() / (PIXEL_SAMPLES * PIXEL_SAMPLES) as f64
 }
 
-/// Returns the grey of a tag at a point relative to the tag's middle; `None` outside of the tag.
+/// Returns the grey of a tag at a point relative to the tag's centre; `None` outside the tag.
 fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     let square = sheet::tag_edge(id) / sheet::SQUARES_PER_SIDE as f64;
     let half = sheet::SQUARES_PER_SIDE as f64 / 2.0;
@@ -447,23 +453,23 @@ fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     )
 }
 
-/// The frame of a pose: its point, and the cosine and sine of its heading.
+/// The axes of a pose: the origin, and the cosine and sine of the heading.
 #[derive(Clone, Copy)]
-struct PoseFrame([f64; 2], [f64; 2]);
+struct LocalAxes([f64; 2], [f64; 2]);
 
-impl PoseFrame {
+impl LocalAxes {
     fn new([x, y, heading]: Pose) -> Self {
         Self([x, y], [heading.cos(), heading.sin()])
     }
 
-    /// Converts a point of the floor to this frame: along the heading, and to the left.
+    /// Converts a point on the floor to these axes: along the heading, and to the left.
     fn to_local(self, point: [f64; 2]) -> [f64; 2] {
         let Self([x, y], [cos, sin]) = self;
         let (dx, dy) = (point[0] - x, point[1] - y);
         [dx * cos + dy * sin, dy * cos - dx * sin]
     }
 
-    /// Converts a point of the floor to the robot's frame: right, ahead.
+    /// Converts a point on the floor to the robot's axes: right, ahead.
     fn to_robot(self, point: [f64; 2]) -> [f64; 2] {
         let [ahead, left] = self.to_local(point);
         [-left, ahead]

@@ -2,41 +2,41 @@
 //! friction.
 
 use fastrand::Rng;
-use lizard_film::Picture;
-use lizard_film::orders::{ORDER_INTERVAL, Order, orders};
+use lizard_video::Frame;
+use lizard_video::servo_commands::{COMMAND_INTERVAL, ServoCommand, list_commands};
 
 use crate::render::Studio;
 
-/// Duration of a servo frame, s.
-const FRAME_S: f64 = 0.02;
+/// Time from one pulse to the next, s.
+const PULSE_INTERVAL_S: f64 = 0.02;
 /// Time step of the simulation, s.
 const STEP_S: f64 = 0.0005;
-/// Number of frames that a move to a pose takes.
-const MOVE_FRAMES: usize = 8;
+/// Number of pulses during a move to a pose.
+const MOVE_PULSES: usize = 8;
 /// Error beyond the dead band from which the servo uses its full torque, deg.
 pub const FULL_TORQUE_DEG: f64 = 3.0;
-/// Dry friction of the gears, as a share of the stall torque.
-pub const FRICTION_SHARE: f64 = 0.02;
+/// Dry friction of the gears, as a fraction of the stall torque.
+pub const FRICTION_FRACTION: f64 = 0.02;
 
 /// A servo in the jig.
 #[derive(Clone)]
 pub struct Servo {
-    /// Angle that the servo turns per commanded deg.
+    /// Angle by which the servo turns per commanded deg.
     pub gain: f64,
     /// Angular speed without load and friction, deg/s.
     pub no_load_rate: f64,
-    /// Time constant of the rotor, s.
-    pub spin_up: f64,
+    /// Rotor time constant, s.
+    pub rotor_time_constant: f64,
     /// Width of the dead band, commanded deg.
     pub dead_band: f64,
     /// Total free play of the horn on its shaft, deg.
     pub play: f64,
-    /// Torque of the load, clockwise, as a share of the stall torque.
+    /// Torque of the load, clockwise, as a fraction of the stall torque.
     pub load: f64,
     /// Rate at which the pulse changes in a large step, deg/s.
     pub slew_rate: f64,
     /// Time of the first command, s.
-    pub first_order_s: f64,
+    pub first_command_s: f64,
     /// Heading of the card at neutral, deg.
     pub neutral_heading: f64,
 }
@@ -46,12 +46,12 @@ impl Default for Servo {
         Self {
             gain: 1.0,
             no_load_rate: 500.0,
-            spin_up: 0.02,
+            rotor_time_constant: 0.02,
             dead_band: 1.0,
             play: 0.0,
             load: 0.0,
             slew_rate: 1000.0,
-            first_order_s: 0.7,
+            first_command_s: 0.7,
             neutral_heading: 20.0,
         }
     }
@@ -60,32 +60,32 @@ impl Default for Servo {
 impl Servo {
     /// Returns the steady speed without load but with friction, deg/s.
     pub fn steady_rate(&self) -> f64 {
-        self.no_load_rate * (1.0 - FRICTION_SHARE)
+        self.no_load_rate * (1.0 - FRICTION_FRACTION)
     }
 
     /// Returns the time at which all commands are complete, s.
     pub fn end_s(&self) -> f64 {
-        self.first_order_s + ORDER_INTERVAL * orders(1.0).len() as f64
+        self.first_command_s + COMMAND_INTERVAL * list_commands(1.0).len() as f64
     }
 
     /// Simulates the card's angles. The commands are counter-clockwise from neutral if `side` is 1, and clockwise if it
     /// is -1.
     pub fn simulate(&self, side: f64) -> CardAngles {
-        let orders = orders(side);
-        let pulses = self.pulses(&orders);
+        let commands = list_commands(side);
+        let pulses = self.simulate_pulses(&commands);
         let (mut angle, mut rate, mut horn) = (0.0, 0.0, 0.0f64);
         let mut angles = Vec::new();
         for pulse in pulses {
-            for _ in 0..(FRAME_S / STEP_S).round() as usize {
+            for _ in 0..(PULSE_INTERVAL_S / STEP_S).round() as usize {
                 let error = pulse - angle / self.gain;
                 let excess = (error.abs() - self.dead_band / 2.0).max(0.0);
                 let drive =
                     (excess / FULL_TORQUE_DEG).min(1.0) * (error * self.gain).signum() - self.load;
                 // Friction slows a turning motor down to a stop, and holds a motor at rest.
                 let speed_error = self.no_load_rate * drive - rate;
-                let friction_rate = self.no_load_rate * FRICTION_SHARE;
-                let max_change = friction_rate * STEP_S / self.spin_up;
-                rate += speed_error * STEP_S / self.spin_up;
+                let friction_rate = self.no_load_rate * FRICTION_FRACTION;
+                let max_change = friction_rate * STEP_S / self.rotor_time_constant;
+                rate += speed_error * STEP_S / self.rotor_time_constant;
                 rate -= rate.clamp(-max_change, max_change);
                 angle += rate * STEP_S;
                 horn = horn.clamp(angle - self.play / 2.0, angle + self.play / 2.0);
@@ -95,60 +95,63 @@ impl Servo {
         CardAngles(angles)
     }
 
-    /// Takes pictures of the card on the horn and passes each with its time to `use_picture`. The full rate is used
+    /// Records the card on the horn and passes each frame with its time to `use_frame`. The full frame rate is used
     /// only while the card turns fast.
-    pub fn take_pictures(
+    pub fn record(
         &self,
         studio: &Studio,
         side: f64,
-        pictures_per_s: f64,
+        frames_per_s: f64,
         rng: &mut Rng,
-        mut use_picture: impl FnMut(f64, &Picture),
+        mut use_frame: impl FnMut(f64, &Frame),
     ) {
         let card_angles = self.simulate(side);
-        let background = studio.background(rng);
+        let background = studio.render_background(rng);
         let mut seconds = 0.0;
         while seconds < self.end_s() {
-            // The axis is 8 mm beside the middle of the tag.
+            // The servo's axis is 8 mm from the tag's centre.
             let pose_at = |time: f64| {
                 let heading = card_angles.angle_at(time).to_radians();
                 [8.0 * heading.cos(), 8.0 * heading.sin(), heading]
             };
-            use_picture(seconds, &background.picture(seconds, pose_at, rng));
+            use_frame(seconds, &background.render_frame(seconds, pose_at, rng));
             let turn = card_angles.angle_at(seconds + 0.25) - card_angles.angle_at(seconds - 0.08);
             seconds += if turn.abs() > 30.0 {
-                1.0 / pictures_per_s
+                1.0 / frames_per_s
             } else {
                 0.2
             };
         }
     }
 
-    /// Returns the pulse in each frame, as an angle in deg.
-    fn pulses(&self, orders: &[Order]) -> Vec<f64> {
-        let frame_count = (self.end_s() / FRAME_S) as usize + 1;
+    /// Simulates all pulses, each as an angle in deg.
+    fn simulate_pulses(&self, commands: &[ServoCommand]) -> Vec<f64> {
+        let pulse_count = (self.end_s() / PULSE_INTERVAL_S) as usize + 1;
         let (mut start_pulse, mut pulse) = (0.0, 0.0);
-        let mut last_order = 0;
-        let pulse_at = |frame: usize| {
-            let seconds = frame as f64 * FRAME_S - self.first_order_s;
-            let order = ((seconds / ORDER_INTERVAL).max(0.0) as usize).min(orders.len() - 1);
-            if order != last_order {
-                (last_order, start_pulse) = (order, pulse);
+        let mut last_index = 0;
+        let pulse_at = |pulse_index: usize| {
+            let seconds = pulse_index as f64 * PULSE_INTERVAL_S - self.first_command_s;
+            let index = ((seconds / COMMAND_INTERVAL).max(0.0) as usize).min(commands.len() - 1);
+            if index != last_index {
+                (last_index, start_pulse) = (index, pulse);
             }
-            let ordered = orders[order].pulse_angle();
-            let is_flip = order > 0 && orders[order].is_reversed != orders[order - 1].is_reversed;
+            let commanded = commands[index].pulse_angle();
+            let is_flip =
+                index > 0 && commands[index].is_reversed != commands[index - 1].is_reversed;
             pulse = if is_flip {
-                let max_step = self.slew_rate * FRAME_S;
-                pulse + (ordered - pulse).clamp(-max_step, max_step)
+                let max_step = self.slew_rate * PULSE_INTERVAL_S;
+                pulse + (commanded - pulse).clamp(-max_step, max_step)
             } else {
-                let order_start = ORDER_INTERVAL * order as f64;
-                let share =
-                    ((seconds - order_start) / (MOVE_FRAMES as f64 * FRAME_S)).clamp(0.0, 1.0);
-                start_pulse + (ordered - start_pulse) * share * share * (3.0 - 2.0 * share)
+                let command_start = COMMAND_INTERVAL * index as f64;
+                let fraction = ((seconds - command_start)
+                    / (MOVE_PULSES as f64 * PULSE_INTERVAL_S))
+                    .clamp(0.0, 1.0);
+                start_pulse
+                    + (commanded - start_pulse) * fraction * fraction * (3.0 - 2.0 * fraction)
             };
             pulse
         };
-        (0..frame_count).map(pulse_at).collect()
+        (0..pulse_count).map(pulse_at).collect()
     }
 }
 

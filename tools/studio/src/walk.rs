@@ -1,14 +1,14 @@
-//! Simulation of walks with known true paths: the twin's path, cycle after cycle, with random deviations like those of
-//! a built robot.
+//! Simulates walks with known true paths: the twin's path, cycle after cycle, with random deviations as in a built
+//! robot.
 
 use fastrand::Rng;
-use lizard_film::Gait;
 use lizard_robot::{Place, Robot, Travel};
 use lizard_twin::{ServoModel, Twin};
+use lizard_video::Gait;
 
 use crate::render::{Pose, random_normal};
 
-/// Rest before the start and after the end of a walk, s.
+/// Duration of the rest before and after a walk, s.
 pub const REST_S: f64 = 0.5;
 
 /// Returns a gait of the paper's robot with the path that the twin walks in the second cycle.
@@ -16,7 +16,7 @@ pub fn paper_gait(name: &str) -> Gait {
     let robot =
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
     let gait = robot.gait(name).expect("the robot has this gait");
-    let mut twin = Twin::new(&robot, ServoModel::of(&robot));
+    let mut twin = Twin::new(&robot, ServoModel::for_robot(&robot));
     let frame_count = gait.frames().count() - 1;
     let mut places = Vec::new();
     for i in 0..=2 * frame_count {
@@ -25,18 +25,14 @@ pub fn paper_gait(name: &str) -> Gait {
             .nth(i % frame_count)
             .expect("every cycle has this frame")
             .1;
-        let place = twin.push_angles(gait.table_angles(phase)).place;
+        let place = twin.simulate_angles(gait.table_angles(phase)).place;
         if i >= frame_count {
             places.push(place);
         }
     }
     let relative_place = |place: &Place| {
         let travel = place.travel_from(places[0]);
-        Place {
-            forward: travel.forward,
-            left: travel.left,
-            heading: travel.turn.to_radians(),
-        }
+        to_place([travel.forward, travel.left, travel.turn.to_radians()])
     };
     Gait {
         period: gait.period(),
@@ -44,46 +40,42 @@ pub fn paper_gait(name: &str) -> Gait {
     }
 }
 
-/// Number of parts of a cycle; each part deviates independently, as if a foot slipped now and then.
+/// Number of parts of a cycle. Each part deviates independently, as if a foot slipped now and then.
 const PARTS_PER_CYCLE: usize = 12;
 
-/// A walk of some cycles.
+/// A walk of several cycles of a gait.
 pub struct Walk {
     gait: Gait,
     period: f64,
-    /// The place at the start of each cycle, and at the end of the last one.
+    /// The place at the start of each cycle, and at the end of the last cycle.
     cycle_starts: Vec<Place>,
     /// The deviation of each cycle from the gait at the ends of its parts: mm, mm, rad.
     deviations: Vec<[[f64; 3]; PARTS_PER_CYCLE + 1]>,
 }
 
-/// Standard deviations of a walk and of its measurements.
+/// Standard deviations of a walk and of the user's measurements.
 #[derive(Clone, Copy, Default)]
 pub struct Variation {
     /// Deviation of each cycle from the gait: mm, mm, rad.
     pub cycle_deviation: [f64; 3],
-    /// Deviation of the robot's clock, as a share.
+    /// Relative deviation of the robot's clock.
     pub clock_deviation: f64,
-    /// Deviation of a height measured by the user, mm, and of the sheet's scale, thousandths.
+    /// Deviation of a height that the user measures, mm, and of the sheet's scale, thousandths.
     pub ruler_deviation: f64,
 }
 
 impl Walk {
-    /// Makes a walk of some cycles of a gait, from a place.
+    /// Creates a walk of some cycles of a gait, from a place.
     pub fn new(
         gait: &Gait,
         start: Pose,
-        cycles: usize,
+        cycle_count: usize,
         variation: Variation,
         rng: &mut Rng,
     ) -> Self {
-        let mut cycle_starts = vec![Place {
-            forward: start[0],
-            left: start[1],
-            heading: start[2],
-        }];
+        let mut cycle_starts = vec![to_place(start)];
         let mut deviations = Vec::new();
-        for _ in 0..cycles {
+        for _ in 0..cycle_count {
             let mut cycle_deviations = [[0.0; 3]; PARTS_PER_CYCLE + 1];
             for i in 1..=PARTS_PER_CYCLE {
                 let step = variation
@@ -95,7 +87,7 @@ impl Walk {
             let start_place = cycle_starts[cycle_starts.len() - 1];
             cycle_starts.push(compose(
                 compose(start_place, gait.path[gait.path.len() - 1]),
-                place_from(cycle_deviations[PARTS_PER_CYCLE]),
+                to_place(cycle_deviations[PARTS_PER_CYCLE]),
             ));
             deviations.push(cycle_deviations);
         }
@@ -112,36 +104,36 @@ impl Walk {
         self.period * self.deviations.len() as f64 + 2.0 * REST_S
     }
 
-    /// Returns the robot's pose at a time.
+    /// Returns the robot's pose at a time, s.
     pub fn pose_at(&self, seconds: f64) -> Pose {
         let phase =
             ((seconds - REST_S) / self.period).clamp(0.0, self.deviations.len() as f64 - 1e-9);
-        let (cycle, cycle_share) = (phase as usize, phase.fract());
+        let (cycle, cycle_fraction) = (phase as usize, phase.fract());
         let path = &self.gait.path;
-        let position = cycle_share * (path.len() - 1) as f64;
-        let (a, b, share) = (
+        let position = cycle_fraction * (path.len() - 1) as f64;
+        let (a, b, fraction) = (
             path[position as usize],
             path[position as usize + 1],
             position.fract(),
         );
         let interpolate = |coordinate: fn(&Place) -> f64| {
-            coordinate(&a) + share * (coordinate(&b) - coordinate(&a))
+            coordinate(&a) + fraction * (coordinate(&b) - coordinate(&a))
         };
-        let gait_place = place_from([
+        let gait_place = to_place([
             interpolate(|place| place.forward),
             interpolate(|place| place.left),
             interpolate(|place| place.heading),
         ]);
-        let position = cycle_share * PARTS_PER_CYCLE as f64;
-        let (i, share) = (position as usize, position.fract());
+        let position = cycle_fraction * PARTS_PER_CYCLE as f64;
+        let (i, fraction) = (position as usize, position.fract());
         let [from, to] = [
             self.deviations[cycle][i],
             self.deviations[cycle][(i + 1).min(PARTS_PER_CYCLE)],
         ];
-        let deviation = [0, 1, 2].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+        let deviation = [0, 1, 2].map(|axis| from[axis] + fraction * (to[axis] - from[axis]));
         let place = compose(
             compose(self.cycle_starts[cycle], gait_place),
-            place_from(deviation),
+            to_place(deviation),
         );
         [place.forward, place.left, place.heading]
     }
@@ -155,7 +147,7 @@ pub struct WalkSeries {
 }
 
 impl WalkSeries {
-    /// Makes the walks, each from a gait and a number of cycles. The robot rests for `rest_s` between two walks.
+    /// Creates walks from gaits and their numbers of cycles. The robot rests for `rest_s` between two walks.
     pub fn new(
         start: Pose,
         walks: &[(&Gait, usize)],
@@ -168,8 +160,8 @@ impl WalkSeries {
             duration_s: 2.0 * REST_S - rest_s,
         };
         let mut start = start;
-        for (gait, cycles) in walks {
-            let walk = Walk::new(gait, start, *cycles, variation, rng);
+        for (gait, cycle_count) in walks {
+            let walk = Walk::new(gait, start, *cycle_count, variation, rng);
             let start_s = series.duration_s + rest_s - 2.0 * REST_S;
             series.duration_s = start_s + walk.duration_s();
             start = walk.pose_at(walk.duration_s());
@@ -185,13 +177,13 @@ impl WalkSeries {
 
     /// Returns the start and the end of each walk's movement, s.
     pub fn movement_spans(&self) -> Vec<[f64; 2]> {
-        let span_of = |(start_s, walk): &(f64, Walk)| {
+        let movement_span = |(start_s, walk): &(f64, Walk)| {
             [start_s + REST_S, start_s + walk.duration_s() - REST_S]
         };
-        self.walks.iter().map(span_of).collect()
+        self.walks.iter().map(movement_span).collect()
     }
 
-    /// Returns the robot's pose at a time.
+    /// Returns the robot's pose at a time, s.
     pub fn pose_at(&self, seconds: f64) -> Pose {
         let has_started = |(start_s, _): &&(f64, Walk)| start_s + REST_S <= seconds;
         let (start_s, walk) = self
@@ -209,7 +201,7 @@ pub fn true_displacement(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()
 }
 
-fn place_from([forward, left, heading]: [f64; 3]) -> Place {
+fn to_place([forward, left, heading]: [f64; 3]) -> Place {
     Place {
         forward,
         left,
@@ -220,5 +212,5 @@ fn place_from([forward, left, heading]: [f64; 3]) -> Place {
 /// Converts a place relative to `from` to a place on the floor.
 fn compose(from: Place, relative: Place) -> Place {
     let [forward, left] = from.to_floor([relative.forward, relative.left]);
-    place_from([forward, left, from.heading + relative.heading])
+    to_place([forward, left, from.heading + relative.heading])
 }

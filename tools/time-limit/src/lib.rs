@@ -1,15 +1,15 @@
-//! Waits with a time limit. A test that waits for another program, a port or a thread would hang forever if there were
-//! no answer, and the run of all tests would hang, too. Here every wait has a limit, after which the test fails with
-//! a message that names the missing event.
+//! Waits with a time limit, for tests. Without a limit, a test that waits for another program, a port or a thread could
+//! hang forever, and with it the whole test run. Here every wait has a limit, after which the test fails with a message
+//! that names the missing event.
 //!
-//! The limit is not a measure of speed: a machine may be busy, and only a test that hangs should fail. All waits use
-//! the same limit, [`LIMIT`]. Do not use it outside of tests, and do not use it to assert that something is fast.
+//! The limit does not measure speed: a machine may be busy, and only a test that hangs should fail. All waits use the
+//! same limit, [`TIME_LIMIT`]. Do not use it outside tests or to assert that something is fast.
 //!
 //! ```
-//! use lizard_time_limit::LIMIT;
+//! use lizard_time_limit::TIME_LIMIT;
 //! let (sender, receiver) = std::sync::mpsc::channel();
 //! std::thread::spawn(move || sender.send(5));
-//! let number = LIMIT.within("a number from the other thread", move || receiver.recv());
+//! let number = TIME_LIMIT.run("a number from the other thread", move || receiver.recv());
 //! assert_eq!(number, Ok(5));
 //! ```
 
@@ -23,8 +23,8 @@ use std::time::{Duration, Instant};
 /// The time from one check of a condition to the next.
 const POLL_INTERVAL: Duration = Duration::from_millis(1);
 
-/// The limit of all tests, much longer than any successful wait on a busy machine.
-pub const LIMIT: TimeLimit = TimeLimit::new(Duration::from_secs(300));
+/// The limit for all tests, much longer than any successful wait on a busy machine.
+pub const TIME_LIMIT: TimeLimit = TimeLimit::new(Duration::from_secs(300));
 
 /// The longest time that a test waits for an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,14 +37,14 @@ impl fmt::Display for TimeLimit {
 }
 
 impl TimeLimit {
-    /// Creates another limit, for the tests of this crate.
+    /// Creates another limit. Only this crate's tests need one.
     pub const fn new(time: Duration) -> Self {
         Self(time)
     }
 
-    /// Waits until a condition holds; returns false if it does not hold within the limit. For a test that needs a
-    /// longer message than that of [`TimeLimit::expect`].
-    pub fn wait_for(self, mut condition: impl FnMut() -> bool) -> bool {
+    /// Waits until a condition holds. Returns false if the condition does not hold within the limit. Use this if a test
+    /// needs a longer message than that of [`TimeLimit::wait_for`].
+    pub fn poll(self, mut condition: impl FnMut() -> bool) -> bool {
         let deadline = Instant::now() + self.0;
         loop {
             if condition() {
@@ -57,22 +57,22 @@ impl TimeLimit {
         }
     }
 
-    /// Waits until the condition holds.
+    /// Waits until a condition holds.
     ///
     /// # Panics
-    /// If the condition does not hold within the limit; `event` completes the message `waited 300s for`.
+    /// If the condition does not hold within the limit. The message is `waited 300s for`, followed by `event`.
     #[track_caller]
-    pub fn expect(self, event: &str, condition: impl FnMut() -> bool) {
-        assert!(self.wait_for(condition), "waited {self} for {event}");
+    pub fn wait_for(self, event: &str, condition: impl FnMut() -> bool) {
+        assert!(self.poll(condition), "waited {self} for {event}");
     }
 
-    /// Runs `task`, which may block, as a read or a join does, and returns its result. `task` runs on a separate
+    /// Runs a task that may block, such as a read or a join, and returns its result. The task runs on a separate
     /// thread, which continues after the call if the limit is reached first.
     ///
     /// # Panics
-    /// If `task` does not return within the limit, with the message of [`TimeLimit::expect`]; or if `task` panics.
+    /// If the task panics. If the task does not return within the limit, with the message of [`TimeLimit::wait_for`].
     #[track_caller]
-    pub fn within<T: Send + 'static>(
+    pub fn run<T: Send + 'static>(
         self,
         event: &str,
         task: impl FnOnce() -> T + Send + 'static,
@@ -100,7 +100,7 @@ impl TimeLimit {
     /// within the limit; the program is then killed.
     pub fn wait_for_exit(self, child: &mut Child) -> io::Result<ExitStatus> {
         let mut wait_result = Ok(None);
-        self.wait_for(|| {
+        self.poll(|| {
             wait_result = child.try_wait();
             !matches!(wait_result, Ok(None))
         });
@@ -118,7 +118,7 @@ impl TimeLimit {
     /// # Errors
     /// Fails if the program cannot be started. Returns [`ErrorKind::TimedOut`] with a message if the program does not
     /// exit within the limit, or if a process that the program has started keeps the output open for that long.
-    pub fn output(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
+    pub fn run_command(self, command: &mut Command, input: &[u8]) -> io::Result<Output> {
         let name = command.get_program().to_string_lossy().into_owned();
         let timeout_error = |process: &str| {
             let message = format!("waited {self} for the end of {process}`{name}`");
@@ -131,7 +131,7 @@ impl TimeLimit {
             .spawn()?;
         if let Some(mut stdin) = child.stdin.take() {
             let input = input.to_vec();
-            // A failed write is no error: the program may ignore its input or refuse its arguments.
+            // A failed write is not an error: the program may ignore its input or reject its arguments.
             thread::spawn(move || stdin.write_all(&input));
         }
         let readers = [
@@ -147,7 +147,7 @@ impl TimeLimit {
         let mut outputs = Vec::new();
         for receiver in readers.into_iter().flatten() {
             let received = receiver.recv_timeout(self.0);
-            outputs.push(received.map_err(|_| timeout_error("what was started by "))??);
+            outputs.push(received.map_err(|_| timeout_error("a process started by "))??);
         }
         let stderr = outputs.pop().unwrap_or_default();
         let stdout = outputs.pop().unwrap_or_default();

@@ -1,5 +1,5 @@
-//! Tests of waits with a time limit: a wait that hangs fails with a message, every other wait succeeds.
-#![cfg(unix)] // every Unix has the programs that these tests start
+//! Tests of waits with a time limit: a wait that hangs fails with a message, and every other wait succeeds.
+#![cfg(unix)] // the tests start programs of Unix
 
 use std::io::ErrorKind;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -7,7 +7,7 @@ use std::process::Command;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-use lizard_time_limit::{LIMIT, TimeLimit};
+use lizard_time_limit::{TIME_LIMIT, TimeLimit};
 
 const SHORT_LIMIT: TimeLimit = TimeLimit::new(Duration::from_millis(100));
 
@@ -29,40 +29,40 @@ fn shell(script: &str) -> Command {
 }
 
 #[test]
-fn a_condition_that_never_holds_fails_and_names_the_event() {
-    let message = panic_message(|| SHORT_LIMIT.expect("a reply", || false));
+fn a_wait_for_a_condition_that_never_holds_names_the_event() {
+    let message = panic_message(|| SHORT_LIMIT.wait_for("a reply", || false));
     assert_eq!(message, "waited 100ms for a reply");
-    assert!(!SHORT_LIMIT.wait_for(|| false));
+    assert!(!SHORT_LIMIT.poll(|| false));
 }
 
 #[test]
 fn a_condition_is_checked_until_it_holds() {
     let start = Instant::now();
     let mut check_count = 0;
-    LIMIT.expect("the third check", || {
+    TIME_LIMIT.wait_for("the third check", || {
         check_count += 1;
         check_count == 3
     });
     assert_eq!(check_count, 3);
-    assert!(LIMIT.wait_for(|| start.elapsed() > Duration::from_millis(20)));
+    assert!(TIME_LIMIT.poll(|| start.elapsed() > Duration::from_millis(20)));
 }
 
 #[test]
-fn a_task_that_blocks_fails_and_names_the_event() {
+fn the_error_of_a_task_that_blocks_names_the_event() {
     let (_sender, receiver) = mpsc::channel::<()>();
-    let message = panic_message(|| SHORT_LIMIT.within("a message", move || receiver.recv()));
+    let message = panic_message(|| SHORT_LIMIT.run("a message", move || receiver.recv()));
     assert_eq!(message, "waited 100ms for a message");
 }
 
 #[test]
 fn a_task_that_ends_returns_its_result_or_fails_with_its_own_message() {
-    assert_eq!(LIMIT.within("a sum", || 2 + 2), 4);
-    let message = panic_message(|| LIMIT.within("a sum", || panic!("no sum")));
+    assert_eq!(TIME_LIMIT.run("a sum", || 2 + 2), 4);
+    let message = panic_message(|| TIME_LIMIT.run("a sum", || panic!("no sum")));
     assert_eq!(message, "no sum");
 }
 
 #[test]
-fn a_program_that_does_not_end_is_killed() {
+fn a_program_that_does_not_exit_is_killed() {
     let mut child = Command::new("sleep")
         .arg("60")
         .spawn()
@@ -84,18 +84,20 @@ fn a_program_that_does_not_end_is_killed() {
 }
 
 #[test]
-fn the_status_of_a_program_that_ends_is_returned() {
+fn the_status_of_a_program_that_exits_is_returned() {
     let mut child = shell("exit 3").spawn().expect("the program starts");
-    let status = LIMIT.wait_for_exit(&mut child).expect("the program ends");
+    let status = TIME_LIMIT
+        .wait_for_exit(&mut child)
+        .expect("the program ends");
     assert_eq!(status.code(), Some(3));
 }
 
 #[test]
-fn a_program_gets_its_input_and_both_its_outputs_are_read() {
+fn a_program_gets_its_input_and_both_of_its_outputs_are_read() {
     // The input and the outputs are larger than a pipe's buffer.
     let input = vec![b'x'; 1 << 20];
-    let output = LIMIT
-        .output(&mut shell("tee /dev/stderr; exit 3"), &input)
+    let output = TIME_LIMIT
+        .run_command(&mut shell("tee /dev/stderr; exit 3"), &input)
         .expect("the program ends");
     assert!(output.stdout == input && output.stderr == input);
     assert_eq!(output.status.code(), Some(3));
@@ -103,25 +105,25 @@ fn a_program_gets_its_input_and_both_its_outputs_are_read() {
 
 #[test]
 fn the_error_of_a_program_that_prints_forever_names_the_program() {
-    let error = SHORT_LIMIT.output(&mut Command::new("yes"), b"");
+    let error = SHORT_LIMIT.run_command(&mut Command::new("yes"), b"");
     let error = error.expect_err("the program never ends");
     assert_eq!(error.kind(), ErrorKind::TimedOut);
     assert_eq!(error.to_string(), "waited 100ms for the end of `yes`");
 }
 
 #[test]
-fn processes_that_a_program_leaves_running_are_waited_for_only_within_the_limit() {
-    let error = SHORT_LIMIT.output(&mut shell("sleep 2 &"), b"");
+fn the_error_for_processes_that_a_program_leaves_running_names_the_program() {
+    let error = SHORT_LIMIT.run_command(&mut shell("sleep 2 &"), b"");
     let message = error.expect_err("the process may still print").to_string();
     assert_eq!(
         message,
-        "waited 100ms for the end of what was started by `sh`"
+        "waited 100ms for the end of a process started by `sh`"
     );
 }
 
 #[test]
-fn a_missing_program_is_an_error_of_the_system() {
-    let error = LIMIT.output(&mut Command::new("no-such-program"), b"");
+fn a_missing_program_is_a_system_error() {
+    let error = TIME_LIMIT.run_command(&mut Command::new("no-such-program"), b"");
     assert_eq!(
         error.expect_err("the program is missing").kind(),
         ErrorKind::NotFound

@@ -1,4 +1,4 @@
-// The worker of FasterSearch: a robot in WebAssembly with the search for a faster gait.
+// The worker of FasterSearch: a robot in WebAssembly that can search for a faster gait.
 import { expose } from 'comlink';
 
 import { type Found, initSync, Robot, type SearchTask, type Trial } from '../../generated/tune';
@@ -6,7 +6,7 @@ import { isRefused, type OnFloor } from '../robot';
 
 let robot: Robot;
 
-/** A gait that the search has found, with its trial on the page's floor with the page's servos. */
+/** A found gait, with its trial on the page's floor with the page's servos. */
 export interface BestGait extends Found {
   trial: Trial;
 }
@@ -14,7 +14,7 @@ export interface BestGait extends Found {
 const api = {
   /**
    * Prepares a search. Returns the number of gaits to try, the speed that no servo may exceed, deg/s, and the trial of
-   * the gait to beat. Throws an `Error` whose message is the refusal.
+   * the gait to beat. Throws an `Error` with the refusal as its message.
    */
   begin(module: WebAssembly.Module, { toml, floor, servos, task }: OnFloor & { task: SearchTask }) {
     initSync({ module });
@@ -27,14 +27,14 @@ const api = {
     return { ...search, referenceTrial: robot.trial(task.bars) as Trial };
   },
 
-  /** Tries one more gait; returns the number of gaits tried so far, and the best score. */
+  /** Tries one more gait; returns the number of tried gaits and the best score. */
   tryNext: () => robot.fasterStep(),
 
   /**
-   * Returns the best gait so far, compared with the gait to beat on `robotCount` random robots; null until a gait stays
+   * Compares the best gait so far with the gait to beat on `robotCount` random robots. Returns null until a gait stays
    * within the limits.
    */
-  bestSoFar(robotCount: number): BestGait | null {
+  compareBest(robotCount: number): BestGait | null {
     const bestGait = robot.fasterFound(robotCount);
     return bestGait && { ...bestGait, trial: robot.trial(bestGait.bars) as Trial };
   },

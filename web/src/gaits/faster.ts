@@ -1,27 +1,27 @@
-// A search for a gait that is faster than the edited one. It runs in a worker of its own, which is terminated at the
-// end of the search.
+// A search for a gait that is faster than the edited gait. It runs in its own worker, which is terminated at the end of
+// the search.
 import type { SearchTask } from '../../generated/tune';
 import { Helper } from '../helper';
 import type { OnFloor, Trial } from '../robot';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import type { BestGait, FasterWorkerApi } from './faster-worker';
 
 export type { BestGait };
 
-/** Number of gaits between two reports of the best gait so far: one population of the search. */
+/** Number of gaits between two reports of the best gait so far: a population of the search. */
 const GAITS_PER_REPORT = 20;
 /**
- * Number of random robots on which gaits are compared, for a report during the search, and for the final one, as in
+ * Number of random robots on which gaits are compared, for a report during the search and for the final report, as in
  * `lizard tune`.
  */
 const ROBOT_COUNT = { progress: 20, final: 200 };
 
-/** A report of the search, which tries `all` gaits, of which `done` are tried; `rate` is the servos' limit, deg/s. */
+/** A report of the search: `done` of `all` gaits are tried; `rate` is the servos' speed limit, deg/s. */
 export type SearchReport =
   | { kind: 'start'; all: number; rate: number; referenceTrial: Trial }
   | { kind: 'progress'; done: number }
   | { kind: 'best'; best: BestGait }
-  /** The last report: the best of all tried gaits, or null if none was valid. */
+  /** The last report: the best of all tried gaits, or null if no gait was valid. */
   | { kind: 'end'; best: BestGait | null; done: number }
   | { kind: 'end'; refused: string };
 
@@ -29,10 +29,10 @@ export class FasterSearch {
   private readonly helper = new Helper<FasterWorkerApi>(new Worker(new URL('./faster-worker.ts', import.meta.url), { type: 'module' }));
   private isStopped = false;
 
-  /** Starts the search with the WebAssembly module; `onReport` receives every report, including the last. */
+  /** Starts the search with the WebAssembly module; `onReport` receives every report, including the last one. */
   constructor(module: Promise<WebAssembly.Module>, question: OnFloor & { task: SearchTask }, onReport: (report: SearchReport) => void) {
     this.search(module, question, onReport)
-      .catch((error: unknown): SearchReport => ({ kind: 'end', refused: messageOf(error) }))
+      .catch((error: unknown): SearchReport => ({ kind: 'end', refused: getMessage(error) }))
       .then((lastReport) => {
         this.cancel();
         onReport(lastReport);
@@ -61,10 +61,10 @@ export class FasterSearch {
       onReport({ kind: 'progress', done });
       if (done % GAITS_PER_REPORT !== 0 || done === start.all || progress.best === null || progress.best <= reportedScore) continue;
       reportedScore = progress.best;
-      const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.progress));
+      const best = await helper.call((search) => search.compareBest(ROBOT_COUNT.progress));
       if (best) onReport({ kind: 'best', best });
     }
-    const best = await helper.call((search) => search.bestSoFar(ROBOT_COUNT.final));
+    const best = await helper.call((search) => search.compareBest(ROBOT_COUNT.final));
     return { kind: 'end', best, done };
   }
 }

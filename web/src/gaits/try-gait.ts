@@ -1,11 +1,11 @@
-// Puts an edited gait into the page's robot, and starts the gait in the simulation.
+// Puts an edited gait into the page's robot and starts it in the simulation.
 import type { EditedGait, Refused } from '../robot';
 import type { Session } from '../session';
 
-/** Simulated time from a restart until the robot stands, ms. */
+/** Simulated time between a restart and standing, ms. */
 const WAKE_MS = 2500;
 
-/** Puts the gait into the session's robot. A real board gets the gait only when the robot is written to it. */
+/** Puts the gait into the session's robot. A real board has the gait only after the robot is written to it. */
 export async function applyGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   return session.change(session.robot.putGait(session.toml, gait));
 }
@@ -26,7 +26,7 @@ export async function tryGait(session: Session, gait: EditedGait): Promise<Refus
  */
 export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refused | null> {
   if (session.isReal) {
-    return { refused: 'A board on USB has only the gaits that are written on it: write this one, or go back to the simulation to try it.', consequence: null, line: null, key: '' };
+    return { refused: 'A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.', consequence: null, line: null, key: '' };
   }
   const refusal = await applyGait(session, gait);
   if (refusal) return refusal;

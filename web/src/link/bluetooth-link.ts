@@ -1,8 +1,8 @@
-// The link to a board with a Bluetooth LE module on its serial line, by Web Bluetooth. The module passes bytes on in
-// packets and cannot reset the board. If the module gets out of reach, the link tries to reach it again.
+// The Web Bluetooth link to a board with a Bluetooth LE module on its serial line. The module forwards bytes in packets
+// and cannot reset the board. When the module is out of range, the link tries to reconnect.
 import { sleep, type Link } from './link';
 
-/** The serial services of the HM-10 and of Nordic's modules, each with its characteristics for writing and reading. */
+/** The serial services of the HM-10 and Nordic's modules, each with its characteristics for writing and reading. */
 const SERIAL_SERVICES = [
   { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
   {
@@ -11,11 +11,11 @@ const SERIAL_SERVICES = [
     from: '6e400003-b5a3-f393-e0a9-e50e24dcca9e',
   },
 ];
-/** The prefixes of the names of modules that do not advertise their service. */
+/** Name prefixes of modules that do not advertise their service. */
 const NAME_PREFIXES = ['HM', 'BT05', 'MLT-BT05', 'CC41', 'AT-09', 'JDY'];
 /** Largest size of a packet, bytes. */
 const MAX_PACKET_BYTES = 20;
-/** Time between two attempts to reach a module, ms. */
+/** Time between two attempts to reconnect, ms. */
 const RETRY_MS = 500;
 
 /** Web Bluetooth; undefined in a browser without it. */
@@ -23,14 +23,14 @@ const bluetooth = navigator.bluetooth as Bluetooth | undefined;
 const isApple = /iPhone|iPad/.test(navigator.userAgent) || (navigator.platform === 'MacIntel' && navigator.maxTouchPoints > 1);
 /** Advice for a user whose iPhone or iPad has no Web Bluetooth; null on another device or browser. */
 export const IPHONE_ADVICE =
-  isApple && !bluetooth ? 'On an iPhone or iPad neither Safari nor Chrome can reach a robot. The browser Bluefy can, by a Bluetooth LE module.' : null;
+  isApple && !bluetooth ? 'On an iPhone or iPad, neither Safari nor Chrome can connect to a robot. The browser Bluefy can, through a Bluetooth LE module.' : null;
 
-/** Returns the reason why this browser cannot reach a Bluetooth module; null if it can. */
-export function bluetoothProblem(): string | null {
+/** Returns the reason if this browser cannot connect to a Bluetooth module; null if it can. */
+export function findBluetoothProblem(): string | null {
   if (bluetooth) return null;
   return (
     IPHONE_ADVICE ??
-    'This browser cannot reach a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
+    'This browser cannot connect to a Bluetooth LE module. Chrome and Edge can, on localhost and over https; on Linux only with the flag "Experimental Web Platform features".'
   );
 }
 
@@ -39,13 +39,13 @@ export class BluetoothLink implements Link {
   readonly wait = sleep;
   onBytes: (bytes: Uint8Array) => void = () => {};
   onGone: (reason: string) => void = () => {};
-  onReach: (isInReach: boolean) => void = () => {};
+  onRange: (isInRange: boolean) => void = () => {};
   private writeCharacteristic: BluetoothRemoteGATTCharacteristic | null = null;
-  /** Settles when all writes so far are done. */
+  /** Settles when all previous writes are done. */
   private pendingWrites: Promise<void> = Promise.resolve();
   private isClosing = false;
 
-  /** The module's GATT server; every Bluetooth LE device that a user has picked has one. */
+  /** The module's GATT server; every picked Bluetooth LE device has a GATT server. */
   private readonly gatt: BluetoothRemoteGATTServer;
 
   private constructor(private readonly device: BluetoothDevice) {
@@ -57,22 +57,22 @@ export class BluetoothLink implements Link {
     return `board at ${this.device.name || 'a Bluetooth module'}`;
   }
 
-  /** Connects to a module that the user picks; null if none is picked. Throws an error with a message for the user. */
+  /** Connects to a module that the user picks; null if the user picks none. Throws an error for the user. */
   static async open(): Promise<BluetoothLink | null> {
-    if (!bluetooth) throw new Error(bluetoothProblem() ?? '');
-    // False without a radio, but also if the page may not use it.
+    if (!bluetooth) throw new Error(findBluetoothProblem() ?? '');
+    // False without a radio, and also if the page may not use the radio.
     const isAvailable = await bluetooth.getAvailability();
     const filters = [...SERIAL_SERVICES.map(({ service }) => ({ services: [service] })), ...NAME_PREFIXES.map((namePrefix) => ({ namePrefix }))];
     let device: BluetoothDevice;
     try {
       device = await bluetooth.requestDevice({ filters, optionalServices: SERIAL_SERVICES.map(({ service }) => service) });
     } catch (error) {
-      // A chooser closed without a choice and a lack of the system's permission give the same error with different
+      // Closing the chooser without a choice and missing permission of the system give the same error with different
       // messages.
       const isNotFound = error instanceof DOMException && error.name === 'NotFoundError';
-      if (isNotFound && !isAvailable) throw new Error('This machine has no Bluetooth, or it is switched off.');
+      if (isNotFound && !isAvailable) throw new Error('Bluetooth is missing on this machine, or it is switched off.');
       if (isNotFound && !/permission|denied/i.test(error.message)) return null;
-      throw new Error(`The browser may not use Bluetooth: allow it in its settings, and in those of the system. It says: ${String(error)}`);
+      throw new Error(`The browser may not use Bluetooth: allow it in the settings of the browser and of the system. The browser reports: ${String(error)}`);
     }
     const link = new BluetoothLink(device);
     await link.connect();
@@ -94,19 +94,19 @@ export class BluetoothLink implements Link {
       return;
     }
     this.gatt.disconnect();
-    throw new Error(`${this.device.name ?? 'The module'} has no serial line: neither the service FFE0 of an HM-10 nor Nordic's.`);
+    throw new Error(`${this.device.name ?? 'The module'} has no serial service: expected service FFE0 of an HM-10, or Nordic's.`);
   }
 
   private async reconnect(): Promise<void> {
-    // If the module was never reached, `open` reports it.
+    // `open` reports a module that was never reached.
     if (this.isClosing || !this.writeCharacteristic) return;
     this.writeCharacteristic = null;
-    this.onReach(false);
+    this.onRange(false);
     while (!this.isClosing && !this.writeCharacteristic) {
       await sleep(RETRY_MS);
       await this.connect().catch(() => {});
     }
-    if (!this.isClosing) this.onReach(true);
+    if (!this.isClosing) this.onRange(true);
   }
 
   write(bytes: Uint8Array): Promise<void> {
@@ -116,7 +116,7 @@ export class BluetoothLink implements Link {
   private async send(bytes: Uint8Array): Promise<void> {
     for (let start = 0; start < bytes.length; start += MAX_PACKET_BYTES) {
       const characteristic = this.writeCharacteristic;
-      if (!characteristic) throw new Error(`the ${this.name} is out of reach`);
+      if (!characteristic) throw new Error(`the ${this.name} is out of range`);
       const packet = bytes.slice(start, start + MAX_PACKET_BYTES);
       await (characteristic.properties.writeWithoutResponse ? characteristic.writeValueWithoutResponse(packet) : characteristic.writeValueWithResponse(packet));
     }
@@ -127,7 +127,7 @@ export class BluetoothLink implements Link {
 
   async close(): Promise<void> {
     this.isClosing = true;
-    // The bytes of earlier writes are sent first, unless that takes too long.
+    // Earlier writes are sent first, unless this takes too long.
     await Promise.race([this.pendingWrites.catch(() => {}), sleep(RETRY_MS)]);
     this.gatt.disconnect();
   }

@@ -1,12 +1,12 @@
-// The serial line to a board's boot loader. The protocol is implemented in Rust, in the WebAssembly module for boards.
+// The serial line to a board's boot loader. The WebAssembly module for boards implements the protocol, in Rust.
 import type { SerialLine } from '../../generated/board';
-import { BAUD, type Link } from './link';
+import { BAUD_RATE, type Link } from './link';
 
 export class BootLine implements SerialLine {
   private receivedBytes: number[] = [];
-  /** Called when bytes have arrived. */
+  /** Called when bytes arrive. */
   private onArrival: () => void = () => {};
-  private baud = BAUD;
+  private baud = BAUD_RATE;
 
   constructor(private readonly link: Link) {
     link.onBytes = (bytes) => {
@@ -39,6 +39,6 @@ export class BootLine implements SerialLine {
 
   /** Restores the firmware's baud rate, which resets the board if the boot loader has another rate. */
   async restoreBaud(): Promise<void> {
-    if (this.baud !== BAUD) await this.link.reset(BAUD).catch(() => {});
+    if (this.baud !== BAUD_RATE) await this.link.reset(BAUD_RATE).catch(() => {});
   }
 }

@@ -1,30 +1,31 @@
-// A robot that loses its link would walk on. So while a user drives it, the page sets `deadman`, the time without a
-// line after which the robot ends a gait by itself. After the gait, the robot's own setting is restored.
+// A robot that loses its link would continue to walk. Therefore the page sets `deadman` while a user drives: the time
+// without a line after which the robot ends a gait by itself. After the gait, the page restores the robot's own
+// setting.
 import { WORDS } from '../words';
 import type { Dialogue } from './dialogue';
 
 /**
- * `deadman` while a user drives, ms. No user would choose this odd number, so a robot that has it got it from a page
+ * `deadman` while a user drives, ms. No user would choose this odd number; a robot with this setting got it from a page
  * that was closed.
  */
 const DRIVING_DEADMAN_MS = 901;
-/** Number of lines that the page sends per `deadman` time: two of three may be lost. */
+/** Number of lines that the page sends per `deadman` time: two of three lines may be lost. */
 const LINES_PER_DEADMAN = 3;
 
 export class Deadman {
-  /** The robot's own setting, ms; null until it is read. */
+  /** The robot's own setting, ms; null until the page has read it. */
   private robotSettingMs: number | null = null;
-  /** Resolves to true if the robot confirms the page's setting; null while the robot has its own setting. */
+  /** Resolves to true if the robot confirms the page's setting; null while the robot's own setting is in effect. */
   private confirmation: Promise<boolean> | null = null;
 
   constructor(private readonly dialogue: Dialogue) {}
 
-  /** True while the robot has, or is about to get, the page's setting. */
+  /** True while the robot has, or will soon have, the page's setting. */
   get isSet(): boolean {
     return this.confirmation !== null;
   }
 
-  /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it: no gait may start then. */
+  /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it; then no gait may start. */
   engage(): Promise<boolean> {
     return (this.confirmation ??= this.setAndConfirm());
   }
@@ -44,7 +45,7 @@ export class Deadman {
     if (ms !== undefined) this.robotSettingMs = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
   }
 
-  /** Notes the change of the robot's own setting by a user's line, if the robot has accepted the line. */
+  /** Notes a change of the robot's own setting by a user's line, if the robot accepted the line. */
   noteLine(line: string, isAccepted: boolean): void {
     if (!isAccepted) return;
     const [word, ms] = line.split(/\s+/);
@@ -52,7 +53,7 @@ export class Deadman {
     if (word === WORDS.load || word === WORDS.factory) this.robotSettingMs = null;
   }
 
-  /** Stops repeating the line, so that the robot stops by itself unless another sender keeps it walking. */
+  /** Stops repeating the line; the robot then stops by itself unless another sender keeps it walking. */
   stopRepeating(): void {
     this.dialogue.keepAlive(null);
   }
@@ -65,7 +66,7 @@ export class Deadman {
     if (this.robotSettingMs !== null) void this.askQuietly(`${WORDS.deadman} ${this.robotSettingMs}`);
   }
 
-  /** Resets this object's state after a restart of the robot; sends nothing. */
+  /** Resets this object's state after a restart of the robot; sends no line. */
   reset(): void {
     this.stopRepeating();
     this.confirmation = null;

@@ -1,53 +1,53 @@
-// The dialogue with the robot's console. Every line gets exactly one answer, in order, `ok ...` or `err ...`; lines
-// that begin with # come before the answer, or unsolicited. One line is sent at a time, except `stop`: it is sent at
-// once and repeated until the robot answers it, since a link may lose a line or its answer.
+// The dialogue with the robot's console. Every line gets exactly one answer, in order: `ok ...` or `err ...`. Lines
+// that begin with # precede the answer or are unsolicited. One line is sent at a time, except `stop`: it is sent at
+// once and repeated until the robot answers, because a link may lose a line or its answer.
 import { WORDS } from '../words';
 import type { Link } from './link';
 
-/** The beginning of the firmware's banner, its first line after a reset. */
+/** The beginning of the firmware's banner, which is its first line after a reset. */
 export const BANNER_PREFIX = '# lizard ';
 /** Largest length of a line from the robot, characters; a longer line is noise and is truncated. */
 const MAX_LINE_LENGTH = 500;
-/** Time within which an answer must arrive, ms. */
+/** Longest time until an answer, ms. */
 const TIMEOUT_MS = 3000;
-/** Interval at which an unanswered `stop` is repeated, ms. */
+/** Interval between repetitions of an unanswered `stop`, ms. */
 const STOP_INTERVAL_MS = 250;
-/** Time after the first answer to a repeated `stop` within which the answers to the repetitions arrive, ms. */
+/** Longest time between the first answer to a repeated `stop` and the answers to the repetitions, ms. */
 const LATE_STOP_ANSWERS_MS = 500;
 /** Time without an expected answer after which the robot counts as silent, ms. */
 export const SILENCE_MS = 800;
-/** The texts that a Bluetooth module inserts into the line when its link begins and ends. */
+/** Texts that a Bluetooth module inserts into the line when it connects and disconnects. */
 const MODULE_TEXTS = /OK\+(CONN|LOST)/g;
 /**
- * The refusals of `stop` by a board that sends no pulses because it rests or has no robot in its flash. The whole line
- * must match: a line that a radio has truncated may be the beginning of an earlier answer.
+ * A refusal of `stop` by a board that sends no pulses because it rests or has no robot in its flash. The whole line
+ * must match: a line that a radio truncated may be the beginning of an earlier answer.
  */
-const STOP_REFUSAL = /^err (7 servos are resting, send stand first|10 no robot in the flash)$/;
-/** A # line with a setting, as the robot sends it before the answer to `cal`. */
+const STOP_REFUSAL = /^err (7 the servos are resting; send stand first|10 no robot in the flash)$/;
+/** A # line with a setting, which the robot sends before the answer to `cal`. */
 const SETTING_LINE = /^# (A[1-4]|boot|deadman) /;
 
 export interface Answer {
   ok: boolean;
-  /** The answer's line. */
+  /** The line of the answer. */
   text: string;
   /** The # lines before the answer. */
   notes: string[];
 }
 
 export interface DialogueListener {
-  /** Called with each sent line that is to be shown. */
+  /** Called with each visible sent line. */
   onSent(line: string): void;
-  /** Called with each received line that is to be shown. */
+  /** Called with each visible received line. */
   onShownLine(line: string): void;
-  /** Called with each received line, also if it is not to be shown. */
+  /** Called with each received line, visible or not. */
   onAnyLine(line: string): void;
-  /** Called when the robot has left a line unanswered for `SILENCE_MS`, and when it answers again. */
+  /** Called when a line has been unanswered for `SILENCE_MS`, and when the robot answers again. */
   onSilent(isSilent: boolean): void;
-  /** Called when `stop` is sent for the first time, and when the robot has answered it. */
+  /** Called when `stop` is sent for the first time, and when the robot answers it. */
   onStopping(isStopping: boolean): void;
 }
 
-/** Thrown for a question that was dropped before its answer arrived. */
+/** Thrown for a question that is dropped before its answer arrives. */
 export class DroppedQuestion extends Error {}
 
 interface PromiseCallbacks {
@@ -61,17 +61,17 @@ interface Question extends PromiseCallbacks {
   timeoutMs: number;
 }
 
-/** A `stop` that has no answer yet: the callbacks of its callers, and the number of times that it was sent. */
+/** An unanswered `stop`: the callbacks of its callers, and the number of times that it was sent. */
 interface Stop {
   callers: PromiseCallbacks[];
   sendCount: number;
 }
 
-const firstWordOf = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
+const getFirstWord = (line: string) => line.trim().toLowerCase().split(/\s/)[0];
 
-/** True if a line that begins with `ok` or `err` can be the answer to `line`, and not a late answer to another line. */
-function isAnswerTo(answer: string, line: string): boolean {
-  const word = firstWordOf(line);
+/** Returns true if an answer can belong to `line`, and is not a late answer to another line. */
+function canAnswer(answer: string, line: string): boolean {
+  const word = getFirstWord(line);
   const expected = { [WORDS.status]: 'gait=', '?': WORDS.help }[word] ?? word;
   return answer.startsWith('err') || answer.startsWith(`ok ${expected}`);
 }
@@ -79,21 +79,21 @@ function isAnswerTo(answer: string, line: string): boolean {
 export class Dialogue {
   private readonly encoder = new TextEncoder();
   private readonly decoder = new TextDecoder('latin1');
-  /** The received part of the line that is not complete yet. */
+  /** The received part of the incomplete line. */
   private partialLine = '';
   private readonly waitingQuestions: Question[] = [];
   private pendingQuestion: Question | null = null;
   private pendingStop: Stop | null = null;
-  /** Pending while answers to repetitions of `stop` may still arrive; no other line is sent meanwhile. */
+  /** Pending while answers to repetitions of `stop` may arrive; no other line is sent meanwhile. */
   private lateAnswers: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is sent at intervals in addition to all others; null for none. */
+  /** The line that is repeated independently of other lines; null for none. */
   private keepAliveLine: { line: string } | null = null;
-  /** The expected answer to the line that is sent at intervals; it is not shown. */
+  /** The expected answer to the repeated line; it is not shown. */
   private keepAliveAnswer = '';
-  /** The # lines since the last question was sent. */
+  /** The # lines since the last question. */
   private notes: string[] = [];
-  /** True once the dialogue is closed: something else uses the link, such as the boot loader. */
+  /** True once the dialogue is closed; another user of the link, such as the boot loader, may then take over. */
   isClosed = false;
 
   constructor(
@@ -104,19 +104,19 @@ export class Dialogue {
   }
 
   /**
-   * Sends a line and waits at most `timeoutMs` for its answer. `stop` is sent at once, and its answer is awaited
-   * without a time limit. A quiet line and its answer are not shown.
+   * Sends a line and waits at most `timeoutMs` for its answer. Sends `stop` at once, and waits for its answer without a
+   * time limit. A quiet line and its answer are not shown.
    */
   ask(line: string, isQuiet = false, timeoutMs = TIMEOUT_MS): Promise<Answer> {
     return new Promise((resolve, reject) => {
-      if (this.isClosed) throw new Error(`"${line}" was not sent: the boot loader has the line`);
+      if (this.isClosed) throw new Error(`"${line}" was not sent: the boot loader is using the serial line`);
       if (line.trim().toLowerCase() === WORDS.stop) return this.halt({ resolve, reject });
       this.waitingQuestions.push({ line, isQuiet, timeoutMs, resolve, reject });
       void this.sendNext();
     });
   }
 
-  /** Drops all questions: the board restarts, or something else uses the link. */
+  /** Drops all questions: the board restarts, or another user takes over the link. */
   dropQuestions(): void {
     const dropped = [...(this.pendingQuestion ? [this.pendingQuestion] : []), ...(this.pendingStop?.callers ?? [])];
     this.pendingQuestion = null;
@@ -133,7 +133,7 @@ export class Dialogue {
     for (const { reject } of this.waitingQuestions.splice(0)) reject(new DroppedQuestion());
   }
 
-  /** Stops the robot, and drops the waiting lines, which could make it walk on. */
+  /** Stops the robot, and drops the waiting lines, which could make the robot walk again. */
   private halt(callbacks: PromiseCallbacks): void {
     this.dropWaitingQuestions();
     if (this.pendingStop) {
@@ -150,13 +150,13 @@ export class Dialogue {
   private async repeatStop(stop: Stop): Promise<void> {
     while (this.pendingStop === stop) {
       stop.sendCount += 1;
-      // The link itself reports a lost port.
+      // The link reports a lost port.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
       await this.link.wait(STOP_INTERVAL_MS);
     }
   }
 
-  /** Sends a line every `intervalMs`, in addition to all others; its answer is not awaited. Null ends this. */
+  /** Sends a line every `intervalMs`, independently of other lines and without waiting for answers. Null ends this. */
   keepAlive(line: string | null, intervalMs = 0): void {
     const keepAliveLine = (this.keepAliveLine = line === null ? null : { line });
     if (!keepAliveLine) return;
@@ -174,7 +174,7 @@ export class Dialogue {
     this.pendingStop = null;
     this.listener.onStopping(false);
     this.setSilent(false);
-    // Answers arrive in order, so the answer to the line sent before `stop` was lost.
+    // Answers arrive in order; therefore the answer to the line before `stop` was lost.
     const { pendingQuestion: question } = this;
     this.pendingQuestion = null;
     question?.reject(new DroppedQuestion());
@@ -193,7 +193,7 @@ export class Dialogue {
     this.listener.onSilent(isSilent);
   }
 
-  /** Closes the dialogue; something else may use the link then. */
+  /** Closes the dialogue and frees the link for another user. */
   close(): void {
     this.isClosed = true;
     this.dropQuestions();
@@ -228,15 +228,15 @@ export class Dialogue {
   }
 
   private receiveLine(received: string): void {
-    // A reset truncates the line that the board is sending, and the banner follows on the same line.
+    // A reset truncates the line that the board is sending; the banner follows on the same line.
     const line = received.slice(Math.max(0, received.indexOf(BANNER_PREFIX))).replace(MODULE_TEXTS, '');
     if (line === '') return;
     this.listener.onAnyLine(line);
     const { pendingQuestion: question, pendingStop: stop } = this;
     const isAnswer = /^(ok|err)\b/.test(line);
     if (!isAnswer) {
-      // The settings that the page itself has asked for are not shown.
-      if (!(question?.isQuiet && firstWordOf(question.line) === WORDS.cal && SETTING_LINE.test(line))) this.listener.onShownLine(line);
+      // Settings that the page itself requested are not shown.
+      if (!(question?.isQuiet && getFirstWord(question.line) === WORDS.cal && SETTING_LINE.test(line))) this.listener.onShownLine(line);
       this.notes.push(line);
       return;
     }
@@ -246,7 +246,7 @@ export class Dialogue {
       this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
       return;
     }
-    const isExpected = question !== null && isAnswerTo(line, question.line);
+    const isExpected = question !== null && canAnswer(line, question.line);
     const isQuiet = isExpected ? question.isQuiet : line === this.keepAliveAnswer;
     if (!isQuiet) this.listener.onShownLine(line);
     if (!isExpected) return;

@@ -1,18 +1,18 @@
-// The link to a board by Web Serial, over USB or through an HC-05, a Bluetooth module that the system offers as a
-// serial port. Chromium browsers and newer Firefox have Web Serial, over https or on localhost.
-import { messageOf } from '../problem';
-import { BAUD, GONE_MESSAGE, sleep, type Link } from './link';
+// The Web Serial link to a board, over USB or through an HC-05, a Bluetooth module that the system offers as a serial
+// port. Chromium browsers and newer Firefox have Web Serial, over https or on localhost.
+import { getMessage } from '../problem';
+import { BAUD_RATE, GONE_MESSAGE, sleep, type Link } from './link';
 
-/** The UUID of Bluetooth's serial port profile, which an HC-05 has. */
+/** The UUID of Bluetooth's serial port profile, which an HC-05 uses. */
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
-/** The USB vendor ids of arduino.cc and arduino.org, whose chips are on UNOs and on no Nano. */
+/** The USB vendor ids of arduino.cc and arduino.org, whose chips are used on UNOs but not on Nanos. */
 const ARDUINO_VENDOR_IDS = [0x2341, 0x2a03];
 /** The message for a browser without Web Serial. */
-export const NO_SERIAL_MESSAGE = 'This browser cannot reach a board on USB: it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have it, on localhost and over https.';
-/** Length of the pulse on the reset line, ms. */
+export const NO_SERIAL_MESSAGE = 'This browser cannot connect to a board on USB, because it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have Web Serial, on localhost and over https.';
+/** Duration of the pulse on the reset line, ms. */
 const RESET_PULSE_MS = 50;
 
-/** True if this browser can open a port. */
+/** Returns true if this browser has Web Serial. */
 export const hasSerial = () => Boolean(navigator.serial);
 
 export class PortLink implements Link {
@@ -22,8 +22,8 @@ export class PortLink implements Link {
   private reader: ReadableStreamDefaultReader<Uint8Array> | null = null;
   private writer: WritableStreamDefaultWriter<Uint8Array> | null = null;
   private isClosing = false;
-  private baud = BAUD;
-  /** Settles when reading from the port has ended. */
+  private baud = BAUD_RATE;
+  /** Settles when reading from the port ends. */
   private readLoop: Promise<void> = Promise.resolve();
 
   private constructor(private readonly port: SerialPort) {}
@@ -41,14 +41,14 @@ export class PortLink implements Link {
     return usbVendorId !== undefined && !ARDUINO_VENDOR_IDS.includes(usbVendorId);
   }
 
-  /** Opens a port that the user picks, which resets a UNO; null if none is picked. Throws an error for the user. */
+  /** Opens a port that the user picks, which resets a UNO; null if the user cancels. Throws an error for the user. */
   static async open(): Promise<PortLink | null> {
     if (!hasSerial()) throw new Error(NO_SERIAL_MESSAGE);
     let port: SerialPort;
     try {
       port = await navigator.serial.requestPort({ allowedBluetoothServiceClassIds: [SERIAL_PROFILE] });
     } catch (error) {
-      // The user has closed the chooser without a choice.
+      // The user closed the chooser without a choice.
       if (error instanceof DOMException && error.name === 'NotFoundError') return null;
       throw error;
     }
@@ -56,7 +56,7 @@ export class PortLink implements Link {
     try {
       await link.openPort();
     } catch (error) {
-      throw new Error(`${messageOf(error)} Another program may have the port: close that, and connect again.`);
+      throw new Error(`${getMessage(error)} Another program may be using the port: close the program, and connect again.`);
     }
     return link;
   }
@@ -77,11 +77,11 @@ export class PortLink implements Link {
   async reset(baud = this.baud): Promise<void> {
     if (this.kind === 'radio') return;
     if (baud !== this.baud) {
-      // The baud rate can only be set when the port is opened.
+      // The baud rate can be set only when the port is opened.
       await this.close();
       this.baud = baud;
       await this.openPort().catch((error: unknown) => {
-        this.onGone(messageOf(error));
+        this.onGone(getMessage(error));
         throw new Error(GONE_MESSAGE);
       });
     }
@@ -102,8 +102,7 @@ export class PortLink implements Link {
 
   private async readUntilClosed(): Promise<void> {
     let reason = 'its port is closed.';
-    // A line error (break, framing error) ends a stream, and the port then has a new one; an
-    // unplugged board has none.
+    // After a line error (break, framing error), the port has a new stream; after an unplugged board, it has none.
     let endedStream: ReadableStream<Uint8Array> | null = null;
     while (this.port.readable && this.port.readable !== endedStream && !this.isClosing) {
       endedStream = this.port.readable;
@@ -115,7 +114,7 @@ export class PortLink implements Link {
           if (value) this.onBytes(value);
         }
       } catch (error) {
-        reason = messageOf(error);
+        reason = getMessage(error);
       } finally {
         this.reader.releaseLock();
       }

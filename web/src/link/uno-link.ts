@@ -1,11 +1,11 @@
-// The link to a simulated UNO, which runs its image cycle by cycle, and only in `advance`.
+// The link to a simulated UNO, which runs its image cycle by cycle, only in `advance`.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/board';
 import { FrameCollector } from '../uno/frames';
 import { type Link, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
-/** Simulated time for which the chip runs between two reads of its output, ms. */
+/** Simulated time between two reads of the chip's output, ms. */
 const SLICE_MS = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
@@ -22,9 +22,9 @@ export class UnoLink implements Link {
   onBytes: (bytes: Uint8Array) => void = () => {};
   private readonly timers = new Timers();
   private readonly frameCollector: FrameCollector;
-  /** The bytes that the board has sent in the current slice. */
+  /** Bytes that the board has sent in the current slice. */
   private bytesFromBoard: number[] = [];
-  /** Cycles that the chip still has to run; negative if it has run too far. */
+  /** Remaining cycles to run; negative if the chip has run too far. */
   private cyclesToRun = 0;
 
   /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
@@ -41,7 +41,7 @@ export class UnoLink implements Link {
     };
   }
 
-  /** Runs the board for `ms` of simulated time, and passes on its bytes and pulses. */
+  /** Runs the board for `ms` of simulated time, and forwards its bytes and pulses. */
   advance(ms: number): void {
     // The chip runs whole cycles only.
     this.cyclesToRun += Math.round(ms * CYCLES_PER_MS);
@@ -66,7 +66,7 @@ export class UnoLink implements Link {
     this.board.send(bytes);
   }
 
-  /** Resets the board by its reset pin. */
+  /** Resets the board with its reset pin. */
   async reset(): Promise<void> {
     this.board.reset('external');
   }
@@ -76,6 +76,6 @@ export class UnoLink implements Link {
     return this.timers.waitUntil(this.board.cycle + ms * CYCLES_PER_MS);
   }
 
-  /** Does nothing: no port is open. */
+  /** Does nothing, because no port is open. */
   async close(): Promise<void> {}
 }

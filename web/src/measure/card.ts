@@ -1,4 +1,4 @@
-// Formats measured gaits as tables, as an SVG picture to share, and as CSV for a spreadsheet.
+// Formats measured gaits as tables, as an SVG picture to share, and as CSV.
 import type { Component, Report } from '../../generated/measure';
 
 // The layout of the picture, px.
@@ -7,48 +7,48 @@ const LINE_HEIGHT = 22;
 const TITLE_HEIGHT = 64;
 /** Left edges of the columns, px. */
 const COLUMN_LEFTS = [24, 130, 220, 290, 390, 520, 590];
-/** The components of a cycle's movement, by their keys in a report. */
+/** The keys of the components of a cycle's movement in a report. */
 const COMPONENTS = ['forward', 'left', 'turn'] as const;
 const COMPONENT_LABELS = ['ahead, mm', 'left, mm', 'turn, deg'];
 const CSV_FIELDS = ['mean', 'sd', 'error', 'predicted', 'differs'] as const;
 
-/** Formats a number with its sign and two decimals; a dash stands for null. */
+/** Formats a number with its sign and two decimals, and null as a dash. */
 const formatSigned = (value: number | null | undefined) => (value == null ? '–' : `${value < 0 ? '−' : '+'}${Math.abs(value).toFixed(2)}`);
 
-/** Returns a text that compares a measured mean with its prediction, in standard errors. */
-function comparisonText({ agrees, differs }: Component): string {
+/** Formats the comparison of a measured mean with its prediction, in standard errors. */
+function formatComparison({ agrees, differs }: Component): string {
   if (agrees === null || differs === null) return '–';
   return agrees ? 'agrees' : `${Math.abs(differs).toFixed(1)} errors ${differs > 0 ? 'more' : 'less'}`;
 }
 
-/** Returns the column headings of a gait's table; only some robots, at full speed, have a column for MuJoCo. */
-export const columnHeadings = ({ mujoco }: Report) => ['a cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
+/** Returns the column headings of a gait's table; only some robots at full speed have a column for MuJoCo. */
+export const columnHeadings = ({ mujoco }: Report) => ['per cycle', 'measured', 'error', 'predicted', '', 'sd', ...(mujoco ? ['MuJoCo'] : [])];
 
-/** Returns the title of a gait's table. */
-export const titleOf = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %, ${cycles} cycles`;
+/** Formats the title of a gait's table. */
+export const formatTitle = ({ gait, speed, cycles }: Report) => `${gait}, ${speed} %, ${cycles} cycles`;
 
-/** Returns the rows of a gait's table, one for each component of its movement. */
-export function resultRows(report: Report): string[][] {
+/** Formats the rows of a gait's table, one for each component of the movement. */
+export function formatRows(report: Report): string[][] {
   return COMPONENTS.map((key, i) => {
     const component = report[key];
     const mujocoCell = report.mujoco ? [formatSigned(report.mujoco[i])] : [];
-    return [COMPONENT_LABELS[i] ?? '', formatSigned(component.mean), component.error.toFixed(2), formatSigned(component.predicted), comparisonText(component), component.sd.toFixed(2), ...mujocoCell];
+    return [COMPONENT_LABELS[i] ?? '', formatSigned(component.mean), component.error.toFixed(2), formatSigned(component.predicted), formatComparison(component), component.sd.toFixed(2), ...mujocoCell];
   });
 }
 
-/** Returns a sentence with the range of a prediction; empty if there is no range. */
-export function rangeSentence({ range }: Report): string {
+/** Formats a sentence with the range of a prediction; empty if there is no range. */
+export function formatRange({ range }: Report): string {
   if (!range) return '';
   const [name = '', unit = ''] = range.part.split(', ');
-  const boundText = (value: number, assumption: string | null) => `${formatSigned(value)} ${unit} (${assumption ?? 'as in robot.toml'})`;
-  return `Predicted ${name} if one assumption is otherwise: ${boundText(range.least, range.least_by)} to ${boundText(range.most, range.most_by)}.`;
+  const formatBound = (value: number, assumption: string | null) => `${formatSigned(value)} ${unit} (${assumption ?? 'as in robot.toml'})`;
+  return `Predicted ${name} with one assumption changed: ${formatBound(range.least, range.least_by)} to ${formatBound(range.most, range.most_by)}.`;
 }
 
 const escapeText = (text: string) => text.replace(/[&<>]/g, (character) => `&#${character.charCodeAt(0)};`);
 const textElement = (x: number, y: number, content: string, attributes = '') => `<text x="${x}" y="${y}" ${attributes}>${escapeText(content)}</text>`;
 
-/** Returns an SVG picture of the results of a robot's gaits. */
-export function svgCard(robot: string, gaits: Report[]): string {
+/** Draws the results of a robot's gaits as SVG. */
+export function drawResults(robot: string, gaits: Report[]): string {
   let y = TITLE_HEIGHT;
   const rowElements = (cells: string[], attributes = '') => {
     y += LINE_HEIGHT;
@@ -57,7 +57,7 @@ export function svgCard(robot: string, gaits: Report[]): string {
   const body = gaits
     .map((report) => {
       y += LINE_HEIGHT / 2;
-      return rowElements([titleOf(report)], 'font-weight="bold"') + rowElements(columnHeadings(report), 'fill="#5a5f57"') + resultRows(report).map((row) => rowElements(row)).join('') + rowElements([rangeSentence(report)], 'fill="#5a5f57" font-size="12"');
+      return rowElements([formatTitle(report)], 'font-weight="bold"') + rowElements(columnHeadings(report), 'fill="#5a5f57"') + formatRows(report).map((row) => rowElements(row)).join('') + rowElements([formatRange(report)], 'fill="#5a5f57" font-size="12"');
     })
     .join('');
   return (
@@ -66,8 +66,8 @@ export function svgCard(robot: string, gaits: Report[]): string {
   );
 }
 
-/** Returns the results as CSV: a heading, and one line for each gait. */
-export function resultsCsv(gaits: Report[]): string {
+/** Formats the results as CSV: a heading, and one line for each gait. */
+export function formatCsv(gaits: Report[]): string {
   const csvLine = (report: Report) => [report.gait, report.speed, report.cycles, ...COMPONENTS.flatMap((key) => CSV_FIELDS.map((field) => report[key][field] ?? ''))];
   const headings = ['gait', 'speed', 'cycles', ...COMPONENTS.flatMap((key) => CSV_FIELDS.map((field) => `${key}_${field}`))];
   return [headings, ...gaits.map(csvLine)].map((cells) => `${cells.join(',')}\n`).join('');

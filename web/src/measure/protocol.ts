@@ -1,32 +1,32 @@
 // The protocol of a measurement: drives gaits one after another in front of a camera, keeps the robot near the sheet of
-// tags, and records the time of each walk. Any other activity of the robot, such as `stop` or another gait, ends it; so
-// does the loss of the link.
+// tags, and records the times of each walk. The protocol ends at any other activity of the robot, such as `stop` or
+// another gait, and when the link is lost.
 import { DONE_LINE, GAITS, WORDS } from '../words';
 import type { OffsetToMiddle } from './tag-tracker';
 
 /**
- * Limits of a return to the middle of the sheet by a gait: cycles per attempt, attempts, and the least share of the
- * distance that must lie ahead or behind.
+ * Limits of a return to the centre of the sheet by a gait: cycles per attempt, attempts, and the smallest fraction of
+ * the distance that must lie ahead or behind.
  */
-const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minForwardShare: 0.7 };
-/** Conditions for a gait by which the robot can return: least distance and largest turn, each per cycle. */
+const RETURN_LIMITS = { maxCycles: 12, maxAttempts: 2, minForwardFraction: 0.7 };
+/** Conditions for a gait with which the robot can return: smallest distance and largest turn per cycle. */
 const RETURN_GAIT = { minForwardMm: 3, maxTurnDeg: 2 };
-/** Distance from the middle, mm, beyond which the robot first returns if the next walk would leave the sheet. */
+/** Distance from the centre, mm, beyond which the robot first returns if the next walk would leave the sheet. */
 const RETURN_DISTANCE_MM = 80;
-/** Outward movement near the edge of the sheet that ends a walk, mm. It must exceed the body's swing within a cycle. */
+/** Outward movement near the edge of the sheet that ends a walk, mm; larger than the body's swing within a cycle. */
 const MAX_OUTWARD_MM = 20;
 /** Time for which the robot may walk without being detected by the camera, s. */
 const MAX_UNSEEN_S = 2;
 /**
- * Least number of cycles of a walk, whose first and last cycle are not measured. A walk that was cut shorter counts as
- * this many cycles.
+ * Smallest number of cycles of a walk, whose first and last cycle are not measured. A walk that was cut shorter counts
+ * as this many cycles.
  */
 export const MIN_CYCLES = 4;
 
-/** A gait that the robot has walked. */
+/** A walk of the robot. */
 export interface Walk {
   gait: string;
-  /** Start and end on the film's clock, s. */
+  /** Start and end on the video's clock, s. */
   during: [number, number];
 }
 
@@ -42,43 +42,43 @@ export interface Plan {
   /** The gaits, each with the duration of a cycle at full speed, s. */
   gaits: { command: string; period: number }[];
   /**
-   * Number of cycles of each gait. If the edge of the sheet cuts a walk short, the other cycles follow once the robot
-   * is back in the middle.
+   * Number of cycles of each gait. If the edge of the sheet cuts a walk short, the remaining cycles follow when the robot
+   * is back in the centre.
    */
   cycles: number;
   /** Pace of all gaits, percent. */
   speed: number;
-  /** Time from one walk to the next, s. */
+  /** Pause between two walks, s. */
   pause: number;
 }
 
-/** The robot, the camera and the user, as the protocol needs them. */
+/** The protocol's interface to the robot, the camera and the user. */
 export interface Stage {
   /** Sends a line; resolves to true if the robot accepts it. */
   ask: (line: string) => Promise<boolean>;
-  /** The film's clock, s. */
+  /** The video's clock, s. */
   now: () => number;
   /** Waits for `seconds`, in the robot's time. */
   wait: (seconds: number) => Promise<void>;
   /** Returns the predicted displacements of all gaits that have a prediction. */
   predictions: () => PredictedCycle[];
-  /** Asks the user to put the robot back; resolves when that is done, or when the protocol is over. */
+  /** Asks the user to put the robot back; resolves when the robot is back, or when the protocol has ended. */
   putBack: () => Promise<void>;
   /** Shows the progress to the user. */
   showProgress: (text: string) => void;
 }
 
-/** Thrown when the protocol ends before its last walk; the message is the reason. */
+/** Thrown when the protocol ends before its last walk; `message` is the reason. */
 export class Interrupted extends Error {}
 
 /** A walk that has not ended yet. */
 interface ActiveWalk {
   gait: string;
-  /** Least distance of the robot from the middle so far, mm; null until the robot has accepted the gait. */
+  /** Smallest distance of the robot from the centre so far, mm; null until the robot has accepted the gait. */
   nearestMm: number | null;
-  /** True once the walk is ended before its last cycle. */
+  /** True if the walk was ended before its last cycle. */
   isCut: boolean;
-  /** The end of the walk on the film's clock, s; null until it has ended. */
+  /** The end of the walk on the video's clock, s; null until it has ended. */
   endSeconds: number | null;
   resolve: () => void;
   reject: (error: Error) => void;
@@ -92,16 +92,16 @@ export class Protocol {
   private activeWalk: ActiveWalk | null = null;
   /** The last line that the protocol has sent. */
   private lastSent = '';
-  /** Called when the protocol is over. */
+  /** Called when the protocol ends. */
   onEnd: () => void = () => {};
-  /** The reason why the protocol is over; null until then. */
+  /** The reason why the protocol has ended; null until then. */
   private endReason: Interrupted | null = null;
-  /** The last detected offset, and its time on the film's clock, s; null before the first. */
+  /** The last detected offset, and its time on the video's clock, s; null before the first. */
   private lastSighting: { offset: OffsetToMiddle; seconds: number } | null = null;
 
   constructor(private readonly stage: Stage) {}
 
-  /** Walks all gaits of a plan. Throws {@link Interrupted}; `walks` then has the walks so far. */
+  /** Drives all gaits of a plan. Throws {@link Interrupted}; `walks` then has the walks so far. */
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
     const { stage } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
@@ -119,8 +119,8 @@ export class Protocol {
   }
 
   /**
-   * Sets the robot's offset in the latest picture; null if the picture does not show the robot. Ends a walk that leaves
-   * the sheet.
+   * Sets the robot's offset in the latest frame; null if the frame does not show the robot. Ends a walk that leaves the
+   * sheet.
    */
   setPlace(offset: OffsetToMiddle | null): void {
     if (!offset) return;
@@ -131,21 +131,21 @@ export class Protocol {
     if (offset.isNear && distance(offset) > activeWalk.nearestMm + MAX_OUTWARD_MM) this.cut(activeWalk);
   }
 
-  /** Notes a line that was sent to the robot; one that another part of the page has sent may end the protocol. */
+  /** Notes a line that was sent to the robot. A line from another part of the page may end the protocol. */
   noteSent(line: string): void {
     const isWalk = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
     else if (line !== this.lastSent && this.stage.predictions().some(isWalk)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Notes a line from the robot: `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
+  /** Notes a line from the robot. `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
   noteReceived(line: string): void {
     if (line !== DONE_LINE || !this.activeWalk) return;
     this.finish(this.activeWalk);
     this.activeWalk = null;
   }
 
-  /** Sets the robot's current activity; one that the protocol has not asked for ends the protocol. */
+  /** Sets the robot's current activity. An activity that the protocol has not requested ends the protocol. */
   setActivity(activity: string): void {
     const { activeWalk } = this;
     const isWalking = activeWalk?.gait === activity;
@@ -154,7 +154,7 @@ export class Protocol {
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
-  /** Ends the protocol for an external reason, such as a camera that was switched off, and stops a walking robot. */
+  /** Ends the protocol for an external reason, such as a camera that was switched off. Stops a walking robot. */
   stop(reason: string): void {
     const wasWalking = this.activeWalk !== null;
     this.end(reason);
@@ -175,8 +175,8 @@ export class Protocol {
   }
 
   /**
-   * Brings the robot back to the middle if it is near the edge of the sheet, by a gait or else by hand. If only the
-   * next walk, of `forwardMm`, would leave the sheet, the robot returns only if a gait can take it to the middle.
+   * Brings the robot back to the centre if it is near the edge of the sheet, by a gait or else by hand. If only the
+   * next walk, of `forwardMm`, would leave the sheet, the robot returns only if a gait can take it to the centre.
    */
   private async goBack(forwardMm: number): Promise<void> {
     for (let attempt = 0; ; attempt++) {
@@ -184,9 +184,9 @@ export class Protocol {
       const isOnSheet = offset !== null && !offset.isNear;
       const wouldLeave = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.forward - forwardMm, offset.left) > offset.reach;
       if (isOnSheet && !wouldLeave) return;
-      const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.forward) > RETURN_LIMITS.minForwardShare * distance(offset) ? this.gaitToward(offset.forward) : null;
+      const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.forward) > RETURN_LIMITS.minForwardFraction * distance(offset) ? this.findGaitToward(offset.forward) : null;
       if (offset && gait) {
-        stage.showProgress(`Back to the middle by ${gait.command}`);
+        stage.showProgress(`Back to the centre by ${gait.command}`);
         await this.walk(gait.command, Math.min(RETURN_LIMITS.maxCycles, Math.max(1, Math.round(offset.forward / gait.forward))));
       } else if (isOnSheet) return;
       else await stage.putBack();
@@ -194,16 +194,16 @@ export class Protocol {
     }
   }
 
-  /** Returns the gait that walks farthest forward (backward if `offsetMm` is negative) and hardly turns, or null. */
-  private gaitToward(offsetMm: number): PredictedCycle | null {
-    const progressOf = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(offsetMm) : 0);
-    const [best] = this.stage.predictions().sort((a, b) => progressOf(b) - progressOf(a));
-    return best && progressOf(best) > RETURN_GAIT.minForwardMm ? best : null;
+  /** Finds the gait that moves farthest ahead (back if `offsetMm` is negative) and hardly turns; null without one. */
+  private findGaitToward(offsetMm: number): PredictedCycle | null {
+    const progress = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(offsetMm) : 0);
+    const [best] = this.stage.predictions().sort((a, b) => progress(b) - progress(a));
+    return best && progress(best) > RETURN_GAIT.minForwardMm ? best : null;
   }
 
   /**
-   * Walks a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s; `record`
-   * is called with them even if the walk is interrupted.
+   * Drives a gait to its last cycle, or to the edge of the sheet. Returns the start and the end of the walk, s; `record`
+   * is called with both even if the walk is interrupted.
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
     const { stage } = this;

@@ -1,34 +1,34 @@
-// A source of pictures, a camera or a film file, that gives each picture its time on the film's clock.
-import { messageOf } from '../problem';
+// A source of frames, a camera or a video file, that gives each frame its time on the video's clock.
+import { getMessage } from '../problem';
 
-/** Largest number of pictures of a film file that wait to be processed. */
-const MAX_WAITING_PICTURES = 4;
+/** Largest number of frames of a video file that wait to be processed. */
+const MAX_WAITING_FRAMES = 4;
 const CAMERA_CONSTRAINTS = { video: { facingMode: 'environment', width: { ideal: 1280 }, height: { ideal: 720 }, frameRate: { ideal: 30 } }, audio: false };
 
-/** Processes a picture that was taken at `seconds`; resolves when that is done. */
-type ProcessPicture = (picture: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
+/** Processes a frame that was taken at `seconds`; resolves when the frame is processed. */
+type ProcessFrame = (frame: VideoFrame | ImageBitmap, seconds: number) => Promise<void>;
 
-export class PictureSource {
+export class FrameSource {
   private stream: MediaStream | null = null;
   /**
-   * Number of calls of `stop`, which is also called before each new camera or film: a picture from before the last
-   * call is dropped.
+   * Number of calls of `stop`, which is also called before each new camera or video. A frame from before the last call
+   * is dropped.
    */
   private generation = 0;
-  private waitingPictures = 0;
-  /** The page's clock minus the film's, s: the least difference so far, since the delay of a picture increases it. */
+  private waitingFrames = 0;
+  /** The page's clock minus the video's, s: the smallest difference so far, because a frame's delay increases it. */
   private clockOffset = Infinity;
 
   constructor(
     private readonly video: HTMLVideoElement,
-    private readonly processPicture: ProcessPicture,
+    private readonly processFrame: ProcessFrame,
   ) {}
 
   get isCamera(): boolean {
     return this.stream !== null;
   }
 
-  /** The current time on the film's clock, s. */
+  /** The current time on the video's clock, s. */
   get now(): number {
     return performance.now() / 1000 - this.clockOffset;
   }
@@ -38,7 +38,7 @@ export class PictureSource {
     this.stop();
     const { generation: startGeneration } = this;
     const { mediaDevices } = navigator as { mediaDevices?: MediaDevices };
-    if (!mediaDevices) throw new Error('This page may not use a camera: open it by an address that begins with https. A film file works here, too.');
+    if (!mediaDevices) throw new Error('This page may not use a camera: open it with an address that begins with https, or open a video file.');
     const stream = await mediaDevices.getUserMedia(CAMERA_CONSTRAINTS).catch((error: unknown) => {
       throw new Error(cameraErrorMessage(error));
     });
@@ -49,31 +49,31 @@ export class PictureSource {
     this.stream = stream;
     stream.getVideoTracks()[0]?.addEventListener('ended', onEnd);
     this.video.srcObject = stream;
-    this.processPictures(1);
+    this.processFrames(1);
     await this.video.play();
   }
 
-  /** Plays a film file; resolves at its end. Throws an error with a message for the user. */
+  /** Plays a video file; resolves at its end. Throws an error with a message for the user. */
   async playFile(file: File): Promise<void> {
     this.stop();
     const { video, generation: startGeneration } = this;
     const address = URL.createObjectURL(file);
     try {
-      const filmEnd = new Promise<void>((resolve, reject) => {
+      const videoEnd = new Promise<void>((resolve, reject) => {
         video.onended = () => resolve();
-        video.onerror = () => reject(new Error(`${file.name} is no film that this browser can play; MP4 or WebM with H.264 or VP9 will do.`));
+        video.onerror = () => reject(new Error(`${file.name} is not a video that this browser can play: MP4 or WebM with H.264 or VP9 is required.`));
         video.onemptied = () => this.generation !== startGeneration && resolve();
       });
       video.src = address;
-      this.processPictures(MAX_WAITING_PICTURES);
-      await Promise.race([video.play().then(() => filmEnd), filmEnd]);
-      while (this.waitingPictures > 0 && this.generation === startGeneration) await new Promise((resolve) => setTimeout(resolve, 20));
+      this.processFrames(MAX_WAITING_FRAMES);
+      await Promise.race([video.play().then(() => videoEnd), videoEnd]);
+      while (this.waitingFrames > 0 && this.generation === startGeneration) await new Promise((resolve) => setTimeout(resolve, 20));
     } finally {
       URL.revokeObjectURL(address);
     }
   }
 
-  /** Switches the camera off, or closes the film. */
+  /** Switches the camera off, or closes the video. */
   stop(): void {
     this.generation += 1;
     this.clockOffset = Infinity;
@@ -85,46 +85,46 @@ export class PictureSource {
   }
 
   /**
-   * Gives each picture to `processPicture` while fewer than `maxWaiting` are waiting. Otherwise a film file pauses, and
-   * a camera's picture is dropped.
+   * Passes each frame to `processFrame` while fewer than `maxWaiting` frames are waiting. Otherwise a video file pauses,
+   * and a camera's frame is dropped.
    */
-  private processPictures(maxWaiting: number): void {
+  private processFrames(maxWaiting: number): void {
     const { video, generation: startGeneration } = this;
-    this.waitingPictures = 0;
-    const onPicture = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
+    this.waitingFrames = 0;
+    const onFrame = (_: number, { mediaTime }: VideoFrameCallbackMetadata) => {
       if (this.generation !== startGeneration) return;
       this.clockOffset = Math.min(this.clockOffset, performance.now() / 1000 - mediaTime);
-      video.requestVideoFrameCallback(onPicture);
-      if (this.isCamera && this.waitingPictures >= maxWaiting) return;
-      this.waitingPictures += 1;
-      if (!this.isCamera && this.waitingPictures >= maxWaiting) video.pause();
-      void pictureOf(video)
-        .then((picture) => this.processPicture(picture, mediaTime))
+      video.requestVideoFrameCallback(onFrame);
+      if (this.isCamera && this.waitingFrames >= maxWaiting) return;
+      this.waitingFrames += 1;
+      if (!this.isCamera && this.waitingFrames >= maxWaiting) video.pause();
+      void captureFrame(video)
+        .then((frame) => this.processFrame(frame, mediaTime))
         .finally(() => {
           if (this.generation !== startGeneration) return;
-          this.waitingPictures -= 1;
+          this.waitingFrames -= 1;
           if (!this.isCamera && video.paused && !video.ended) void video.play();
         });
     };
-    video.requestVideoFrameCallback(onPicture);
+    video.requestVideoFrameCallback(onFrame);
   }
 }
 
-/** Returns the picture that a video shows; it is not copied if the browser has VideoFrame. */
-const pictureOf = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
+/** Captures the current frame of a video; browsers with VideoFrame do not copy it. */
+const captureFrame = async (video: HTMLVideoElement) => ('VideoFrame' in window ? new VideoFrame(video) : createImageBitmap(video));
 
 /** Returns the message for the user if the camera cannot be opened. */
 function cameraErrorMessage(error: unknown): string {
   const { name } = error as { name?: string };
   switch (name) {
     case 'NotAllowedError':
-      return 'The browser was not allowed to use the camera. Allow it for this page in the browser\'s settings, or take a film and open it here.';
+      return 'The browser was not allowed to use the camera. Allow the camera for this page in the browser\'s settings, or record a video and open it here.';
     case 'NotFoundError':
     case 'OverconstrainedError':
-      return 'This machine has no camera. Take a film with another one and open it here.';
+      return 'This machine has no camera. Record a video with another camera and open it here.';
     case 'NotReadableError':
-      return 'Another program uses the camera. Close it and try again.';
+      return 'Another program uses the camera. Close that program and try again.';
     default:
-      return `The camera cannot be opened: ${messageOf(error)}`;
+      return `The camera cannot be opened: ${getMessage(error)}`;
   }
 }

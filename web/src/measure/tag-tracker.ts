@@ -1,107 +1,107 @@
-// Tracks the tags in the latest pictures: the tags that are hidden, the robot's place and its path. Lengths are
-// measured in the picture, scaled by the floor's tags: precise enough to warn that the robot is about to leave the
-// sheet, but not to measure a gait.
+// Tracks the tags in the latest frames: the hidden tags, the robot's place and its path. Lengths are measured in the
+// frame and scaled by the floor tags, which is precise enough for a warning that the robot is about to leave the sheet,
+// but not for the measurement of a gait.
 import type { Pixel, TagEntry as Tag } from '../../generated/measure';
 import type { Detection } from './worker';
 
-/** The names of the tags, by their ids. */
+/** The names of the tags, indexed by their ids. */
 const TAG_NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
 /** The id of the tag on the robot's deck. */
 const DECK_ID = 4;
-/** Edge length of a tag on the floor, mm. */
+/** Edge length of a floor tag, mm. */
 const EDGE_MM = 50;
-/** Distance beyond the floor's tags at which the robot is about to leave the sheet, mm. */
-const NEAR_MM = 50;
-/** Distance from the picture's edge within which the robot is about to leave the picture, mm. */
-const PICTURE_MARGIN_MM = 150;
-/** Time over which the rate of pictures is averaged, ms. */
+/** Distance beyond the floor tags at which the robot is about to leave the sheet, mm. */
+const SHEET_MARGIN_MM = 50;
+/** Distance from the frame's edge at which the robot is about to leave the frame, mm. */
+const FRAME_MARGIN_MM = 150;
+/** Time over which the frame rate is averaged, ms. */
 const RATE_WINDOW_MS = 2000;
-/** Number of consecutive pictures without a tag after which the tag counts as hidden. */
-const MAX_MISSED_PICTURES = 3;
+/** Number of consecutive frames without a tag after which the tag counts as hidden. */
+const MAX_MISSED_FRAMES = 3;
 
-const minus = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
-const lengthOf = ([x, y]: Pixel) => Math.hypot(x, y);
+const subtract = (a: Pixel, b: Pixel): Pixel => [a[0] - b[0], a[1] - b[1]];
+const length = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
-/** The vector from the deck's tag to the middle of the floor's tags, in the robot's frame, mm. */
+/** The vector from the deck tag to the centre of the floor tags, relative to the robot's heading, mm. */
 export interface OffsetToMiddle {
   forward: number;
   left: number;
-  /** Distance from the middle beyond which the robot is near the edge of the sheet, mm. */
+  /** Distance from the centre beyond which the robot is near the edge of the sheet, mm. */
   reach: number;
-  /** True if the robot is beyond `reach`, or near the edge of the picture. */
+  /** True if the robot is beyond `reach`, or near the edge of the frame. */
   isNear: boolean;
 }
 
 export class TagTracker {
-  /** Width and height of the last picture, px. */
+  /** Width and height of the last frame, px. */
   size: [number, number] = [1, 1];
-  /** The tags of the last picture. */
+  /** The tags in the last frame. */
   tags: Tag[] = [];
-  /** The middle of the deck's tag in each picture so far that shows it. */
+  /** The centre of the deck tag in each frame so far that shows it. */
   path: Pixel[] = [];
-  /** Time that the search for tags in the last picture took, ms. */
+  /** Duration of the search for tags in the last frame, ms. */
   searchMs = 0;
-  /** The tags of the floor as last seen, by their ids. */
+  /** The floor tags as they were last detected, indexed by their ids. */
   private readonly floorTags: (Tag | undefined)[] = [];
-  /** Number of consecutive pictures, up to the last one, that do not show a tag, by the tag's id. */
-  private readonly missedPictures = TAG_NAMES.map(() => MAX_MISSED_PICTURES);
-  /** Arrival times of the pictures of the last `RATE_WINDOW_MS`, on the page's clock, ms. */
+  /** Number of latest consecutive frames without a tag, indexed by the tag's id. */
+  private readonly missedFrames = TAG_NAMES.map(() => MAX_MISSED_FRAMES);
+  /** Arrival times of the frames in the last `RATE_WINDOW_MS`, on the page's clock, ms. */
   private readonly arrivalTimes: number[] = [];
 
-  /** Adds the tags that were detected in the next picture. */
+  /** Adds the tags that were detected in the next frame. */
   addDetection({ tags, size, searchMs }: Detection): void {
     Object.assign(this, { tags, size, searchMs });
-    for (const id of TAG_NAMES.keys()) this.missedPictures[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missedPictures[id] ?? 0) + 1;
+    for (const id of TAG_NAMES.keys()) this.missedFrames[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missedFrames[id] ?? 0) + 1;
     for (const tag of tags) if (tag.id !== DECK_ID) this.floorTags[tag.id] = tag;
     if (this.deck) this.path.push(mean(this.deck.corners));
     this.arrivalTimes.push(performance.now());
     while ((this.arrivalTimes[0] ?? 0) < performance.now() - RATE_WINDOW_MS) this.arrivalTimes.shift();
   }
 
-  /** The rate of the latest pictures, 1/s. */
-  get picturesPerSecond(): number {
+  /** The rate of the latest frames, 1/s. */
+  get framesPerSecond(): number {
     const [first, last] = [this.arrivalTimes[0], this.arrivalTimes.at(-1)];
     return first === undefined || last === undefined || last === first ? 0 : (1000 * (this.arrivalTimes.length - 1)) / (last - first);
   }
 
-  /** The deck's tag in the last picture; undefined if the picture does not show it. */
+  /** The deck tag in the last frame; undefined if the frame does not show it. */
   get deck(): Tag | undefined {
     return this.tags.find(({ id }) => id === DECK_ID);
   }
 
-  /** The vector toward the robot's head in the picture, as long as the deck's tag; null if that tag is not seen. */
+  /** The vector toward the robot's head in the frame, as long as the deck tag; null if that tag is not visible. */
   get heading(): Pixel | null {
     if (!this.deck) return null;
     const [a, b, c, d] = this.deck.corners;
-    return minus(mean([a, b]), mean([c, d]));
+    return subtract(mean([a, b]), mean([c, d]));
   }
 
-  /** A sentence that names the tags that are not seen; empty if all are seen. */
+  /** A sentence that names the hidden tags; empty if all tags are visible. */
   get hiddenTagsMessage(): string {
-    const hiddenNames = TAG_NAMES.filter((_, id) => (this.missedPictures[id] ?? 0) >= MAX_MISSED_PICTURES);
+    const hiddenNames = TAG_NAMES.filter((_, id) => (this.missedFrames[id] ?? 0) >= MAX_MISSED_FRAMES);
     if (hiddenNames.length === 0) return '';
-    if (hiddenNames.length === TAG_NAMES.length) return 'No tag of the sheet is seen: film from above, near enough and in even light, and not mirrored.';
+    if (hiddenNames.length === TAG_NAMES.length) return 'No tag of the sheet is visible: record from above and from a short distance, in even light and not mirrored.';
     const last = hiddenNames.pop() ?? '';
-    return `Not seen: ${hiddenNames.length > 0 ? `${hiddenNames.join(', ')} and ${last}` : last}.`;
+    return `Not visible: ${hiddenNames.length > 0 ? `${hiddenNames.join(', ')} and ${last}` : last}.`;
   }
 
-  /** The vector from the robot to the middle; null if the deck's tag or all tags of the floor are unknown. */
+  /** The vector from the robot to the centre; null if the deck tag or all floor tags are unknown. */
   get offsetToMiddle(): OffsetToMiddle | null {
     const { heading, deck, size } = this;
     const floor = this.floorTags.filter((tag) => tag !== undefined);
     if (!heading || !deck || floor.length === 0) return null;
-    const middles = floor.map(({ corners }) => mean(corners));
-    const edges = floor.map(({ corners }) => lengthOf(minus(corners[0], corners[1])));
+    const centres = floor.map(({ corners }) => mean(corners));
+    const edges = floor.map(({ corners }) => length(subtract(corners[0], corners[1])));
     const scale = EDGE_MM / (edges.reduce((sum, edge) => sum + edge, 0) / edges.length);
-    const [deckMiddle, middle] = [mean(deck.corners), mean(middles)];
-    const offset = minus(middle, deckMiddle);
-    const headingLength = lengthOf(heading);
+    const [deckCentre, centre] = [mean(deck.corners), mean(centres)];
+    const offset = subtract(centre, deckCentre);
+    const headingLength = length(heading);
     const forward = ((offset[0] * heading[0] + offset[1] * heading[1]) / headingLength) * scale;
     const left = ((offset[0] * heading[1] - offset[1] * heading[0]) / headingLength) * scale;
-    const reach = Math.max(...middles.map((point) => lengthOf(minus(point, middle)))) * scale + NEAR_MM;
-    const edge = Math.min(deckMiddle[0], deckMiddle[1], size[0] - deckMiddle[0], size[1] - deckMiddle[1]) * scale;
-    return { forward, left, reach, isNear: Math.hypot(forward, left) > reach || edge < PICTURE_MARGIN_MM };
+    const reach = Math.max(...centres.map((point) => length(subtract(point, centre)))) * scale + SHEET_MARGIN_MM;
+    const edgeDistance = Math.min(deckCentre[0], deckCentre[1], size[0] - deckCentre[0], size[1] - deckCentre[1]) * scale;
+    return { forward, left, reach, isNear: Math.hypot(forward, left) > reach || edgeDistance < FRAME_MARGIN_MM };
   }
 
   /** Clears the path. */

@@ -1,24 +1,24 @@
-// Limits the cost of rendering in 3D on a machine without a GPU, where the CPU renders the frames and slows down the
-// rest of the page. The time of each frame is measured. After a slow frame, the next one waits for a multiple of that
-// time and has a lower resolution.
+// Limits the cost of 3D rendering on a machine without a GPU, where rendering on the CPU slows down the rest of the
+// page. The time of each frame is measured. After a slow frame, the next frame waits for a multiple of this time and
+// has a lower resolution.
 
-/** Time within which a GPU finishes a frame, ms. */
+/** Longest time of a frame on a GPU, ms. */
 const FAST_FRAME_MS = 34;
 /** Pause after a slow frame, as a multiple of its time. */
 const PAUSE_FACTOR = 2;
-/** Longest pause, ms, since a frame seems to take very long while the page is hidden. */
+/** Longest pause, ms, because a frame seems to take very long while the page is hidden. */
 const MAX_PAUSE_MS = 1500;
-/** Lowest resolution, as a share of the screen's pixels along each side. */
+/** Lowest resolution, as a fraction of the screen's pixels along each side. */
 const MIN_RESOLUTION = 0.5;
-/** Factor by which a slow frame changes the resolution, which later rises again by the inverse factor. */
+/** Factor by which a slow frame reduces the resolution; it later rises by the inverse factor. */
 const RESOLUTION_FACTOR = 0.8;
 /** Number of consecutive fast frames after which the resolution rises again. */
 const FAST_FRAMES_TO_REFINE = 90;
 
 export class PaintBudget {
-  /** Resolution of the next frame, as a share of the screen's pixels along each side. */
+  /** Resolution of the next frame, as a fraction of the screen's pixels along each side. */
   resolution = 1;
-  /** Signalled when the GPU has finished the last frame; null if no frame is being rendered. */
+  /** Fence that the GPU signals after the last frame; null if no frame is being rendered. */
   private fence: WebGLSync | null = null;
   /** Time at which the last frame was submitted, ms. */
   private frameStart = 0;
@@ -29,7 +29,7 @@ export class PaintBudget {
 
   constructor(private readonly gl: WebGL2RenderingContext) {}
 
-  /** Returns true if a frame may be rendered now; to be called once per animation frame. */
+  /** Returns true if a frame may be rendered now; must be called once per animation frame. */
   mayRender(now = performance.now()): boolean {
     const { gl } = this;
     if (this.fence) {
@@ -46,7 +46,7 @@ export class PaintBudget {
     return now >= this.nextFrameTime;
   }
 
-  /** Records that a frame was submitted; if `isSingle`, it counts as fast, since no other follows soon. */
+  /** Records that a frame was submitted; a single frame counts as fast, because no frame follows soon. */
   noteFrame(isSingle: boolean, now = performance.now()): void {
     this.frameStart = isSingle ? Infinity : now;
     this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);

@@ -1,26 +1,26 @@
-// The robot in 3D, rendered by three.js. This file is a separate chunk, loaded on demand.
+// The robot in 3D, rendered by three.js. This file is a separate chunk, which is loaded on demand.
 import * as three from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 import type { Place } from '../robot';
-import { palette, servoColour } from '../view/palette';
+import { getPalette, getServoColour } from '../view/palette';
 import type { BodyEntry } from '../../generated/parts';
 import type { Model, Solid } from './workshop';
 import { PaintBudget } from './paint-budget';
 
-/** Height by which a body with `lift` 1 rises in the fully exploded view, mm, as in the guide's pictures. */
+/** Lift of a body with `lift` 1 in the fully exploded view, mm, as in the guide's pictures. */
 const LIFT_MM = 45;
-/** Size of a cell of the floor's grid, mm. */
+/** Cell size of the floor's grid, mm. */
 const CELL_MM = 50;
 const CELLS_PER_SIDE = 16;
-/** Movement of the pointer during a press up to which the press is a click, CSS pixels. */
+/** Largest movement of the pointer during a click, CSS pixels. */
 const CLICK_PX = 5;
 /** Rotation of the view per key press, rad. */
 const TURN_RAD = Math.PI / 24;
 /** Time without a change after which the view counts as still, ms. */
 const STILL_MS = 400;
-/** Share of the floor's colour in pale bodies: those of earlier steps, or all that are not highlighted. */
-const PALE_SHARE = 0.65;
+/** Fraction of the floor's colour in pale bodies: bodies of earlier steps, or all bodies that are not highlighted. */
+const PALE_FRACTION = 0.65;
 
 /** The settings of the 3D view: the spread of the exploded view, the guide's step and the highlighted bodies. */
 export interface ViewSettings {
@@ -34,7 +34,7 @@ export interface ViewSettings {
   clashingBodies: number[];
 }
 
-/** A 3D view of the robot that the user can rotate, zoom and click. */
+/** A 3D view of the robot, which the user can rotate, zoom and click. */
 export class RobotView {
   private readonly renderer: three.WebGLRenderer;
   private readonly scene = new three.Scene();
@@ -51,7 +51,7 @@ export class RobotView {
   /** Time of the last change, ms. */
   private changedAt = 0;
 
-  /** Throws if the browser has no WebGL. `onPick` gets the index of the body that was clicked, or null. */
+  /** Throws if the browser has no WebGL. `onPick` receives the index of the clicked body, or null. */
   constructor(
     private readonly canvas: HTMLCanvasElement,
     onPick: (body: number | null) => void,
@@ -67,7 +67,7 @@ export class RobotView {
     this.controls.addEventListener('change', () => (this.needsRendering = true));
     this.controls.maxDistance = 1500;
     this.controls.minDistance = 60;
-    // A horizontal drag with one finger turns the robot; a vertical one scrolls the page.
+    // A horizontal drag with one finger turns the robot; a vertical drag scrolls the page.
     canvas.style.touchAction = 'pan-y';
     this.addListeners(onPick);
     this.resetView();
@@ -75,12 +75,12 @@ export class RobotView {
 
   private addListeners(onPick: (body: number | null) => void): void {
     const { canvas } = this;
-    // Without Ctrl the wheel scrolls the page, so the controls must not get it.
+    // Without Ctrl, the wheel scrolls the page; the controls must not receive it.
     canvas.parentElement?.addEventListener('wheel', (event) => event.ctrlKey || event.stopPropagation(), { capture: true });
     let pressed: { x: number; y: number } | null = null;
     canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (pressed = { x, y }));
     canvas.addEventListener('pointerup', ({ offsetX: x, offsetY: y }) => {
-      if (pressed && Math.hypot(x - pressed.x, y - pressed.y) < CLICK_PX) onPick(this.bodyAt(x, y));
+      if (pressed && Math.hypot(x - pressed.x, y - pressed.y) < CLICK_PX) onPick(this.findBody(x, y));
       pressed = null;
     });
     canvas.addEventListener('pointercancel', () => (pressed = null));
@@ -134,7 +134,7 @@ export class RobotView {
     this.needsRendering = true;
   }
 
-  /** Replaces the shown robot by another model and its solids. */
+  /** Replaces the shown robot with another model and its solids. */
   showModel(model: Model, solids: Solid[]): void {
     for (const mount of this.mounts) this.scene.remove(mount);
     for (const mesh of this.meshes) mesh.material.dispose();
@@ -162,11 +162,11 @@ export class RobotView {
     this.applySettings(this.settings);
   }
 
-  /** Applies the view's settings, and the colours of light or dark mode. */
+  /** Applies the view's settings and the colours of the current colour scheme. */
   applySettings(settings: ViewSettings): void {
     this.settings = settings;
     const { guideStep, explosion, selectedBody, clashingBodies } = settings;
-    const colours = palette();
+    const colours = getPalette();
     const floor = new three.Color(colours.floor);
     this.scene.background = floor;
     if (this.grid) this.scene.remove(this.grid);
@@ -182,7 +182,7 @@ export class RobotView {
       mesh.visible = guideStep === null || body.step <= guideStep;
       const highlightedBodies = clashingBodies.length > 0 ? clashingBodies : selectedBody === null ? null : [selectedBody];
       const isPale = highlightedBodies ? !highlightedBodies.includes(index) : !isInCurrentStep;
-      mesh.material.color.set(clashingBodies.includes(index) ? colours.alarm : colourOf(body)).lerp(floor, isPale ? PALE_SHARE : 0);
+      mesh.material.color.set(clashingBodies.includes(index) ? colours.alarm : chooseColour(body)).lerp(floor, isPale ? PALE_FRACTION : 0);
       const lift = new three.Matrix4().makeTranslation(0, 0, isInCurrentStep ? explosion * LIFT_MM * body.lift : 0);
       mesh.matrix.copy(lift.multiply(new three.Matrix4().fromArray(body.place)));
       mesh.matrixWorldNeedsUpdate = true;
@@ -190,7 +190,7 @@ export class RobotView {
     this.needsRendering = true;
   }
 
-  /** Places every mount by four numbers of `places`: x and y in mm, cosine and sine of the mount's angle. */
+  /** Places every mount; `places` has four numbers per mount: x and y in mm, cosine and sine of the angle. */
   placeMounts(places: Float64Array): void {
     this.mounts.forEach((mount, index) => {
       const [x = 0, y = 0, cos = 1, sin = 0] = places.subarray(4 * index, 4 * index + 4);
@@ -200,18 +200,18 @@ export class RobotView {
     this.needsRendering = true;
   }
 
-  /** Returns true if a frame may be rendered now; to be called once per animation frame. */
+  /** Returns true if a frame may be rendered now; must be called once per animation frame. */
   mayRender(): boolean {
     return this.paintBudget.mayRender();
   }
 
-  /** Renders a frame if something has changed and `mayRender()` is true. `place` is the robot's place on the floor. */
+  /** Renders a frame if the view has changed and `mayRender()` is true. `place` is the robot's place on the floor. */
   render(place: Place): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!this.mayRender() || width === 0 || height === 0) return;
     const now = performance.now();
     if (this.needsRendering) this.changedAt = now;
-    // A still view is rendered once more at full resolution.
+    // A still view is rendered again at full resolution.
     const isStill = now - this.changedAt > STILL_MS;
     const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
     const size = this.renderer.getSize(new three.Vector2());
@@ -233,15 +233,15 @@ export class RobotView {
   private moveGrid({ x, y, heading }: Place): void {
     if (!this.grid) return;
     const turn = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
-    const remainder = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
+    const wrapToCell = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
     const depth = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
-    const shift = new three.Matrix4().makeTranslation(-remainder(x), -remainder(y), depth);
+    const shift = new three.Matrix4().makeTranslation(-wrapToCell(x), -wrapToCell(y), depth);
     this.grid.matrix.copy(turn.multiply(shift));
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
-  /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null if there is none. */
-  private bodyAt(x: number, y: number): number | null {
+  /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null for an empty point. */
+  private findBody(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new three.Raycaster();
     ray.setFromCamera(new three.Vector2((2 * x) / clientWidth - 1, 1 - (2 * y) / clientHeight), this.camera);
@@ -251,7 +251,7 @@ export class RobotView {
   }
 }
 
-/** The colours of bought bodies by their kinds; a standoff has that of the tubes, and the others that of steel. */
+/** The colours of bought bodies by kind. A standoff has the tubes' colour; all other kinds have the colour of steel. */
 const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   servo: '#4a6fa5',
   board: '#1d7f86',
@@ -262,9 +262,9 @@ const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   fitting: '#8a6d4b',
 };
 
-/** Returns a body's colour: that of its servo for a printed part, as in the drawing, else that of its material. */
-function colourOf({ kind, servo }: BodyEntry): string {
-  const { 'skin-edge': plate, tube, steel } = palette();
-  if (kind === 'printed') return servo === null ? plate : servoColour(servo);
+/** Returns a body's colour: a printed part has its servo's colour, as in the drawing, else the material's colour. */
+function chooseColour({ kind, servo }: BodyEntry): string {
+  const { 'skin-edge': plate, tube, steel } = getPalette();
+  if (kind === 'printed') return servo === null ? plate : getServoColour(servo);
   return KIND_COLOURS[kind] ?? (kind === 'standoff' ? tube : steel);
 }

@@ -1,21 +1,21 @@
-// The web worker of the workshop, which makes the robot's parts in WebAssembly. Its functions throw a `Refused` if the
-// parts cannot be made.
+// The workshop's web worker, which makes the robot's parts in WebAssembly. Its functions throw a `Refused` if the parts
+// cannot be made.
 import { expose, transfer } from 'comlink';
 import { zipSync } from 'fflate';
 
 import { initSync, Parts } from '../../generated/parts';
 
-/** Progress of the stage in which a robot's files are: `done` of `total` steps. */
+/** Progress of a stage in making a robot's files: `done` of `total` steps. */
 export interface Progress {
   stage: 'prove' | 'make';
   done: number;
   total: number;
 }
 
-/** The parts whose solids are shown; null until they are made. */
+/** The shown parts; null until they are made. */
 let shownParts: Parts | null = null;
 
-/** Makes all files of a robot; returns their bytes by their paths. */
+/** Makes all files of a robot; returns their bytes by path. */
 function makeFiles(parts: Parts, onProgress: (progress: Progress) => void): Record<string, Uint8Array> {
   const filesByPath: Record<string, Uint8Array> = {};
   const fileCount = parts.entry().files;
@@ -31,7 +31,7 @@ const areEqual = (bytes: Uint8Array, otherBytes: Uint8Array | undefined) => byte
 const api = {
   load: (module: WebAssembly.Module) => void initSync({ module }),
 
-  /** Makes the parts to show; returns their model and their solids. */
+  /** Makes the parts to show; returns their model and solids. */
   model(toml: string) {
     shownParts = null;
     shownParts = new Parts(toml);
@@ -42,25 +42,25 @@ const api = {
   /** Returns the places of the shown parts' mounts; null without parts, or if a loop does not close. */
   pose: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
 
-  /** Proves that the parts of a robot fit; returns the least distance between two, mm; null if no pair was checked. */
+  /** Proves that a robot's parts fit; returns their smallest distance, mm, or null if no pair was checked. */
   fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
   /**
    * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
-   * differ from those of that robot.
+   * differ from the previous robot's files.
    */
   make(toml: string, previousToml: string | null, onProgress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const leastMm = parts.prove((done, total) => onProgress({ stage: 'prove', done, total })) ?? null;
+    const smallestMm = parts.prove((done, total) => onProgress({ stage: 'prove', done, total })) ?? null;
     const files = makeFiles(parts, onProgress);
     const count = Object.keys(files).length;
     if (previousToml !== null) {
       const previousFiles = makeFiles(new Parts(previousToml), onProgress);
       for (const [path, bytes] of Object.entries(previousFiles)) if (areEqual(bytes, files[path])) delete files[path];
     }
-    // The date is fixed, so that equal files give equal archives.
+    // With a fixed date, equal files give equal archives.
     const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' }) as Uint8Array<ArrayBuffer>;
-    return transfer({ zip, paths: Object.keys(files), count, least: leastMm }, [zip.buffer]);
+    return transfer({ zip, paths: Object.keys(files), count, smallestMm }, [zip.buffer]);
   },
 };
 

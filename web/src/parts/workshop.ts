@@ -1,4 +1,4 @@
-// The robot's parts, made by a worker: solids, their places at a pose, and all files as one archive.
+// The robot's parts, which a worker makes: solids, their places in a pose, and all files as one archive.
 import { proxy, type Remote } from 'comlink';
 
 import type { Clash, ModelEntry, Refused } from '../../generated/parts';
@@ -8,15 +8,15 @@ import type { PartsWorkerApi, Progress } from './worker';
 
 export type { Clash, Progress };
 export type Model = ModelEntry;
-/** The triangles of a solid: the corners' coordinates in mm, and three corner indices for each triangle. */
+/** The triangles of a solid: the corners' coordinates in mm, and three corner indices per triangle. */
 export type Solid = { corners: Float32Array; triangles: Uint32Array };
 /**
- * The archive of a robot's files with their paths, the number of all files of the robot, and the least proved distance
- * between two parts, mm.
+ * The archive of a robot's files with their paths, the number of all files, and the smallest proved distance between
+ * two parts, mm.
  */
 export type PartsArchive = ReturnType<PartsWorkerApi['make']>;
 
-/** Thrown for a robot whose parts cannot be made; its message is for the user. */
+/** The error for a robot whose parts cannot be made; its message is for the user. */
 export class UnfitError extends Error {
   /** The two parts that overlap or come too close; null for another reason. */
   readonly clash: Clash | null;
@@ -27,7 +27,7 @@ export class UnfitError extends Error {
   }
 }
 
-/** A worker that makes parts; its refusal is thrown as an {@link UnfitError}. */
+/** A worker that makes parts; it throws a refusal as an {@link UnfitError}. */
 class Workshop extends Helper<PartsWorkerApi> {
   constructor() {
     super(new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' }));
@@ -43,7 +43,7 @@ class Workshop extends Helper<PartsWorkerApi> {
   }
 }
 
-/** A robot's solids and their places at a pose. */
+/** A robot's solids and their places in a pose. */
 export class Solids {
   /** True while the worker computes a pose. */
   private isBusy = false;
@@ -51,7 +51,7 @@ export class Solids {
   private constructor(private readonly workshop: Workshop) {}
 
   /**
-   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws {@link UnfitError} for a robot that
+   * Makes the solids of a robot.toml, in the order of `BodyEntry.solid`. Throws an {@link UnfitError} for a robot that
    * cannot be built.
    */
   static async make(toml: string): Promise<{ solids: Solids; model: Model; meshes: Solid[] }> {
@@ -66,7 +66,7 @@ export class Solids {
   }
 
   /**
-   * Returns the places of all mounts at the servos' `angles` and the legs' `lags`, deg; null if a loop does not close,
+   * Returns the places of all mounts for the servos' `angles` and the legs' `lags`, deg; null if a loop does not close,
    * or if the worker is still computing an earlier pose.
    */
   async pose(angles: number[], lags: number[]): Promise<Float64Array | null> {
@@ -80,7 +80,7 @@ export class Solids {
   }
 }
 
-/** A running computation; `cancel` ends it, and then `result` never settles. */
+/** A running computation; after `cancel`, `result` never settles. */
 interface Job<Result> {
   result: Promise<Result>;
   cancel: () => void;
@@ -92,14 +92,14 @@ function startJob<Result>(invoke: (parts: Remote<PartsWorkerApi>) => Promise<Res
 }
 
 /**
- * Proves that the parts of a robot.toml fit. Results in the least distance between two parts, mm, or null if no pair
- * was checked; rejects with an {@link UnfitError} if they do not fit.
+ * Proves that the parts of a robot.toml fit. The result is the smallest distance between two parts, mm, or null if no
+ * pair was checked. Rejects with an {@link UnfitError} if the parts do not fit.
  */
 export const proveFit = (toml: string): Job<number | null> => startJob((parts) => parts.fit(toml));
 
 /**
  * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
- * differ from those of that robot.
+ * differ from the previous robot's files.
  */
 export const makeArchive = (toml: string, previousToml: string | null, onProgress: (progress: Progress) => void): Job<PartsArchive> =>
   startJob((parts) => parts.make(toml, previousToml, proxy(onProgress)));

@@ -1,42 +1,42 @@
-// Records a drive as the steps of a routine, from the robot's reports of its gait, its pace and the phase of the
-// cycle. All times are in seconds of `Session.clock`.
+// Records a drive as the steps of a routine, from the robot's reports of its gait, its pace and the phase of its cycle.
+// All times are in seconds of `Session.clock`.
 import type { Gait } from '../robot';
 import { GAITS, WORDS } from '../words';
 
-/** Shortest pause that becomes a step, s; a thumb that changes direction releases the stick for a moment. */
+/** Shortest pause that becomes a step, s: a thumb that changes direction briefly releases the stick. */
 const MIN_PAUSE_S = 0.5;
 /** Shortest step, s. */
 const MIN_STEP_S = 0.1;
-/** Largest error, in cycles, of the count since the last reported phase. */
+/** Largest error of the count since the last reported phase, in cycles. */
 const COUNT_TOLERANCE_CYCLES = 0.05;
 /**
- * Number of cycles added to the count before it is rounded down to whole cycles; below 0.5, because the count includes
- * the move to the gait's first pose.
+ * Number of cycles added to the count before it is rounded down to whole cycles. It is below 0.5, because the count
+ * includes the move to the gait's first pose.
  */
 const ROUNDING_OFFSET_CYCLES = 0.4;
-/** The robot's activities between gaits; a routine has only the step `stand` for them. */
+/** The robot's activities between gaits, which become the step `stand` in a routine. */
 const PAUSE_ACTIVITIES: string[] = ['', GAITS.stand, WORDS.stop, WORDS.pose, WORDS.center];
 
 /** A section of the drive with one activity. */
 interface Section {
   name: string;
-  /** Number of whole cycles; 0 for a section that is measured by time. */
+  /** Number of whole cycles; 0 for a section that is measured in time. */
   cycles: number;
   seconds: number;
 }
 
 const isPause = ({ name }: Section) => name === GAITS.stand;
-/** True if a section is too short to become a step. */
+/** Returns true if a section is too short to become a step. */
 const isTooShort = (section: Section) => section.seconds < (isPause(section) ? MIN_PAUSE_S : MIN_STEP_S);
 
 export class Recorder {
   private sections: Section[] = [];
-  /** Cycles of the current gait until the time `countedUntil`. */
+  /** Cycles of the current gait until `countedUntil`. */
   private cycles = 0;
-  /** The time up to which cycles are counted. */
+  /** The end time of the cycle count. */
   private countedUntil: number;
 
-  /** Starts at the time `gaitStart` with the robot's activity `gait` and its pace, percent. */
+  /** Starts at `gaitStart` with the robot's activity `gait` and its pace, percent. */
   constructor(
     private readonly gaits: Gait[],
     private gait: string,
@@ -49,7 +49,7 @@ export class Recorder {
   /** Records that the robot's activity is `gait` from `time` on. */
   setGait(gait: string, time: number): void {
     if (gait === this.gait) return;
-    this.sections = this.sectionsUntil(time);
+    this.sections = this.listSections(time);
     [this.gait, this.gaitStart, this.countedUntil, this.cycles] = [gait, time, time, 0];
   }
 
@@ -59,12 +59,12 @@ export class Recorder {
     this.pace = percent;
   }
 
-  /** Corrects the count of cycles by the phase of the gait that the robot has reported. */
+  /** Corrects the cycle count with the gait's phase that the robot reports. */
   setPhase(reportedPhase: number, time: number): void {
     this.countCycles(time);
     const phase = this.currentGait?.reversed ? (1 - reportedPhase) % 1 : reportedPhase;
-    // The count is never too low, so a phase ahead of it belongs to the previous gait: the robot reports its phase
-    // until the first pose of the new gait is reached.
+    // The count is never too low; therefore a phase ahead of it belongs to the previous gait: the robot reports that
+    // gait's phase until it reaches the new gait's first pose.
     if (phase > this.cycles + COUNT_TOLERANCE_CYCLES) {
       this.cycles = 0;
       return;
@@ -72,9 +72,9 @@ export class Recorder {
     this.cycles = Math.floor(this.cycles + ROUNDING_OFFSET_CYCLES - phase) + phase;
   }
 
-  /** Returns the steps until `time`, from the first gait to the last one. */
-  steps(time: number): string[] {
-    const sections = this.sectionsUntil(time).filter((section) => !isTooShort(section));
+  /** Returns the steps until `time`, from the first gait to the last gait. */
+  listSteps(time: number): string[] {
+    const sections = this.listSections(time).filter((section) => !isTooShort(section));
     const firstIndex = sections.findIndex((section) => !isPause(section));
     const lastIndex = sections.findLastIndex((section) => !isPause(section));
     const steps = firstIndex < 0 ? [] : sections.slice(firstIndex, lastIndex + 1);
@@ -91,8 +91,8 @@ export class Recorder {
     this.countedUntil = time;
   }
 
-  /** Returns all sections until `time`, ending with the current activity; consecutive pauses are one section. */
-  private sectionsUntil(time: number): Section[] {
+  /** Returns all sections until `time`, including the current activity; consecutive pauses are one section. */
+  private listSections(time: number): Section[] {
     this.countCycles(time);
     const { sections, gait, currentGait } = this;
     const seconds = time - this.gaitStart;

@@ -1,5 +1,4 @@
-// The calibration of a robot at its first connection, on one board. Its steps are implemented in Rust, in the
-// WebAssembly module for boards.
+// The calibration of a board at its first connection. The WebAssembly module for boards implements the steps, in Rust.
 import type { Console, Guide } from '../../generated/board';
 import { loadBoard } from '../board';
 import type { Answer } from '../link/dialogue';
@@ -8,7 +7,7 @@ import type { Calibration } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
 
-const LOST_MESSAGE = 'The board has restarted or is gone; what was not saved is lost.';
+const LOST_MESSAGE = 'The board has restarted or is gone; unsaved settings are lost.';
 
 /** The console of a board; usable until the board restarts or is gone. */
 class BoardConsole implements Console {
@@ -29,7 +28,7 @@ class BoardConsole implements Console {
     if (!this.isCurrent) throw new Error(LOST_MESSAGE);
     const answer = await this.session.ask(line, line === WORDS.status);
     if (answer) return answer;
-    throw new Error(this.isCurrent ? `The robot has not answered "${line}".` : LOST_MESSAGE);
+    throw new Error(this.isCurrent ? `The robot did not answer "${line}".` : LOST_MESSAGE);
   }
 
   wait(ms: number): Promise<void> {
@@ -63,7 +62,7 @@ export class BoardGuide {
     return this.console.isCurrent;
   }
 
-  /** Runs an action; only one may run at a time. Throws an error with a message for the user. */
+  /** Runs an action; only one action may run at a time. Throws an error with a message for the user. */
   async run<T>(action: (guide: Guide) => Promise<T>): Promise<T> {
     try {
       return await action(this.guide);

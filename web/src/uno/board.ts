@@ -1,5 +1,5 @@
-// A simulated Arduino UNO that can be reset and flashed. The chip is that of tools/judge, on avr8js; a reset creates a
-// new chip with the contents of the previous chip's memories.
+// A simulated Arduino UNO that can be reset and flashed. It uses the chip of tools/judge, on avr8js; a reset creates a
+// new chip with the memory contents of the previous chip.
 import { skipBusyWaits } from '../../../tools/judge/src/busy-wait.js';
 import { corrections } from '../../../tools/judge/src/corrections/index.js';
 import { addReceiveBuffer } from '../../../tools/judge/src/receive-buffer.js';
@@ -10,52 +10,52 @@ import { Uno } from '../../../tools/judge/src/uno.js';
 /** Clock frequency of the chip, Hz. */
 export const FREQUENCY_HZ = 16_000_000;
 
-/** Number of bits per byte on the serial line, including start and stop bit. */
+/** Number of bits per byte on the serial line, including start bit and stop bit. */
 const BITS_PER_BYTE = 10;
-/** Largest relative difference between the baud rates of the two sides; beyond it every byte is garbled. */
+/** Largest relative difference between the two baud rates; beyond it, every byte is garbled. */
 const MAX_BAUD_ERROR = 0.045;
-/** The byte that stands for any byte received at a wrong baud rate; no text contains it. */
+/** The substitute for a byte received at a wrong baud rate; no text contains it. */
 const UNREADABLE_BYTE = 0xfe;
-/** Data address of the register with the cause of the last reset. */
+/** Data address of the register that has the cause of the last reset. */
 const MCUSR = 0x54;
-/** Data address of the RAM, after the registers. */
+/** Data address at which the RAM starts, after the registers. */
 const RAM_START = 0x100;
-/** Byte address in flash of a boot loader of 512 bytes. */
+/** Byte address of a 512-byte boot loader in flash. */
 export const BOOT_START = 0x7e00;
 
 /** The bit of MCUSR for each cause of a reset. */
 const RESET_CAUSE_BITS = { power: 0x01, external: 0x02, watchdog: 0x08 };
 export type ResetCause = keyof typeof RESET_CAUSE_BITS;
 
-/** Thrown when the chip's watchdog resets the chip, to end its run. */
+/** Thrown when the watchdog resets the chip, to end the chip's run. */
 class ChipReset extends Error {}
 
 export class SimulatedBoard {
-  /** Called with each byte that the UNO has sent. */
+  /** Called with each byte that the UNO sends. */
   onByte: (byte: number) => void = () => {};
-  /** Called when a pulse has ended: Arduino number of the pin, cycle of the rising edge, width in cycles. */
+  /** Called at the end of each pulse: Arduino number of the pin, cycle of the rising edge, width in cycles. */
   onPulse: (pin: number, rise: number, width: number) => void = () => {};
-  /** Called when a byte arrives at the UNO, with the byte and the cycle. */
+  /** Called with each byte that arrives at the UNO, and its cycle. */
   onReceived: (byte: number, cycle: number) => void = () => {};
   /** The baud rate at the other end of the serial line. */
   baud = 115_200;
-  /** Number of bytes that the UNO's receiver has lost. */
+  /** Number of bytes that the UNO's receiver lost. */
   lostBytes = 0;
 
   private uno!: Uno & { receive?(byte: number, isGarbled: boolean): boolean };
   /** Number of cycles from power-on to the last reset. */
   private cyclesBeforeReset = 0;
-  /** The bytes that were sent to the UNO and have not arrived yet. */
+  /** Bytes on the way to the UNO. */
   private readonly bytesToDeliver: number[] = [];
   private isLineBusy = false;
   private volts = 5;
-  /** The contacts between pins and ground, by the pins' Arduino numbers: true if closed. */
+  /** State of the contacts between pins and ground by the pins' Arduino numbers: true if closed. */
   private readonly contacts = new Map<number, boolean>();
 
   /**
-   * Powers on a UNO. `image` is the content of the flash from address 0, `bootLoader` that from `BOOT_START`, `rail`
-   * the ADC channel of the servos' rail and the voltage at its pin, and `eeprom` the content of a previous board's
-   * EEPROM.
+   * Powers on a UNO. `image` is the flash content from address 0, `bootLoader` the flash content from `BOOT_START`,
+   * `rail` the ADC channel of the servos' rail and the voltage at its pin, and `eeprom` the content of the previous
+   * board's EEPROM.
    */
   constructor(
     image: Uint8Array | null,
@@ -109,7 +109,7 @@ export class SimulatedBoard {
     this.uno.adc.avcc = volts;
   }
 
-  /** Opens or closes a contact between a pin and ground; while it is open, the pin's pull-up makes it high. */
+  /** Opens or closes a contact between a pin and ground; while it is open, the pull-up keeps the pin high. */
   setContact(pin: number, isClosed: boolean): void {
     this.contacts.set(pin, isClosed);
     this.setPinLevel(pin, isClosed);
@@ -122,7 +122,7 @@ export class SimulatedBoard {
     else C.setPin(pin - 14, !isClosed);
   }
 
-  /** Resets the chip. Flash and EEPROM keep their contents, and so does the RAM, except at power-on. */
+  /** Resets the chip. Flash and EEPROM keep their contents; the RAM keeps its content except at power-on. */
   reset(cause: ResetCause): void {
     const { cpu, flash, eepromBytes } = this.uno;
     this.cyclesBeforeReset += cpu.cycles;
@@ -133,7 +133,7 @@ export class SimulatedBoard {
     if (cause !== 'power') this.uno.cpu.data.set(ram, RAM_START);
   }
 
-  /** Creates a chip with these memories, as it starts after a reset by this cause. */
+  /** Creates a chip with these memories in its state after a reset by this cause. */
   private startChip(cause: ResetCause, flash: Uint8Array, eeprom?: Uint8Array): void {
     const uno = new Uno([...corrections, addSelfProgramming, addReceiveBuffer, skipBusyWaits]);
     this.uno = uno;
@@ -152,7 +152,7 @@ export class SimulatedBoard {
     new Scope(uno, (pin: number, rise: number, width: number) => this.onPulse(pin, cyclesBefore + rise, width));
   }
 
-  /** True if the chip's baud rate and that of the other end differ too much. */
+  /** True if the baud rates of the chip and the other end differ too much. */
   private get isGarbled(): boolean {
     return Math.abs(this.uno.usart.baudRate / this.baud - 1) > MAX_BAUD_ERROR;
   }

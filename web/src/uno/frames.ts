@@ -1,15 +1,15 @@
-// Collects single pulses into frames, which have the pulse widths of all four servos within 20 ms.
+// Collects single pulses into frames, which have the pulse widths of all four servos in 20 ms.
 import type { Four } from '../robot';
 import { FREQUENCY_HZ } from './board';
 
-/** Time after a frame's first rising edge at which the frame is over: a little more than its four slots of 4 ms. */
+/** Longest time between a frame's first rising edge and its end: slightly more than its four slots of 4 ms. */
 const MAX_FRAME_CYCLES = 0.0165 * FREQUENCY_HZ;
 
 export class FrameCollector {
   private widths: Four<number> = [0, 0, 0, 0];
-  /** The cycle of the frame's first rising edge; null before it. */
+  /** The cycle of the frame's first rising edge; null before this edge. */
   private startCycle: number | null = null;
-  /** The servo of the frame's last pulse; -1 before the first. */
+  /** The servo of the frame's last pulse; -1 before the first pulse. */
   private lastServo = -1;
 
   /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
@@ -22,7 +22,7 @@ export class FrameCollector {
   add(pin: number, rise: number, width: number): void {
     const servo = this.pins.indexOf(pin);
     if (servo < 0) return;
-    // A pulse of the same servo, or of one earlier in the order, starts a new frame.
+    // A pulse of the same servo, or of an earlier servo, starts a new frame.
     if (servo <= this.lastServo) this.close();
     this.startCycle ??= rise;
     this.lastServo = servo;
@@ -30,7 +30,7 @@ export class FrameCollector {
     if (servo === 3) this.close();
   }
 
-  /** Closes the frame if its time is over at `cycle`, even if not all servos have had a pulse. */
+  /** Closes the frame if its time is over at `cycle`, even if some servos had no pulse. */
   advanceTo(cycle: number): void {
     if (this.startCycle !== null && cycle - this.startCycle > MAX_FRAME_CYCLES) this.close();
   }

@@ -1,4 +1,4 @@
-// The alarm for a robot that does not answer: the page then shows an outdated state, and the robot may walk on.
+// The alarm for a robot that does not answer: the page then shows an outdated state, and the robot may still walk.
 import type { Session } from '../session';
 import { SILENCE_MS } from '../link/dialogue';
 import { element, setText } from './canvas';
@@ -16,7 +16,7 @@ export class Alarm {
     });
   }
 
-  /** Shows the alarm if the robot has left a line unanswered, and hides it otherwise. */
+  /** Shows the alarm if a line is unanswered, and hides it otherwise. */
   private setSilent(isSilent: boolean): void {
     this.lineSentAt = performance.now() - SILENCE_MS;
     this.box.hidden = !isSilent;
@@ -26,7 +26,7 @@ export class Alarm {
   /** Updates the message and the age of the unanswered line. */
   update(): void {
     if (this.box.hidden) return;
-    const message = this.session.state.isStopping.value ? 'No answer: it may walk on. "stop" is sent until it answers.' : 'No answer from the robot.';
+    const message = this.session.state.isStopping.value ? 'No answer: the robot may still walk. The page repeats "stop" until it answers.' : 'No answer from the robot.';
     setText(element('alarm-said'), message);
     element('alarm-age').textContent = `${((performance.now() - this.lineSentAt) / 1000).toFixed(1)} s`;
   }

@@ -1,8 +1,8 @@
-// The panel of the servos' calibration: `cal` reads it, the sliders and fields set it, and `save` stores it.
+// The panel of the servos' calibration: `cal` reads the settings, the inputs change them, and `save` stores them.
 import { loadBoard } from '../board';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { element } from './canvas';
 import { make } from './make';
@@ -21,7 +21,7 @@ export class Calibrate {
   private readonly rowBox = element('calibration');
   private readonly message = element('cal-said');
   private rows: Row[] = [];
-  /** True after an unanswered line: the shown settings may differ from the robot's. */
+  /** True after an unanswered line: the shown settings may differ from the robot's settings. */
   private mayBeOutdated = false;
 
   constructor(private readonly session: Session) {
@@ -38,7 +38,7 @@ export class Calibrate {
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session.ask(WORDS.cal, true);
-    const board = await loadBoard().catch((error: unknown) => (this.message.textContent = messageOf(error)));
+    const board = await loadBoard().catch((error: unknown) => (this.message.textContent = getMessage(error)));
     const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
     if (!settings) return;
     this.mayBeOutdated = false;
@@ -46,7 +46,7 @@ export class Calibrate {
     settings.servos.forEach((servo, n) => this.showServo(n, servo));
   }
 
-  /** Reads the settings again if the shown ones may be outdated; called when the robot answers. */
+  /** Reads the settings again if the shown settings may be outdated; called when the robot answers. */
   private refresh(): void {
     if (this.mayBeOutdated) void this.read();
   }
@@ -83,7 +83,7 @@ export class Calibrate {
       const max = addNumber('to, deg', '1');
       const scale = addNumber('µs per deg', '0.01');
       const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
-      numbers.append(make('label', {}, 'longer pulse turns it', dir));
+      numbers.append(make('label', {}, 'longer pulse turns', dir));
       for (const input of [min, max]) {
         input.addEventListener('change', () => void this.send(`${WORDS.limit} ${servo} ${min.value} ${max.value}`));
       }

@@ -1,6 +1,6 @@
 // Canvases at the screen's resolution and at the size of their elements, and access to the page's elements.
 
-/** A canvas that is prepared for drawing. */
+/** A canvas prepared for drawing. */
 export interface Surface {
   context: CanvasRenderingContext2D;
   /** Width and height, CSS pixels. */
@@ -9,8 +9,8 @@ export interface Surface {
 }
 
 /**
- * Prepares a canvas for drawing in CSS pixels; returns null while the canvas is hidden. Clears it, unless it is opaque,
- * which saves blending: the caller must then fill it.
+ * Prepares a canvas for drawing in CSS pixels; returns null while the canvas is hidden. Clears the canvas unless it is
+ * opaque. An opaque canvas saves blending, but the caller must fill it.
  */
 export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Surface | null {
   const { clientWidth: width, clientHeight: height } = canvas;
@@ -35,8 +35,8 @@ export function polyline(context: CanvasRenderingContext2D, ...[[x, y], ...other
 }
 
 /**
- * Adds a circle to the path, as two half circles: with the y axis upward, the context that writes SVG reverses the
- * direction of an arc, and a half circle looks the same in both directions.
+ * Adds a circle to the path, as two half circles: with an upward y axis, the SVG context reverses the direction of an
+ * arc, but a half circle looks the same in both directions.
  */
 export function circle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.moveTo(x + radius, y);
@@ -44,7 +44,7 @@ export function circle(context: CanvasRenderingContext2D, x: number, y: number, 
   context.arc(x, y, radius, Math.PI, 2 * Math.PI);
 }
 
-/** Returns an element of index.html. */
+/** Returns an element of index.html. Throws an error if it is missing. */
 export function element<T extends HTMLElement>(id: string): T {
   const node = document.getElementById(id);
   if (!node) throw new Error(`the page has no #${id}`);
@@ -57,7 +57,7 @@ export function showMessage(box: HTMLElement, text: string): void {
   box.hidden = text === '';
 }
 
-/** Sets the text of an element unless it has this text, so that nothing is laid out or read aloud again. */
+/** Sets an element's text unless the text is unchanged, so that it is not laid out or read aloud again. */
 export function setText(box: HTMLElement, text: string): void {
   if (box.textContent !== text) box.textContent = text;
 }

@@ -1,10 +1,10 @@
-// Saves files on the user's machine, and robot.toml with the values of the page's sliders.
+// Saves files on the user's machine, for example robot.toml with the values of the page's sliders.
 import { type Floor, isRefused, type Refused, Robot } from '../robot';
 import { make } from './make';
 
 /**
- * Saves a robot.toml with this floor, mass, feet and leg drive; null keeps the values of the text. If they cannot be
- * written into the text, saves it unchanged and returns the reason.
+ * Saves a robot.toml with this floor, mass, feet and leg drive; null keeps the values of the text. If the values cannot
+ * be written, saves the text unchanged and returns the reason.
  */
 export function downloadRobot(toml: string, floor: Floor | null): Refused | null {
   const edited = floor && Robot.editFloor(toml, floor);

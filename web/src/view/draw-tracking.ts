@@ -1,25 +1,25 @@
-// The overlay on the camera's picture: the tags, and the robot's path and heading.
+// The overlay on the camera's video: the tags, and the robot's path and heading.
 import type { Pixel } from '../../generated/measure';
 import type { TagTracker } from '../measure/tag-tracker';
 import { prepareSurface } from './canvas';
-import { palette } from './palette';
+import { getPalette } from './palette';
 
-/** Length of the arrow for the heading, relative to the size of the deck's tag. */
+/** Length of the heading's arrow, relative to the size of the deck's tag. */
 const ARROW_LENGTH = 1.6;
 
 /**
- * Draws the tags, path and heading over the last picture, which is centred in its element and scaled to fit, as
- * `object-fit: contain` does.
+ * Draws the tags, path and heading over the last frame, which is centred in its element and scaled as with
+ * `object-fit: contain`.
  */
 export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): void {
   const surface = prepareSurface(canvas);
   if (!surface) return;
   const { context, width, height } = surface;
-  const [pictureWidth, pictureHeight] = tracker.size;
-  const scale = Math.min(width / pictureWidth, height / pictureHeight);
-  context.translate((width - scale * pictureWidth) / 2, (height - scale * pictureHeight) / 2);
+  const [frameWidth, frameHeight] = tracker.size;
+  const scale = Math.min(width / frameWidth, height / frameHeight);
+  context.translate((width - scale * frameWidth) / 2, (height - scale * frameHeight) / 2);
   const toCanvas = ([x, y]: Pixel): Pixel => [scale * x, scale * y];
-  const { accent, a2 } = palette();
+  const { accent, a2 } = getPalette();
   const drawLine = (points: Pixel[], colour: string, lineWidth: number) => {
     context.beginPath();
     for (const [i, point] of points.entries()) context[i === 0 ? 'moveTo' : 'lineTo'](...toCanvas(point));

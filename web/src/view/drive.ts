@@ -1,5 +1,5 @@
-// The buttons of all gaits and routines. A gait's button also shows the predicted displacement per cycle, and the share
-// of the servos' torque-speed line that the gait uses.
+// The buttons of all gaits and routines. A gait's button also shows the predicted displacement per cycle, and the load:
+// the fraction of the servos' torque-speed line that the gait uses.
 import { effect } from '@preact/signals-core';
 
 import type { Predictor } from '../predictor';
@@ -9,14 +9,14 @@ import { WORDS } from '../words';
 import { element, showMessage } from './canvas';
 import { make } from './make';
 
-/** Number of characters that fit on a button of the usual width. */
+/** Number of characters that fit on a button of normal width. */
 const BUTTON_CHARACTERS = 13;
-/** Share of the servos' torque-speed line at and above which the page warns of little reserve. */
-const HIGH_LOAD_SHARE = 0.9;
-/** The longest text of a prediction; a button reserves room for it. */
+/** Load from which the page warns of little reserve. */
+const HIGH_UTILISATION = 0.9;
+/** The longest text of a prediction, for which a button reserves space. */
 const LONGEST_PREDICTION = '-999.9 mm, -99.9°';
 
-/** Formats a displacement as a short text: mm forward, and degrees for a turn; '' for null. */
+/** Formats a displacement as a short text: mm forward, and degrees of turn; '' for null. */
 export function formatDisplacement(displacement: Displacement | null): string {
   if (!displacement) return '';
   const parts = [
@@ -28,10 +28,10 @@ export function formatDisplacement(displacement: Displacement | null): string {
 
 export class Drive {
   private readonly buttonList = element('gaits');
-  /** The buttons with their parts; `note` shows the prediction, and `loadLabel` the share of the torque-speed line. */
+  /** The buttons with their parts; `note` shows the prediction, and `loadLabel` the load. */
   private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
   private readonly message = element('drive-said');
-  /** The commands of the buttons in index.html, which every robot has. */
+  /** The commands of the buttons in index.html, which exist for every robot. */
   readonly commands: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
   constructor(
@@ -57,7 +57,7 @@ export class Drive {
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const note = make('span', {});
       const noteBox = make('small', {}, note);
-      const loadLabel = make('span', { className: 'line', title: 'share of their torque-speed line that its servos use at this pace' });
+      const loadLabel = make('span', { className: 'line', title: 'fraction of the servos’ torque-speed line that the gait uses at this pace' });
       if (moves) noteBox.dataset.room = LONGEST_PREDICTION;
       // A button with a long name is twice as wide.
       const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, noteBox, ...(moves ? [loadLabel] : []));
@@ -66,33 +66,33 @@ export class Drive {
       return { command, button, note, loadLabel, moves };
     });
     this.session.state.refusal.value = '';
-    // A board that stays connected continues its gait.
+    // A connected board continues its gait.
     this.showActivity(this.session.gait);
   }
 
   /**
-   * Shows each gait's predicted displacement and its share of the torque-speed line at the robot's pace, and, once all
-   * are predicted, the gait with the largest share.
+   * Shows each gait's predicted displacement and its load at the robot's pace. Once all gaits are predicted, also shows
+   * the gait with the highest load.
    */
   private showPredictions(): void {
     const predictions = this.predictor.predictions.value;
     const pace = this.session.state.pace.value;
     const areAllPredicted = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
-    let [hardestGait, largestShare] = ['', 0];
+    let [hardestGait, highestUtilisation] = ['', 0];
     for (const { command, note, loadLabel } of this.buttons) {
       const prediction = predictions.get(command) ?? null;
       note.textContent = formatDisplacement(prediction);
-      const lines = prediction?.lines;
-      const share = lines?.[Math.ceil((pace * lines.length) / 100) - 1];
-      const isHighLoad = share !== undefined && share >= HIGH_LOAD_SHARE;
-      loadLabel.classList.toggle('tight', isHighLoad);
-      loadLabel.textContent = share === undefined ? '' : `${isHighLoad ? '⚠ ' : ''}line ${share.toFixed(2)}`;
-      if (areAllPredicted && share !== undefined && share > largestShare) [hardestGait, largestShare] = [command, share];
+      const utilisations = prediction?.utilisations;
+      const utilisation = utilisations?.[Math.ceil((pace * utilisations.length) / 100) - 1];
+      const isHighUtilisation = utilisation !== undefined && utilisation >= HIGH_UTILISATION;
+      loadLabel.classList.toggle('tight', isHighUtilisation);
+      loadLabel.textContent = utilisation === undefined ? '' : `${isHighUtilisation ? '⚠ ' : ''}load ${utilisation.toFixed(2)}`;
+      if (areAllPredicted && utilisation !== undefined && utilisation > highestUtilisation) [hardestGait, highestUtilisation] = [command, utilisation];
     }
     const note = element('line-note');
-    note.classList.toggle('warning', largestShare >= HIGH_LOAD_SHARE);
-    const advice = largestShare >= 1 ? ': they fall behind their pulses; a slower pace asks less' : largestShare >= HIGH_LOAD_SHARE ? ': little is left' : '';
-    note.textContent = hardestGait === '' ? '' : `${hardestGait} asks most of its servos, ${largestShare.toFixed(2)} of their torque-speed line at ${pace} % of its pace${advice}.`;
+    note.classList.toggle('warning', highestUtilisation >= HIGH_UTILISATION);
+    const advice = highestUtilisation >= 1 ? ': the servos lag behind their pulses; choose a slower pace' : highestUtilisation >= HIGH_UTILISATION ? ': the reserve is small' : '';
+    note.textContent = hardestGait === '' ? '' : `${hardestGait} has the highest load: it uses ${highestUtilisation.toFixed(2)} of the servos’ torque-speed line at a pace of ${pace} %${advice}.`;
   }
 
   /** Marks the button of the robot's current gait or routine. */

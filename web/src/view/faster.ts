@@ -1,4 +1,4 @@
-// The button "Make it faster", which searches for a gait that is faster than the edited one, and offers it.
+// The button "Make it faster", which searches for a gait that is faster than the edited gait, and offers it.
 import { files } from '../files';
 import { type SearchReport, type BestGait, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
@@ -6,18 +6,18 @@ import type { Session } from '../session';
 import { element, setText } from './canvas';
 import { tableRow } from './make';
 import { setUpNumberInput } from './number';
-import { formatFigures } from './trial';
+import { formatResults } from './trial';
 
 /** Access to the edited gait. */
 export interface GaitEditor {
   gait(): Bars | null;
   setGait(gait: Bars): void;
-  /** Lets two robots walk the found gait and the previous one, and shows their displacements in `output`. */
+  /** Makes two robots walk the found gait and the previous gait, and shows their displacements in `output`. */
   compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void>;
 }
 
 const BUTTON_LABELS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
-/** The labels of the rows of the comparison. */
+/** The labels of the comparison's rows. */
 const ROW_LABELS = { speed: 'speed', way: 'distance per cycle', turn: 'turn per cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
 
 export class FasterView {
@@ -32,9 +32,9 @@ export class FasterView {
   private reference: Bars | null = null;
   private referenceTrial: Trial | null = null;
   private best: BestGait | null = null;
-  /** The gait that the found one has replaced in the editor; null while it has replaced none. */
+  /** The gait that the found gait has replaced in the editor; null if it has replaced no gait. */
   private replacedGait: Bars | null = null;
-  /** The robot.toml for which the search runs or its result is shown; empty for none. */
+  /** The robot.toml of the running search or the shown result; empty for none. */
   private toml = '';
   /** Number of gaits that the search tries. */
   private gaitCount = 0;
@@ -54,7 +54,7 @@ export class FasterView {
     element('faster-both').addEventListener('click', () => void this.compare());
   }
 
-  /** Ends the search if the robot has changed, since the result would not fit the new robot. */
+  /** Ends the search if the robot has changed, because the result would not fit the new robot. */
   endIfRobotChanged(): void {
     if (this.toml === '' || this.session.toml === this.toml) return;
     this.toml = '';
@@ -62,7 +62,7 @@ export class FasterView {
     if (!this.search) return this.setMessage('');
     this.search.cancel();
     this.endSearch();
-    this.setMessage('The robot has changed, so the search for the previous one has ended.');
+    this.setMessage('The robot has changed; the search for the previous robot has ended.');
   }
 
   private startSearch(): void {
@@ -76,9 +76,9 @@ export class FasterView {
     this.startButton.textContent = BUTTON_LABELS.stop;
     this.progressBar.removeAttribute('value');
     this.progressBar.hidden = false;
-    this.setMessage('Looking for the widest stride that the limits allow…');
+    this.setMessage('Searching for the widest stride within the limits…');
     this.module ??= files.tune();
-    // A failed download is repeated next time.
+    // The next search repeats a failed download.
     this.module.catch(() => (this.module = null));
     this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
   }
@@ -89,13 +89,13 @@ export class FasterView {
         this.referenceTrial = report.referenceTrial;
         this.gaitCount = this.progressBar.max = report.all;
         this.progressBar.value = 0;
-        return this.setMessage(`Trying ${report.all} gaits whose servos turn at most ${report.rate.toFixed(0)} °/s…`);
+        return this.setMessage(`Trying ${report.all} gaits with servo speeds of at most ${report.rate.toFixed(0)} °/s…`);
       case 'progress':
         this.progressBar.value = report.done;
         return;
       case 'best':
         if (report.best.better) this.show(report.best);
-        return this.setMessage(report.best.better ? `So far ${percent(report.best)} faster.` : 'None of the gaits so far is faster.');
+        return this.setMessage(report.best.better ? `${formatGain(report.best)} faster so far.` : 'No faster gait so far.');
       case 'end':
         this.showEnd(report);
     }
@@ -109,11 +109,11 @@ export class FasterView {
     if (best?.better) {
       this.show(best);
       const { comparison } = best;
-      return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors, and ${percent(best)} faster where only 5 % are slower. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
+      return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors; the speed that 95 % of them exceed is ${formatGain(best)} higher. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
     }
     this.resultBox.hidden = true;
-    if (done === 0) return this.setMessage(`${stopText}Nothing was tried yet.`);
-    this.setMessage(`${stopText}No gait was found that is faster than this one on the slow ones of the random robots and floors. More rounds or another seed may find one.`);
+    if (done === 0) return this.setMessage(`${stopText}No gait was tried.`);
+    this.setMessage(`${stopText}No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.`);
   }
 
   /** Resets the view after a search, so that the button starts a new one. */
@@ -127,7 +127,7 @@ export class FasterView {
     const { referenceTrial } = this;
     if (!referenceTrial) return;
     this.best = bestGait;
-    const columns = [referenceTrial, bestGait.trial].map((trial) => formatFigures(trial, bestGait.comparison.unit));
+    const columns = [referenceTrial, bestGait.trial].map((trial) => formatResults(trial, bestGait.comparison.unit));
     element('faster-rows').replaceChildren(
       ...Object.entries(ROW_LABELS).map(([row, label]) => tableRow([label, ...columns.map((column) => column[row as keyof typeof ROW_LABELS])])),
     );
@@ -137,7 +137,7 @@ export class FasterView {
     this.resultBox.hidden = false;
   }
 
-  /** Puts the found gait into the editor, or restores the gait that it has replaced. */
+  /** Puts the found gait into the editor, or restores the replaced gait. */
   private useFoundGait(): void {
     const currentGait = this.editor.gait();
     if (!currentGait || !this.best) return;
@@ -151,7 +151,7 @@ export class FasterView {
     const { reference, best } = this;
     if (!reference || !best) return;
     const { robot, toml, isReal } = this.session;
-    // The comparison only puts the found gait into the robot, so the result stays.
+    // The comparison only puts the found gait into the robot; therefore the result stays valid.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
     await this.editor.compare(reference, best.bars, element('faster-ways'));
   }
@@ -159,4 +159,4 @@ export class FasterView {
   private readonly setMessage = (text: string): void => setText(this.message, text);
 }
 
-const percent = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;
+const formatGain = ({ gain }: BestGait) => `${(100 * gain).toFixed(0)} %`;

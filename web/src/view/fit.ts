@@ -1,29 +1,28 @@
-// Checks that the robot's parts fit after a change of lengths, also while a length is dragged. The proof runs in a web
-// worker. Two parts that come too close are shown in red in 3D, and the page searches for the nearest lengths whose
-// parts fit.
+// Checks that the robot's parts fit after a change of lengths, also during a drag. The proof runs in a web worker. The
+// 3D view shows two parts that come too close in red, and the page searches for the nearest lengths whose parts fit.
 import type { Clash } from '../parts/workshop';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { element } from './canvas';
 import type { PartsView } from './parts';
 
-/** Delay from the last change to the check, ms, since dragging a joint makes many changes. */
+/** Delay between the last change and the check, ms, because dragging a joint makes many changes. */
 const CHECK_DELAY_MS = 400;
-/** Resolution of the lengths that are tried, mm. */
+/** Resolution of the tried lengths, mm. */
 const STEP_MM = 0.5;
 
 /** Lengths by their keys, mm. */
 type Lengths = Map<string, number>;
 
-/** A check of parts, which the next change cancels. */
+/** A check of the parts, which the next change cancels. */
 interface Check {
   isOver: boolean;
-  /** The functions that cancel its proofs, each in a worker of its own. */
+  /** The functions that cancel the proofs, each in its own worker. */
   cancels: Set<() => void>;
 }
 
-/** A request for the printable values of lengths that change together, within a range. */
+/** A request for the printable range of lengths that change together. */
 interface RangeRequest {
   keys: string[];
   range: [number, number];
@@ -34,7 +33,7 @@ export class FitView {
   private readonly message = element('fit-said');
   private readonly useButton = element<HTMLButtonElement>('fit-use');
   private readonly whereButton = element<HTMLButtonElement>('fit-where');
-  /** The last lengths, of a robot from the same file, whose parts fit. */
+  /** The last lengths whose parts fit, of a robot from the same file. */
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
@@ -48,21 +47,21 @@ export class FitView {
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Shows the session's robot, which has these lengths, and checks its parts if the lengths have changed. */
+  /** Shows the session's robot with these lengths, and checks its parts if the lengths have changed. */
   showRobot(lengths: Length[]): void {
     const robotLengths: Lengths = new Map(lengths.map(({ key, value }) => [key, value]));
     this.rangeRequest = null;
     this.cancelCheck();
     this.parts.showRobot();
     const { file, toml, original } = this.session;
-    // Not checked: a robot chosen from the list (whose file name is empty while it loads), an unchanged robot, and
-    // changes made outside the room Build.
+    // No check for a robot chosen from the list (its file name is empty while it loads), for an unchanged robot, and
+    // for changes outside the room Build.
     if (file === '' || toml === original || document.body.dataset.at !== 'room-build') this.fittingLengths = robotLengths;
     const changedLengths = [...robotLengths].filter(([key, value]) => this.fittingLengths.get(key) !== value);
     if (changedLengths.length > 0) this.schedule((check) => this.checkRobot(robotLengths, new Map(changedLengths), check));
   }
 
-  /** Checks the parts of a robot.toml whose lengths are being dragged; null if the lengths are refused. */
+  /** Checks the parts of a robot.toml during a drag; null if its lengths are refused. */
   checkDragged(toml: string | null): void {
     this.cancelCheck();
     if (toml === null) return;
@@ -73,8 +72,8 @@ export class FitView {
   }
 
   /**
-   * Searches `range` for the least and the greatest value of the lengths `keys` with which the parts fit, once the
-   * robot's own parts are known to fit.
+   * Searches `range` for the smallest and the largest value of the lengths `keys` with which the parts fit. The search
+   * starts once the robot's current parts are known to fit.
    */
   findRange(keys: string[], range: [number, number], show: RangeRequest['show']): void {
     this.rangeRequest = { keys, range, show };
@@ -100,23 +99,23 @@ export class FitView {
   private schedule(run: (check: Check) => Promise<void>): void {
     const check: Check = { isOver: false, cancels: new Set() };
     this.check = check;
-    const runAndReport = () => run(check).catch((error: unknown) => this.setMessage(`The parts could not be checked: ${messageOf(error)}.`, null));
+    const runAndReport = () => run(check).catch((error: unknown) => this.setMessage(`Cannot check the parts: ${getMessage(error)}.`, null));
     this.timer = setTimeout(() => void runAndReport(), CHECK_DELAY_MS);
   }
 
-  /** Proves that a robot's parts fit, and shows the result; returns true if they do. */
+  /** Proves that a robot's parts fit, and shows the result; returns true if they fit. */
   private async proveAndReport(toml: string, check: Check): Promise<boolean> {
     this.setMessage('Checking that the parts fit…', null);
     const result = await this.proveParts(toml, check);
     if (check.isOver) return false;
-    if (result instanceof Error) this.setMessage(refusalOf(result), result.clash);
+    if (result instanceof Error) this.setMessage(describeUnfit(result), result.clash);
     else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
   }
 
   /**
-   * Returns the least distance between two parts, mm, null if it is unknown, or the error with the reason why the parts
-   * do not fit.
+   * Returns the smallest distance between two parts, mm; null if the distance is unknown; or an error if the parts do
+   * not fit.
    */
   private async proveParts(toml: string, check: Check) {
     const { proveFit, UnfitError } = await import('../parts/workshop');
@@ -139,13 +138,13 @@ export class FitView {
     }
     if (check.isOver) return;
     const refusalText = this.message.textContent ?? '';
-    this.message.textContent = `${refusalText} Looking for the nearest that can…`;
+    this.message.textContent = `${refusalText} Searching for the nearest printable lengths…`;
     const nearest = await this.findNearest(changedLengths, check);
     if (check.isOver) return;
     this.message.textContent = refusalText;
     const { lengths } = this.session.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
-    this.useButton.textContent = `Use what fits: ${names.join(', ')}`;
+    this.useButton.textContent = `Use the nearest lengths that fit: ${names.join(', ')}`;
     this.useButton.onclick = () => void this.session.change(nearest.text);
     this.useButton.hidden = false;
   }
@@ -155,46 +154,46 @@ export class FitView {
     const { rangeRequest } = this;
     if (!rangeRequest) return;
     const { keys, range, show } = rangeRequest;
-    show(null, 'Looking for the shortest and the longest that can be printed…');
-    const findLimit = async (wantedValue: number) => {
-      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, wantedValue])), check, true);
-      return lengths.get(keys[0] ?? '') ?? wantedValue;
+    show(null, 'Searching for the printable range…');
+    const findLimit = async (target: number) => {
+      const { lengths } = await this.findNearest(new Map(keys.map((key) => [key, target])), check, true);
+      return lengths.get(keys[0] ?? '') ?? target;
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
     if (check.isOver) return;
     const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
-    show([shortest, longest], `Can be printed from ${shortest} to ${longest} ${unit}.`);
+    show([shortest, longest], `Printable from ${shortest} to ${longest} ${unit}.`);
   }
 
   /**
-   * Returns the lengths nearest to the wanted ones whose parts fit: bisects between the last lengths that fit and the
-   * wanted ones, down to `STEP_MM`. If `triesWantedFirst`, tries the wanted lengths first, since they may fit.
+   * Bisects between the last lengths that fit and the target lengths, down to `STEP_MM`; returns the lengths nearest to
+   * the target whose parts fit. If `triesTargetFirst`, tries the target lengths first, because they may fit.
    */
-  private async findNearest(wantedLengths: Lengths, check: Check, triesWantedFirst = false): Promise<{ lengths: Lengths; text: string }> {
+  private async findNearest(targetLengths: Lengths, check: Check, triesTargetFirst = false): Promise<{ lengths: Lengths; text: string }> {
     const { toml } = this.session;
-    const lengthsAt = (share: number): Lengths =>
-      new Map([...wantedLengths].map(([key, to]) => {
+    const interpolate = (fraction: number): Lengths =>
+      new Map([...targetLengths].map(([key, to]) => {
         const from = this.fittingLengths.get(key) ?? to;
-        return [key, share === 0 ? from : STEP_MM * Math.round((from + (to - from) * share) / STEP_MM)];
+        return [key, fraction === 0 ? from : STEP_MM * Math.round((from + (to - from) * fraction) / STEP_MM)];
       }));
-    const robotAt = (share: number) => {
-      const lengths = lengthsAt(share);
+    const makeRobot = (fraction: number) => {
+      const lengths = interpolate(fraction);
       const { text, refusal } = Robot.lengths(toml, [...lengths], false);
       return { lengths, text, isAccepted: refusal === null };
     };
-    const partsFit = async ({ text, isAccepted }: ReturnType<typeof robotAt>) => isAccepted && !((await this.proveParts(text, check)) instanceof Error);
-    let best = robotAt(0);
-    if (triesWantedFirst) {
-      const wantedRobot = robotAt(1);
-      if (await partsFit(wantedRobot)) return wantedRobot;
+    const checkFit = async ({ text, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await this.proveParts(text, check)) instanceof Error);
+    let best = makeRobot(0);
+    if (triesTargetFirst) {
+      const targetRobot = makeRobot(1);
+      if (await checkFit(targetRobot)) return targetRobot;
     }
     let [low, high] = [0, 1];
-    const longestChange = Math.max(...[...wantedLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
-    while ((high - low) * longestChange > STEP_MM && !check.isOver) {
-      const middleShare = (low + high) / 2;
-      const candidate = robotAt(middleShare);
-      if (await partsFit(candidate)) [low, best] = [middleShare, candidate];
-      else high = middleShare;
+    const largestChange = Math.max(...[...targetLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
+    while ((high - low) * largestChange > STEP_MM && !check.isOver) {
+      const middle = (low + high) / 2;
+      const candidate = makeRobot(middle);
+      if (await checkFit(candidate)) [low, best] = [middle, candidate];
+      else high = middle;
     }
     return best;
   }
@@ -208,10 +207,10 @@ export class FitView {
   }
 }
 
-/** Returns the message that names the two parts that come too close, or else the reason why parts cannot be made. */
-function refusalOf({ message, clash }: { message: string; clash: Clash | null }): string {
+/** Returns a message with the two parts that come too close, or else with the reason that prevents the parts. */
+function describeUnfit({ message, clash }: { message: string; clash: Clash | null }): string {
   if (!clash) return `These lengths cannot be printed: ${message.replace(/\.$/, '')}.`;
   const { first, second, mm } = clash;
-  const distanceText = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would come as near as ${mm.toFixed(2)} mm`;
+  const distanceText = mm < 0 ? `would overlap by ${(-mm).toFixed(2)} mm` : `would be only ${mm.toFixed(2)} mm apart`;
   return `These lengths cannot be printed: ${first} and ${second} ${distanceText}.`;
 }

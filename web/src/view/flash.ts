@@ -1,9 +1,9 @@
-// The panel for writing the firmware and the robot to the board through its boot loader.
+// The panel that writes the firmware and the robot to the board through its boot loader.
 import { effect } from '@preact/signals-core';
 
 import { loadBoard } from '../board';
 import { NO_WRITING_BY_RADIO, type Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { element } from './canvas';
 import { reveal } from './rooms';
 import type { WriteContent, Writer } from './writer';
@@ -16,7 +16,7 @@ export class FlashView {
   private readonly question = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
   readonly message = element('flash-said');
-  /** The image of the chosen file until the user confirms or rejects it; null if there is none. */
+  /** The image of the chosen file until the user confirms or rejects it; null for none. */
   private chosenImage: Uint8Array | null = null;
 
   constructor(
@@ -38,17 +38,17 @@ export class FlashView {
     effect(() => this.update());
   }
 
-  /** Updates the controls and the note for the session's link, and drops a chosen file. */
+  /** Updates the controls and the note for the session's link; drops the chosen file. */
   private update(): void {
     const { link, robotSection, description } = this.session;
     const isBusy = this.writer.isBusy.value;
     if (!link) return;
     this.dropChosenImage();
     for (const control of [this.fileInput, this.writeAllButton, this.writeRobotButton]) control.disabled = isBusy || link.kind === 'radio';
-    const radioNote = `Nothing can be written to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
+    const radioNote = `The page cannot write to the ${link.name}: ${NO_WRITING_BY_RADIO}.`;
     const cableNote =
-      `Writes to the ${link.name} by its boot loader, verifies, and starts it. The firmware is the same for every robot; what is saved in the board stays. ` +
-      `The robot alone is ${robotSection.length} bytes for firmware ${description.version} that is there already, and takes about a second.`;
+      `Writes to the ${link.name} through its boot loader, verifies, and starts the board. The firmware is the same for every robot; saved settings stay. ` +
+      `The robot alone has ${robotSection.length} bytes and takes about a second, if the board already has firmware ${description.version}.`;
     this.note.textContent = link.kind === 'radio' ? radioNote : cableNote;
   }
 
@@ -60,22 +60,22 @@ export class FlashView {
     void this.writer.write(content, this);
   }
 
-  /** Reads a file and asks the user to confirm that it is to be written. */
+  /** Reads a file and asks the user to confirm its writing. */
   private async askToConfirm(file: File): Promise<void> {
     this.dropChosenImage();
     this.message.textContent = '';
     let isLizard: boolean;
     try {
       const board = await loadBoard();
-      this.chosenImage = board.imageOf(await file.text());
+      this.chosenImage = board.parseImage(await file.text());
       isLizard = board.isLizard(this.chosenImage);
     } catch (error) {
-      this.message.textContent = `not written: ${messageOf(error)}`;
+      this.message.textContent = `not written: ${getMessage(error)}`;
       return;
     }
     const kindText = isLizard
       ? 'It is lizard firmware.'
-      : 'It is not this firmware: with it the board is no longer a lizard, until firmware and robot are written again.';
+      : 'It is not this firmware: the board will not be a lizard until firmware and robot are written again.';
     element('flash-what').textContent =
       `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session.link.name}?`;
     this.question.hidden = false;

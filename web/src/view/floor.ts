@@ -1,28 +1,28 @@
-// The view of the floor on which the robot walks, with pan and zoom by pointer, wheel, fingers or keys.
+// The view of the floor on which the robot walks; pointer, wheel, fingers and keys pan and zoom it.
 import type { Frame, Place, Plate } from '../robot';
 import { circle, element, polyline, prepareSurface } from './canvas';
 import { drawLizard } from './lizard';
-import { onPaletteChange, palette } from './palette';
+import { onPaletteChange, getPalette } from './palette';
 
 const GRID_SPACING_MM = 50;
-/** Least zoom, CSS pixels per mm, at which a robot of about 250 mm is still 60 pixels long. */
+/** Smallest zoom, CSS pixels per mm, at which a robot of 250 mm is still 60 pixels long. */
 const MIN_ZOOM = 0.25;
-/** Greatest zoom, CSS pixels per mm. */
+/** Largest zoom, CSS pixels per mm. */
 const MAX_ZOOM = 8;
-/** Least width and height of the view while the zoom follows the size of the canvas. */
+/** Smallest width and height of the view while the zoom follows the canvas size. */
 const MIN_VIEW_MM = 420;
 /** Largest number of points of a track. */
 const MAX_TRACK_POINTS = 6000;
-/** Least distance between two points of a track. */
+/** Smallest distance between two points of a track. */
 const MIN_POINT_DISTANCE_MM = 0.5;
 
-/** Distance from the robot's start to that of the second robot, on its right. */
+/** Distance between the starts of the two robots; the second robot is on the right. */
 const SECOND_ROBOT_OFFSET_MM = 280;
 
-/** Distance from its goal at which the view stops moving: less than a tenth of a pixel at the greatest zoom. */
+/** Distance from the goal at which the view stops moving: less than a tenth of a pixel at the largest zoom. */
 const GOAL_TOLERANCE_MM = 0.01;
 
-/** Sideways movement of a finger since its press above which it drags the floor, CSS pixels. */
+/** Sideways movement beyond which a finger drags the floor, CSS pixels. */
 const DRAG_THRESHOLD_PX = 12;
 
 /** The label of the scale bar and its position, CSS pixels. */
@@ -41,23 +41,23 @@ interface PointerPosition {
 export class Floor {
   private readonly canvas = element<HTMLCanvasElement>('floor');
   private readonly followButton = element<HTMLButtonElement>('follow');
-  /** The point of the floor in the middle of the canvas, mm in the frame of the robot's start. */
+  /** The floor's point in the middle of the canvas, mm in the frame of the robot's start. */
   private centre = { x: 0, y: 0 };
   /** Zoom, CSS pixels per mm; 0 until the canvas has a size. */
   private zoom = 0;
-  /** True while the zoom follows the size of the canvas; false once the user has chosen a zoom. */
+  /** True while the zoom follows the canvas size; false once the user has chosen a zoom. */
   private isZoomAutomatic = true;
   /** True while the view follows the robot. */
   private isFollowing = true;
   /** The tracks of the robot and of the second robot, mm, each in the frame of its own start. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if the floor is painted in every animation frame, even behind the robot in 3D: for a film or a picture. */
+  /** True if every animation frame paints the floor, even behind the robot in 3D: for a video or a picture. */
   paintsAlways = false;
-  /** The plate and the two robots' frames that were drawn last; null before the first drawing. */
+  /** The plate and the two robots' frames in the last drawing; null before the first drawing. */
   private lastDrawn: [Plate, Frame | null, Frame | null] | null = null;
-  /** All inputs of the painted picture except the colours, as text; empty if the floor must be repainted. */
+  /** The inputs of the painted picture except the colours, as text; empty if the floor must be repainted. */
   private paintedState = '';
-  /** The last positions of the pressed pointers, by their ids. */
+  /** The last positions of the pressed pointers by id. */
   private readonly pressedPointers = new Map<number, PointerPosition>();
   /** True while the pointer drags the floor. */
   private isDragging = false;
@@ -86,7 +86,7 @@ export class Floor {
     this.canvas.addEventListener(
       'wheel',
       (event) => {
-        // Without Ctrl the wheel scrolls the page.
+        // Without Ctrl, the wheel scrolls the page.
         if (!event.ctrlKey && !event.metaKey) return;
         event.preventDefault();
         this.zoomBy(Math.exp(-event.deltaY / 500), event.offsetX, event.offsetY);
@@ -96,17 +96,17 @@ export class Floor {
     this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
     const invalidate = () => (this.paintedState = '');
     onPaletteChange(invalidate);
-    // A browser that runs short of memory may clear canvases.
+    // A browser that is short of memory may clear canvases.
     this.canvas.addEventListener('contextrestored', invalidate);
   }
 
-  /** Clears the tracks, and moves the view to the start. */
+  /** Clears the tracks and moves the view to the start. */
   clearTracks(): void {
     this.tracks = [[], []];
     this.centre = { x: 0, y: 0 };
   }
 
-  /** Adds a place to the track of the robot or, if `isSecond`, to that of the second robot. */
+  /** Adds a place to the robot's track or, if `isSecond`, to the second robot's track. */
   addToTrack({ x, y }: Place, isSecond = false): void {
     const track = this.tracks[isSecond ? 1 : 0] ?? [];
     const lastPoint = track[track.length - 1];
@@ -116,8 +116,8 @@ export class Floor {
   }
 
   /**
-   * Draws the floor and the robots, unless the canvas shows them already: painting in every animation frame takes half
-   * a core of a slow machine.
+   * Draws the floor and the robots unless the canvas already shows them: painting in every animation frame takes half
+   * of a slow machine's core.
    */
   draw(plate: Plate, frame: Frame | null, secondFrame: Frame | null): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
@@ -125,7 +125,7 @@ export class Floor {
     this.lastDrawn = [plate, frame, secondFrame];
     if (this.isZoomAutomatic) this.zoom = Math.min(width / (MIN_VIEW_MM + (secondFrame ? SECOND_ROBOT_OFFSET_MM : 0)), height / MIN_VIEW_MM);
     if (this.isFollowing && frame) this.moveViewTowards(frame.place, secondFrame && secondFrame.place);
-    // Tests read the zoom.
+    // Tests read the zoom from the dataset.
     const zoom = this.zoom.toFixed(4);
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
@@ -135,7 +135,7 @@ export class Floor {
     if (!surface) return;
     const { context } = surface;
     const label = this.paint(context, width, height);
-    context.fillStyle = palette().ink;
+    context.fillStyle = getPalette().ink;
     context.font = '12px system-ui, sans-serif';
     context.fillText(label.text, label.x, label.y);
     this.paintedState = state;
@@ -148,18 +148,18 @@ export class Floor {
   private moveViewTowards(robotPlace: Place, secondPlace: Place | null): void {
     const goal = secondPlace ? { x: (robotPlace.x + secondPlace.x + SECOND_ROBOT_OFFSET_MM) / 2, y: (robotPlace.y + secondPlace.y) / 2 } : robotPlace;
     const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
-    const share = Math.hypot(x, y) < GOAL_TOLERANCE_MM ? 1 : 0.08;
-    this.centre = { x: this.centre.x + x * share, y: this.centre.y + y * share };
+    const fraction = Math.hypot(x, y) < GOAL_TOLERANCE_MM ? 1 : 0.08;
+    this.centre = { x: this.centre.x + x * fraction, y: this.centre.y + y * fraction };
   }
 
-  /** Makes the view follow both robots, and fits the zoom to them. */
+  /** Makes the view follow both robots and fits the zoom to them. */
   fitTwoRobots(): void {
     this.isZoomAutomatic = true;
     this.setFollowing(true);
   }
 
   /**
-   * Draws the last picture with another context, in CSS pixels, for SVG. Returns the label of the scale bar, which the
+   * Draws the last picture with another context, in CSS pixels, for SVG. Returns the scale bar's label, which the
    * caller must add.
    */
   drawWith(context: CanvasRenderingContext2D): Label {
@@ -169,7 +169,7 @@ export class Floor {
 
   private paint(context: CanvasRenderingContext2D, width: number, height: number): Label {
     const [plate, frame, secondFrame] = this.lastDrawn ?? [null, null, null];
-    context.fillStyle = palette().floor;
+    context.fillStyle = getPalette().floor;
     context.fillRect(0, 0, width, height);
     context.save();
     context.translate(width / 2, height / 2);
@@ -197,7 +197,7 @@ export class Floor {
     const spacing = this.zoom < 0.4 ? GRID_SPACING_MM * 5 : GRID_SPACING_MM;
     const [halfWidth, halfHeight] = [width / 2 / this.zoom, height / 2 / this.zoom];
     const { x, y } = this.centre;
-    context.strokeStyle = palette().grid;
+    context.strokeStyle = getPalette().grid;
     context.lineWidth = 1 / this.zoom;
     context.beginPath();
     for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
@@ -210,7 +210,7 @@ export class Floor {
   }
 
   private drawTrack(context: CanvasRenderingContext2D, track: { x: number; y: number }[]): void {
-    context.strokeStyle = palette().track;
+    context.strokeStyle = getPalette().track;
     context.lineWidth = 2.5 / this.zoom;
     context.lineJoin = 'round';
     context.beginPath();
@@ -226,9 +226,9 @@ export class Floor {
 
   private drawRuler(context: CanvasRenderingContext2D, height: number): Label {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
-    // The bar stands to the right of the on-screen stick.
+    // The scale bar is to the right of the on-screen stick.
     const [x, y] = [124, height - 18];
-    context.strokeStyle = palette().ink;
+    context.strokeStyle = getPalette().ink;
     context.lineWidth = 1.5;
     context.beginPath();
     const endX = x + length * this.zoom;
@@ -242,7 +242,7 @@ export class Floor {
     this.followButton.setAttribute('aria-pressed', String(isOn));
   }
 
-  /** Zooms about a point of the canvas, by default its middle. */
+  /** Zooms about a point of the canvas, by default about its middle. */
   private zoomBy(factor: number, x = this.canvas.clientWidth / 2, y = this.canvas.clientHeight / 2): void {
     const zoom = Math.min(MAX_ZOOM, Math.max(MIN_ZOOM, this.zoom * factor));
     const [dx, dy] = [x - this.canvas.clientWidth / 2, this.canvas.clientHeight / 2 - y];
@@ -265,10 +265,11 @@ export class Floor {
     const current = { x: event.offsetX, y: event.offsetY };
     const otherPointer = [...this.pressedPointers].find(([id]) => id !== event.pointerId)?.[1];
     if (otherPointer) {
-      const distanceToOther = ({ x, y }: PointerPosition) => Math.hypot(x - otherPointer.x, y - otherPointer.y);
-      this.zoomBy(distanceToOther(current) / Math.max(1, distanceToOther(previous)), (current.x + otherPointer.x) / 2, (current.y + otherPointer.y) / 2);
+      const computeDistance = ({ x, y }: PointerPosition) => Math.hypot(x - otherPointer.x, y - otherPointer.y);
+      this.zoomBy(computeDistance(current) / Math.max(1, computeDistance(previous)), (current.x + otherPointer.x) / 2, (current.y + otherPointer.y) / 2);
     } else {
-      // A finger that scrolls the page moves a little before the browser takes over; that is not a drag of the floor.
+      // A finger that scrolls the page moves slightly before the browser takes over; this movement does not drag the
+      // floor.
       this.isDragging ||= event.pointerType !== 'touch' || Math.abs(current.x - previous.x) > DRAG_THRESHOLD_PX;
       if (!this.isDragging) return;
       this.pan(current.x - previous.x, current.y - previous.y);

@@ -1,4 +1,4 @@
-// The gait editor. A circle stands for the cycle, and the bars on it stand for the stances of the legs.
+// The gait editor: a circle represents the cycle, and its bars represent the stances of the legs.
 import { browserStorage } from '../browser-storage';
 import { type Bars, type Description, type Four, Robot } from '../robot';
 import type { Session } from '../session';
@@ -11,16 +11,16 @@ import { TrialView } from './trial';
 import type { Writer } from './writer';
 
 const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
-/** The index of the opposite leg of each leg. */
+/** The index of each leg's opposite leg. */
 const OPPOSITE = [1, 0, 3, 2] as const;
 /** Radius of each leg's ring, in units of the SVG. */
 const RING_RADII = [104, 82, 60, 38] as const;
 /** Width of a bar, in units of the SVG. */
 const BAR_WIDTH = 16;
-/** Length of a leg's bar in a gait that is held, as a share of the cycle. */
-const HELD_SHARE = 0.25;
+/** Length of a leg's bar in a gait whose legs hold still in between, as a fraction of the cycle. */
+const HELD_FRACTION = 0.25;
 
-/** The key of a gait's number that has an input. */
+/** The key of a gait's number with an input. */
 type GaitNumber = 'period' | 'duty' | 'amplitude';
 
 /** Ranges of the gait's numbers, as in robot.toml. */
@@ -33,8 +33,8 @@ const NUMBER_RANGES: Record<GaitNumber, Range> = {
 const LEG_NUMBER_RANGES = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
 
 /** Rounds a value to a multiple of `step`. */
-const roundTo = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
-/** Wraps a phase to the range from 0 to below 1. */
+const roundToMultiple = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
+/** Wraps a phase to the range from 0 to less than 1. */
 const wrapPhase = (phase: number) => ((phase % 1) + 1) % 1;
 
 export class GaitsView {
@@ -48,7 +48,7 @@ export class GaitsView {
   private readonly handles: SVGCircleElement[] = [];
   private readonly trial: TrialView;
   private readonly faster: FasterView;
-  /** The edited gait; null if there is none yet. */
+  /** The edited gait; null before the first gait. */
   private gait: Bars | null = browserStorage.getGait();
 
   constructor(
@@ -87,7 +87,7 @@ export class GaitsView {
     if (barGaits.some(({ index }) => String(index) === chosen)) this.templateList.value = chosen;
   }
 
-  /** Starts editing a copy of the robot's gait that is chosen as template. */
+  /** Starts editing a copy of the robot's gait that the user chose as a template. */
   private editTemplate(): void {
     const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
     if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
@@ -119,16 +119,16 @@ export class GaitsView {
     this.changeGait({ start: swapSides(start), gain: swapSides(gain) });
   }
 
-  /** Adds a leg's bar, the bar's handle and the leg's two number inputs. */
+  /** Adds a leg's bar, its handle and the leg's two number inputs. */
   private addLeg(leg: number): void {
     const bar = this.circle.appendChild(makeSvg('path', { class: `bar a${leg + 1}` }));
     const handle = this.circle.appendChild(makeSvg('circle', { class: `end a${leg + 1}`, r: 6 }));
     this.bars.push(bar);
     this.handles.push(handle);
-    this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundTo(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
-    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundTo(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
+    this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundToMultiple(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
+    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
     const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
-    for (const [key, label, list] of [['start', 'starts at', this.startInputs], ['gain', 'share', this.gainInputs]] as const) {
+    for (const [key, label, list] of [['start', 'starts at', this.startInputs], ['gain', 'gain', this.gainInputs]] as const) {
       const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
       row.append(make('td', {}, input));
       setUpNumberInput(input, LEG_NUMBER_RANGES[key], (value) => value !== null && this.setLegValue(key, leg, value));
@@ -141,18 +141,18 @@ export class GaitsView {
     let lastPhase = 0;
     let draggedCycles = 0;
     let startGait: Bars | null = null;
-    const phaseOf = ({ clientX, clientY }: PointerEvent) => {
+    const computePhase = ({ clientX, clientY }: PointerEvent) => {
       const { left, top, width, height } = this.circle.getBoundingClientRect();
       return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
     };
     mark.addEventListener('pointerdown', (event) => {
       mark.setPointerCapture(event.pointerId);
-      [lastPhase, draggedCycles, startGait] = [phaseOf(event), 0, this.gait];
+      [lastPhase, draggedCycles, startGait] = [computePhase(event), 0, this.gait];
     });
     mark.addEventListener('pointermove', (event) => {
       if (!startGait || !mark.hasPointerCapture(event.pointerId)) return;
-      const currentPhase = phaseOf(event);
-      // Between two events the pointer moves less than half the circle.
+      const currentPhase = computePhase(event);
+      // Between two events, the pointer moves less than half a circle.
       draggedCycles += wrapPhase(currentPhase - lastPhase + 0.5) - 0.5;
       lastPhase = currentPhase;
       onDrag(draggedCycles, startGait);
@@ -163,12 +163,12 @@ export class GaitsView {
   private showGait(): void {
     const { gait } = this;
     if (!gait) return;
-    const put = (input: HTMLInputElement, value: number) => putNumber(input, roundTo(value, 0.001));
+    const put = (input: HTMLInputElement, value: number) => putNumber(input, roundToMultiple(value, 0.001));
     for (const key of Object.keys(NUMBER_RANGES) as GaitNumber[]) put(element(`gait-${key}`), gait[key]);
     element<HTMLInputElement>('gait-duty').disabled = gait.held;
     if (document.activeElement !== this.nameInput) this.nameInput.value = gait.name;
     this.kindList.value = gait.held ? 'held' : 'wave';
-    const share = gait.held ? HELD_SHARE : gait.duty;
+    const fraction = gait.held ? HELD_FRACTION : gait.duty;
     LEGS.forEach((_, leg) => {
       const [start, radius] = [gait.start[leg] ?? 0, RING_RADII[leg] ?? 0];
       const [startInput, gainInput] = [this.startInputs[leg], this.gainInputs[leg]];
@@ -176,28 +176,28 @@ export class GaitsView {
         put(startInput, start);
         put(gainInput, gait.gain[leg] ?? 1);
       }
-      this.bars[leg]?.setAttribute('d', ringSectorPath(radius, start, share));
+      this.bars[leg]?.setAttribute('d', makeSectorPath(radius, start, fraction));
       // A negative gain makes the foot push the robot backward.
       this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
-      const [cx, cy] = ringPoint(radius, start + share);
+      const [cx, cy] = locateOnRing(radius, start + fraction);
       setAttributes(this.handles[leg], { cx, cy, display: gait.held ? 'none' : 'inline' });
     });
   }
 }
 
 /** Returns the point of a ring at a phase; phase 0 is at the top, and phases increase clockwise. */
-function ringPoint(radius: number, phase: number): [number, number] {
+function locateOnRing(radius: number, phase: number): [number, number] {
   const angle = 2 * Math.PI * phase;
   return [radius * Math.sin(angle), -radius * Math.cos(angle)];
 }
 
-/** Returns the SVG path of a bar: the sector of a ring that starts at the phase `start` and covers `share` cycles. */
-function ringSectorPath(radius: number, start: number, share: number): string {
+/** Returns the SVG path of a bar, a ring sector that starts at the phase `start` and covers `cycles` cycles. */
+function makeSectorPath(radius: number, start: number, cycles: number): string {
   const halfWidth = BAR_WIDTH / 2;
   const [inner, outer] = [radius - halfWidth, radius + halfWidth];
-  const largeFlag = share > 0.5 ? 1 : 0;
-  const [a, b] = [ringPoint(outer, start), ringPoint(outer, start + share)];
-  const [c, d] = [ringPoint(inner, start + share), ringPoint(inner, start)];
-  const arcTo = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${largeFlag} ${sweep} ${x} ${y}`;
-  return `M ${a[0]} ${a[1]} ${arcTo(outer, 1, b)} L ${c[0]} ${c[1]} ${arcTo(inner, 0, d)} Z`;
+  const largeFlag = cycles > 0.5 ? 1 : 0;
+  const [a, b] = [locateOnRing(outer, start), locateOnRing(outer, start + cycles)];
+  const [c, d] = [locateOnRing(inner, start + cycles), locateOnRing(inner, start)];
+  const formatArc = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${largeFlag} ${sweep} ${x} ${y}`;
+  return `M ${a[0]} ${a[1]} ${formatArc(outer, 1, b)} L ${c[0]} ${c[1]} ${formatArc(inner, 0, d)} Z`;
 }

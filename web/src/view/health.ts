@@ -1,4 +1,4 @@
-// The panel of the robot's status, which is requested twice per second while the page is visible.
+// The panel of the robot's status, which the page requests twice per second while it is visible.
 import type { Status } from '../robot';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
@@ -8,8 +8,8 @@ import type { Writer } from './writer';
 
 const REQUEST_PERIOD_MS = 500;
 
-/** The text of each value of the panel, by the value's label. */
-const TEXT_BY_LABEL: Record<string, (status: Status) => string> = {
+/** Formatters of the panel's values, by the values' labels. */
+const FORMATTERS: Record<string, (status: Status) => string> = {
   fault: ({ fault }) => fault ?? 'none',
   guard: ({ isHeld }) => (isHeld ? 'held' : 'clear'),
   margin: ({ margin }) => margin?.toFixed(3) ?? '–',
@@ -22,7 +22,7 @@ const TEXT_BY_LABEL: Record<string, (status: Status) => string> = {
 
 export class Health {
   private readonly panel = element<HTMLDetailsElement>('power');
-  private readonly values = Object.entries(TEXT_BY_LABEL).map(([name, textOf]) => ({ name, textOf, box: make('dd', {}, '–') }));
+  private readonly values = Object.entries(FORMATTERS).map(([name, format]) => ({ name, format, box: make('dd', {}, '–') }));
   /** True while a request has no answer. */
   private isPending = false;
 
@@ -39,6 +39,6 @@ export class Health {
     this.isPending = true;
     const status = await this.session.status();
     this.isPending = false;
-    if (status && isShown(this.panel)) for (const { box, textOf } of this.values) setText(box, textOf(status));
+    if (status && isShown(this.panel)) for (const { box, format } of this.values) setText(box, format(status));
   }
 }

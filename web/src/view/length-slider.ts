@@ -1,7 +1,8 @@
-// The slider of one length. Its range has the values with which the robot walks; marks show those with printable parts.
+// The slider of one length. Its range has the values with which the robot walks; marks show the values with printable
+// parts.
 import type { Edits, Length } from '../robot';
 import { element } from './canvas';
-import { editsWithTwin } from './tried-lengths';
+import { makeEditsWithTwin } from './tried-lengths';
 
 /** Called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the drag. */
 export type TryOut = (edits: Edits, isLast: boolean) => void;
@@ -13,12 +14,12 @@ export class LengthSlider {
   private readonly printableText = element('length-printed');
   private readonly printableMarks = element('length-marks');
   private lengths: Length[] = [];
-  /** True once the user has chosen a length; the printable values are searched for only then. */
+  /** True once the user has chosen a length; only then does the page search for printable values. */
   isChosen = false;
 
   /**
-   * `onChoice` is called when the user chooses another length, or switches the symmetry of left and right. `chosenKey`
-   * is the key of the initially chosen length.
+   * `onChoice` is called when the user chooses another length or switches the symmetry. `chosenKey` is the key of the
+   * initial length.
    */
   constructor(
     tryOut: TryOut,
@@ -30,7 +31,7 @@ export class LengthSlider {
     this.symmetryBox.addEventListener('change', () => this.onChoice());
     const showAndTry = (isLast: boolean) => {
       this.showValue(this.slider.valueAsNumber);
-      tryOut(editsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
+      tryOut(makeEditsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
     };
     this.slider.addEventListener('input', () => showAndTry(false));
     this.slider.addEventListener('change', () => showAndTry(true));
@@ -38,7 +39,7 @@ export class LengthSlider {
 
   /** The keys of the lengths that the slider sets: the chosen length and, with symmetry, its twin. */
   get keys(): string[] {
-    return editsWithTwin(this.chosenKey, 0, this.lengths, this.symmetryBox.checked).map(([key]) => key);
+    return makeEditsWithTwin(this.chosenKey, 0, this.lengths, this.symmetryBox.checked).map(([key]) => key);
   }
 
   private get chosenLength(): Length | undefined {
@@ -68,21 +69,21 @@ export class LengthSlider {
     if (chosenLength) this.showValue(chosenLength.value);
   }
 
-  /** Sets the slider's range from the least to the greatest value with which the robot walks. */
+  /** Sets the slider's range to the values with which the robot walks. */
   setRange([min, max]: [number, number]): void {
     Object.assign(this.slider, { min: String(min), max: String(max) });
     if (this.chosenLength) this.showValue(this.chosenLength.value);
   }
 
-  /** Marks the range of printable values, null while it is unknown, and shows a message. */
+  /** Marks the range of printable values (null while it is unknown) and shows a message. */
   markPrintable(range: [number, number] | null, message: string): void {
     this.printableText.textContent = message;
     this.printableMarks.hidden = range === null;
     const { min, max } = this.slider;
-    const percentOf = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
+    const toPercent = (value: number) => `${(100 * (value - Number(min))) / (Number(max) - Number(min))}%`;
     if (!range) return;
-    this.printableMarks.style.setProperty('--from', percentOf(range[0]));
-    this.printableMarks.style.setProperty('--to', percentOf(range[1]));
+    this.printableMarks.style.setProperty('--from', toPercent(range[0]));
+    this.printableMarks.style.setProperty('--to', toPercent(range[1]));
   }
 
   private showValue(value: number): void {

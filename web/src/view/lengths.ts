@@ -1,10 +1,10 @@
-// The number inputs of the robot's lengths; each change makes a new robot or is refused.
+// The number inputs of the robot's lengths. Each change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { element, showMessage } from './canvas';
 import { downloadRobot } from './download';
 import { make } from './make';
-import { describeRefusal, showOffers, editsWithTwin } from './tried-lengths';
+import { describeRefusal, makeEditsWithTwin, showOffers } from './tried-lengths';
 
 export class Lengths {
   private readonly list = element('lengths');
@@ -12,7 +12,7 @@ export class Lengths {
   private readonly refusalText = element('lengths-refusal');
   private inputs = new Map<string, HTMLInputElement>();
 
-  /** `offerValidLengths` searches for valid lengths instead of refused ones, and offers them. */
+  /** `offerValidLengths` searches for valid alternatives to refused lengths and offers them. */
   constructor(
     private readonly session: Session,
     private readonly offerValidLengths: (edits: Edits) => void,
@@ -51,12 +51,12 @@ export class Lengths {
     const input = this.inputs.get(key);
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
-    const edits = editsWithTwin(key, value, session.description.lengths, this.symmetryBox.checked);
+    const edits = makeEditsWithTwin(key, value, session.description.lengths, this.symmetryBox.checked);
     const { text, refusal } = Robot.lengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
     const refusedLengths = lengths.filter((length) => edits.some(([editedKey]) => editedKey === length.key));
-    // The inputs show the robot's lengths again.
+    // The inputs return to the robot's lengths.
     for (const length of refusedLengths) {
       const lengthInput = this.inputs.get(length.key);
       if (!lengthInput) continue;
@@ -70,7 +70,7 @@ export class Lengths {
   private download(): void {
     const { toml, floor } = this.session;
     const refusal = downloadRobot(toml, floor);
-    if (refusal) this.setMessage(`This robot.toml lacks the settings of Legs, feet and floor: ${refusal.refused}`);
+    if (refusal) this.setMessage(`This robot.toml does not have the settings of Legs, feet and floor: ${refusal.refused}`);
   }
 
   private setMessage(message: string): void {

@@ -1,7 +1,7 @@
 // The drawing of the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
 import { circle, polyline } from './canvas';
-import { palette, servoColour } from './palette';
+import { getPalette, getServoColour } from './palette';
 
 const FOOT_RADIUS_MM = 6;
 /** Width of the plate's drawn edge. */
@@ -31,9 +31,9 @@ function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: strin
   context.stroke();
 }
 
-/** Number of turns of a drawn spring. */
+/** Number of coils of a drawn spring. */
 const SPRING_TURNS = 5;
-/** Half of a drawn spring's width. */
+/** Half the width of a drawn spring. */
 const SPRING_HALF_WIDTH_MM = 2.4;
 
 /** Draws a coil spring between two hooks. */
@@ -41,11 +41,11 @@ function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
   const length = Math.hypot(x2 - x1, y2 - y1);
   if (length < 1) return;
   const [direction, normal] = [[(x2 - x1) / length, (y2 - y1) / length], [(y1 - y2) / length, (x2 - x1) / length]];
-  const pointAt = (share: number, offset: number): Point => [
-    x1 + direction[0] * share * length + normal[0] * offset,
-    y1 + direction[1] * share * length + normal[1] * offset,
+  const pointAt = (fraction: number, offset: number): Point => [
+    x1 + direction[0] * fraction * length + normal[0] * offset,
+    y1 + direction[1] * fraction * length + normal[1] * offset,
   ];
-  context.strokeStyle = palette().steel;
+  context.strokeStyle = getPalette().steel;
   context.lineWidth = 0.9;
   context.lineJoin = 'round';
   context.beginPath();
@@ -69,32 +69,32 @@ function drawSkin(context: Context, scene: Scene): void {
   context.bezierCurveTo(tx - 6, ty - 6, tx - 22, ty, -27, -neckY);
   context.bezierCurveTo(-44, -flankY, -44, flankY, -27, neckY);
   context.bezierCurveTo(hx - 27, hy + 2, hx - 18, hy + 30, hx, hy + 30);
-  context.fillStyle = palette().skin;
-  context.strokeStyle = palette()['skin-edge'];
+  context.fillStyle = getPalette().skin;
+  context.strokeStyle = getPalette()['skin-edge'];
   context.lineWidth = 1;
   context.fill();
   context.stroke();
-  for (const eyeX of [-9, 9]) drawDisc(context, [hx + eyeX, hy + 12], 2.3, palette().ink);
+  for (const eyeX of [-9, 9]) drawDisc(context, [hx + eyeX, hy + 12], 2.3, getPalette().ink);
 }
 
 const SERVOS = [0, 1, 2, 3];
 
-/** Draws a leg's bodies beside and below the plate: foot, leaf spring and coupler. `slideMm` is the foot's slide. */
+/** Draws a leg's bodies next to and below the plate: foot, leaf spring and coupler. `slideMm` is the foot's slide. */
 function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number): void {
-  const colours = palette();
+  const colours = getPalette();
   const { joints, foot } = scene.legs[servo];
   drawBar(context, joints[1], foot, colours.steel, 2.2);
-  // A foot that sticks is filled; one that slips is a ring.
+  // A sticking foot is a disc; a slipping foot is a ring.
   drawDisc(context, foot, FOOT_RADIUS_MM, slideMm > SLIP_THRESHOLD_MM ? colours.card : colours.ink);
   context.strokeStyle = colours.ink;
   context.lineWidth = 2;
   context.stroke();
-  drawBar(context, joints[0], joints[1], servoColour(servo), 4.2);
+  drawBar(context, joints[0], joints[1], getServoColour(servo), 4.2);
 }
 
-/** Draws the plate, the arms on it that carry the legs' pivots, and the servos' cases. */
+/** Draws the plate, its arms with the legs' pivots, and the servos' cases. */
 function drawChassis(context: Context, plate: Plate): void {
-  const colours = palette();
+  const colours = getPalette();
   const [halfWidth, halfLength] = plate.half;
   for (const [rim, colour] of [[RIM_WIDTH_MM, colours['frame-edge']], [0, colours.frame]] as const) {
     for (const [from, to] of plate.arms) drawBar(context, from, to, colour, 2 * (plate.arm + rim));
@@ -106,7 +106,7 @@ function drawChassis(context: Context, plate: Plate): void {
   const [width, length] = plate.case;
   plate.cases.forEach(([x, y], servo) => {
     context.globalAlpha = 0.35;
-    context.fillStyle = servoColour(servo);
+    context.fillStyle = getServoColour(servo);
     context.beginPath();
     context.roundRect(x - width / 2, y - length / 2, width, length, 1.3);
     context.fill();
@@ -116,28 +116,28 @@ function drawChassis(context: Context, plate: Plate): void {
 
 /** Draws a leg's bodies above the plate: crank, follower and strut. */
 function drawLeg(context: Context, scene: Scene, servo: number): void {
-  const colours = palette();
-  const { pivots, joints, strut, sprung } = scene.legs[servo];
-  const colour = servoColour(servo);
+  const colours = getPalette();
+  const { pivots, joints, strut, has_spring: hasSpring } = scene.legs[servo];
+  const colour = getServoColour(servo);
   drawBar(context, pivots[0], strut[1], colour, 3.2);
   for (const n of [0, 1]) drawBar(context, pivots[n], joints[n], colour, 3.2);
   for (const point of [...pivots, ...joints]) drawDisc(context, point, 1.6, colours.card, colours.ink);
-  drawBar(context, strut[0], strut[1], colours.steel, sprung ? 0.8 : 1.6);
-  if (sprung) drawSpring(context, strut[0], strut[1]);
+  drawBar(context, strut[0], strut[1], colours.steel, hasSpring ? 0.8 : 1.6);
+  if (hasSpring) drawSpring(context, strut[0], strut[1]);
   drawDisc(context, strut[1], 1.2, colours.card, colours.ink);
   drawBar(context, scene.shafts[servo], strut[0], colour, 3);
 }
 
 /** Draws the telescopic slider between the two servos of a side, 0 for left and 1 for right. */
 function drawSlider(context: Context, scene: Scene, side: 0 | 1): void {
-  const colours = palette();
+  const colours = getPalette();
   const { shafts, tips, tube } = scene.sliders[side];
   drawBar(context, tips[0], tips[1], colours.steel, 1.8);
   drawBar(context, tips[1], tube, colours.tube, 5);
   const servos = side === 0 ? [0, 3] : [1, 2];
   servos.forEach((servo, n) => {
     context.globalAlpha = 0.75;
-    drawBar(context, shafts[n], tips[n], servoColour(servo), 3);
+    drawBar(context, shafts[n], tips[n], getServoColour(servo), 3);
     context.globalAlpha = 1;
     drawDisc(context, tips[n], 2, colours.card, colours.ink);
   });
@@ -145,12 +145,12 @@ function drawSlider(context: Context, scene: Scene, side: 0 | 1): void {
 
 /** Draws the five-bar of an end, 0 for the head and 1 for the tail. */
 function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
-  const colours = palette();
+  const colours = getPalette();
   const servos = end === 0 ? [0, 1] : [2, 3];
   const point = scene.points[end];
   for (const servo of servos) drawBar(context, scene.tips[servo], point, colours.steel, 3.4);
   for (const servo of servos) {
-    drawBar(context, scene.shafts[servo], scene.tips[servo], servoColour(servo), 4.6);
+    drawBar(context, scene.shafts[servo], scene.tips[servo], getServoColour(servo), 4.6);
     drawDisc(context, scene.tips[servo], 2.2, colours.card, colours.ink);
     drawDisc(context, scene.shafts[servo], 3.4, colours.ink);
     drawDisc(context, scene.shafts[servo], 1.2, colours.card);
@@ -158,7 +158,7 @@ function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
   drawDisc(context, point, 3.2, '#f0e442', '#222222');
 }
 
-/** Draws the robot, the lowest bodies first; `slides` are the distances that the feet have slid in this frame, mm. */
+/** Draws the robot, starting with the lowest bodies; `slides` are the feet's slides in this frame, mm. */
 export function drawLizard(context: Context, plate: Plate, scene: Scene, slides: readonly number[]): void {
   drawSkin(context, scene);
   for (const servo of SERVOS) drawFoot(context, scene, servo, slides[servo] ?? 0);
@@ -168,5 +168,5 @@ export function drawLizard(context: Context, plate: Plate, scene: Scene, slides:
   drawSlider(context, scene, 1);
   drawFiveBar(context, scene, 0);
   drawFiveBar(context, scene, 1);
-  for (const { strut } of scene.legs) drawDisc(context, strut[0], 1.2, palette().card, palette().ink);
+  for (const { strut } of scene.legs) drawDisc(context, strut[0], 1.2, getPalette().card, getPalette().ink);
 }

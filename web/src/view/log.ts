@@ -2,15 +2,15 @@
 import { element } from './canvas';
 import { make } from './make';
 
-/** Largest number of lines that are kept. */
+/** Largest number of kept lines. */
 const MAX_LINES = 400;
 
 export class Log {
   private readonly box = element('log');
   private readonly lineInput = element<HTMLInputElement>('typed');
-  /** The lines that the user has entered, the latest at the end. */
+  /** The lines that the user has entered, with the latest line at the end. */
   private readonly history: string[] = [];
-  /** Index in the history of the line in the input; the history's length for a new line. */
+  /** The history index of the line in the input; the history's length for a new line. */
   private historyIndex = 0;
 
   constructor(onLine: (line: string) => void) {
@@ -37,14 +37,14 @@ export class Log {
     this.add(`> ${line}`, 'sent');
   }
 
-  /** Shows a line that the robot has sent, in the style of an error, a note or an answer. */
+  /** Shows a received line in the style of an error, a note or an answer. */
   showReceived(line: string): void {
     this.add(line, line.startsWith('err') ? 'err' : line.startsWith('#') ? 'note' : 'ok');
   }
 
   private add(text: string, className: string): void {
     const { box } = this;
-    // A user who has scrolled up to read older lines must not be disturbed.
+    // The view stays for a user who has scrolled up to older lines.
     const isAtEnd = box.scrollHeight - box.scrollTop - box.clientHeight < 24;
     box.append(make('div', { className }, text));
     while (box.childElementCount > MAX_LINES) box.firstElementChild?.remove();

@@ -1,4 +1,4 @@
-// Makes elements of the page: paragraphs, buttons, number inputs, lists, tables, SVG.
+// Makes page elements: paragraphs, buttons, number inputs, lists, tables and SVG.
 
 type Child = Node | string;
 
@@ -9,7 +9,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(tag: K, properties: 
   return node;
 }
 
-/** Sets attributes of an element, if there is one; numbers are rounded to hundredths. */
+/** Sets the attributes of an element, if it exists; numbers are rounded to hundredths. */
 export function setAttributes(node: Element | undefined, attributes: Record<string, string | number>): void {
   for (const [name, value] of Object.entries(attributes)) node?.setAttribute(name, typeof value === 'number' ? String(Number(value.toFixed(2))) : value);
 }
@@ -45,7 +45,7 @@ export function numberBox(label: string, value: number | null, step: string, onN
   return make('label', { className: 'number' }, label, ' ', box);
 }
 
-/** Makes a row of a table; its first cell is the row's heading. */
+/** Makes a table row; the first cell is the row's heading. */
 export function tableRow([heading = '', ...cells]: string[]): HTMLElement {
   return make('tr', {}, make('th', { scope: 'row' }, heading), ...cells.map((text) => make('td', {}, text)));
 }

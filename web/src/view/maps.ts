@@ -1,19 +1,19 @@
-// The map of the singularities of the head's or the tail's five-bar over the angles of its left and right servo, with
-// the robot's current pose.
+// The map of singularities of the head's or the tail's five-bar over the angles of its left and right servo, with the
+// robot's current pose.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
 import { element, prepareSurface } from './canvas';
-import { onPaletteChange, palette } from './palette';
+import { onPaletteChange, getPalette } from './palette';
 
-/** Number of frames whose poses are drawn as a trail. */
+/** Number of poses in the trail. */
 const TRAIL_LENGTH = 100;
 
-/** The view of the map of one end, head or tail. */
+/** The map's view for one end, head or tail. */
 export class MapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
-  /** The map without trail and dot, drawn once for each size of the canvas; null if it must be drawn again. */
+  /** The map without trail and dot, drawn once per canvas size; null if it must be redrawn. */
   private background: HTMLCanvasElement | null = null;
 
   /** `endIndex` is 0 for the head and 1 for the tail. */
@@ -44,22 +44,22 @@ export class MapView {
     if (this.background?.width !== this.canvas.width) this.background = this.drawBackground(map);
     context.drawImage(this.background, 0, 0, width, height);
     const scale = width / (map.max_angle - map.min_angle);
-    const pixelOf = ([left, right]: [number, number]): [number, number] => [
+    const toPixel = ([left, right]: [number, number]): [number, number] => [
       (left - map.min_angle) * scale,
       height - (right - map.min_angle) * scale,
     ];
-    context.strokeStyle = palette().a1;
+    context.strokeStyle = getPalette().a1;
     context.lineWidth = 1.5;
     context.beginPath();
-    for (const point of this.trail) context.lineTo(...pixelOf(point));
+    for (const point of this.trail) context.lineTo(...toPixel(point));
     context.stroke();
     const currentPoint = this.trail[this.trail.length - 1];
     if (!currentPoint) return;
-    context.fillStyle = palette().a1;
-    context.strokeStyle = palette().card;
+    context.fillStyle = getPalette().a1;
+    context.strokeStyle = getPalette().card;
     context.lineWidth = 2;
     context.beginPath();
-    context.arc(...pixelOf(currentPoint), 5, 0, 2 * Math.PI);
+    context.arc(...toPixel(currentPoint), 5, 0, 2 * Math.PI);
     context.fill();
     context.stroke();
   }
@@ -71,7 +71,7 @@ export class MapView {
     backgroundCanvas.height = this.canvas.height;
     const context = backgroundCanvas.getContext('2d');
     if (!context) return backgroundCanvas;
-    const colours = palette();
+    const colours = getPalette();
     context.fillStyle = colours.floor;
     context.fillRect(0, 0, size, size);
     const cellSize = size / (map.size - 1);

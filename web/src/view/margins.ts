@@ -1,4 +1,4 @@
-// The panel of the margins, the distances of the pose from the singularities.
+// The panel of the margins, the distances between the pose and the singularities.
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
@@ -13,7 +13,7 @@ export class MarginsView {
     session.followRobot((description) => this.showRobot(description));
   }
 
-  /** Shows another robot: makes a bar for each of its margins, with a mark at the limit. */
+  /** Shows another robot: makes a bar for each margin, with a mark at its limit. */
   private showRobot({ margins }: Description): void {
     const list = element('margins');
     list.replaceChildren();
@@ -36,7 +36,7 @@ export class MarginsView {
     });
   }
 
-  /** Updates the numbers; called less often than `draw`, since each change of a text costs a layout of the page. */
+  /** Updates the numbers; called less often than `draw`, because each change of a text causes a layout. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.bars.forEach(({ value }, index) => {

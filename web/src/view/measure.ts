@@ -1,5 +1,5 @@
-// The room in which a camera measures the robot: the picture of the camera or of a film file, the controls of the
-// protocol by which the page drives the robot, and the results.
+// The room in which a camera measures the robot: the camera's picture or a video file, the controls of the protocol
+// with which the page drives the robot, and the results.
 import { transfer } from 'comlink';
 
 import type { RequestedWalk } from '../../generated/measure';
@@ -7,12 +7,12 @@ import { files } from '../files';
 import { Helper } from '../helper';
 import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
 import { TagTracker } from '../measure/tag-tracker';
-import { PictureSource } from '../measure/source';
-import type { FilmWorkerApi } from '../measure/worker';
+import { FrameSource } from '../measure/source';
+import type { VideoWorkerApi } from '../measure/worker';
 import type { Predictor } from '../predictor';
 import type { Description, Gait } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { element, setText } from './canvas';
 import { saveFile } from './download';
@@ -22,7 +22,7 @@ import { setUpNumberInput, putNumber, type Range } from './number';
 import { ROOM_OPENED } from './rooms';
 import { drawTracking } from './draw-tracking';
 
-/** Least displacement per cycle with which a gait is ticked by default. */
+/** Smallest displacement per cycle with which a gait is ticked by default. */
 const MIN_DISPLACEMENT = { forwardMm: 3, turnDeg: 2 };
 /** Range and default value of each number input; null for no default. */
 const NUMBER_INPUTS: Record<string, Range & { value: number | null }> = {
@@ -34,19 +34,19 @@ const NUMBER_INPUTS: Record<string, Range & { value: number | null }> = {
 };
 
 /**
- * The task of the room: `record` adds the camera's pictures to the film until the user is done, `drive` does so while
- * the page drives the robot, `play` reads a film file, and `compute` measures the walks in the film.
+ * The task of the room: `record` adds the camera's frames to the video until the user presses Done, `drive` does so
+ * while the page drives the robot, `play` reads a video file, and `compute` measures the walks in the video.
  */
 type Task = 'idle' | 'record' | 'drive' | 'play' | 'compute';
 
-type FilmHelper = Helper<FilmWorkerApi>;
+type VideoHelper = Helper<VideoWorkerApi>;
 
-/** Starts the worker that finds the tags in pictures and measures the walks. */
-async function loadFilmHelper(): Promise<FilmHelper> {
+/** Starts the worker that finds the tags in frames and measures the walks. */
+async function loadVideoHelper(): Promise<VideoHelper> {
   const module = await files.measure();
-  const filmHelper: FilmHelper = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
-  await filmHelper.call((film) => film.load(module));
-  return filmHelper;
+  const videoHelper: VideoHelper = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
+  await videoHelper.call((video) => video.load(module));
+  return videoHelper;
 }
 
 export class MeasureView {
@@ -58,24 +58,24 @@ export class MeasureView {
   private readonly startButton = element<HTMLButtonElement>('measure-start');
   private readonly cameraButton = element<HTMLButtonElement>('measure-camera');
   private readonly putBackButton = element<HTMLButtonElement>('measure-go');
-  /** The numbers in the inputs, by the inputs' names. */
+  /** The numbers in the inputs, indexed by the inputs' names. */
   private readonly values: Record<string, number | null> = {};
   private readonly resultsView: ResultsView;
-  private readonly source: PictureSource;
-  /** The worker that has the film and measures it; null until it is needed. */
-  private filmHelper: Promise<FilmHelper> | null = null;
+  private readonly source: FrameSource;
+  /** The worker that stores and measures the video; null until it is needed. */
+  private videoHelper: Promise<VideoHelper> | null = null;
   private tracker = new TagTracker();
   private task: Task = 'idle';
-  /** The protocol by which the page drives the robot; null while it does not drive. */
+  /** The protocol with which the page drives the robot; null while it does not drive. */
   private protocol: Protocol | null = null;
-  /** True while the user puts the robot back by hand; the film gets no pictures meanwhile. */
+  /** True while the user puts the robot back by hand; no frames are added to the video meanwhile. */
   private isBeingPutBack = false;
-  /** True if a film file was read, which can be measured again. */
-  private hasFilm = false;
+  /** True if a video file was read and can be measured again. */
+  private hasVideo = false;
   /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly userTicks = new Map<string, boolean>();
 
-  /** `isSetupOpen` returns true while the setup is open: nothing may drive the robot then, since hands may be in it. */
+  /** `isSetupOpen` returns true while the setup is open: nothing may drive the robot then, because hands may be in it. */
   constructor(
     private readonly session: Session,
     private readonly predictor: Predictor,
@@ -84,7 +84,7 @@ export class MeasureView {
     this.resultsView = new ResultsView(() => this.session.description.name);
     const video = this.view.querySelector('video');
     if (!video) throw new Error('the page has no video for the camera');
-    this.source = new PictureSource(video, (picture, seconds) => this.processPicture(picture, seconds));
+    this.source = new FrameSource(video, (frame, seconds) => this.processFrame(frame, seconds));
     for (const [name, { value, ...range }] of Object.entries(NUMBER_INPUTS)) {
       const input = element<HTMLInputElement>(`measure-${name}`);
       this.values[name] = value;
@@ -94,7 +94,7 @@ export class MeasureView {
     this.cameraButton.addEventListener('click', () => void this.runAction(() => this.toggleCamera()));
     element('measure-file').addEventListener('change', ({ target }) => {
       const file = (target as HTMLInputElement).files?.[0];
-      if (file) void this.runAction(() => this.readFilm(file));
+      if (file) void this.runAction(() => this.readVideo(file));
     });
     element('measure-sheet').addEventListener('click', () => void this.runAction(() => this.saveSheet()));
     this.startButton.addEventListener('click', () => void this.runAction(() => this.handleStartButton()));
@@ -112,7 +112,7 @@ export class MeasureView {
     this.stopDriving('another robot was chosen');
     const movingCommands = gaits.filter(({ moves }) => moves).map(({ command }) => command);
     const chosen = this.gaitList.value;
-    this.gaitList.replaceChildren(new Option('found by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
+    this.gaitList.replaceChildren(new Option('recognized by its path', ''), ...gaits.filter(({ moves }) => moves).map(({ command, name }) => new Option(command, name)));
     if ([...this.gaitList.options].some(({ value }) => value === chosen)) this.gaitList.value = chosen;
     this.gaitBoxes.replaceChildren(
       make('legend', {}, 'Gaits'),
@@ -152,19 +152,19 @@ export class MeasureView {
     this.protocol?.noteReceived(line);
   }
 
-  /** Updates the texts about the latest pictures; called several times per second. */
+  /** Updates the texts about the latest frames; called several times per second. */
   updateNumbers(): void {
     if (this.room.hidden || this.view.hidden) return;
-    const { picturesPerSecond: rate, hiddenTagsMessage, searchMs } = this.tracker;
-    setText(element('measure-rate'), `${rate.toFixed(0)} pictures per second, each searched in ${searchMs.toFixed(0)} ms`);
-    setText(element('measure-seen'), hiddenTagsMessage || 'All five tags are seen.');
+    const { framesPerSecond, hiddenTagsMessage, searchMs } = this.tracker;
+    setText(element('measure-rate'), `${framesPerSecond.toFixed(0)} frames per second, each searched in ${searchMs.toFixed(0)} ms`);
+    setText(element('measure-seen'), hiddenTagsMessage || 'All five tags are visible.');
     element('measure-seen').classList.toggle('refusal', hiddenTagsMessage !== '');
   }
 
-  private getFilmHelper(): Promise<FilmHelper> {
-    this.filmHelper ??= loadFilmHelper();
-    this.filmHelper.catch(() => (this.filmHelper = null));
-    return this.filmHelper;
+  private getVideoHelper(): Promise<VideoHelper> {
+    this.videoHelper ??= loadVideoHelper();
+    this.videoHelper.catch(() => (this.videoHelper = null));
+    return this.videoHelper;
   }
 
   /** Runs an action of the user; shows the reason if it fails. */
@@ -172,7 +172,7 @@ export class MeasureView {
     try {
       await action();
     } catch (error) {
-      this.setMessage(messageOf(error), true);
+      this.setMessage(getMessage(error), true);
     } finally {
       this.updateControls();
     }
@@ -184,15 +184,15 @@ export class MeasureView {
       return this.setMessage('');
     }
     this.setMessage('Opening the camera…');
-    this.hasFilm = false;
-    await this.getFilmHelper();
+    this.hasVideo = false;
+    await this.getVideoHelper();
     await this.source.openCamera(() => {
       this.switchCameraOff();
-      this.setMessage('The camera is gone.', true);
+      this.setMessage('The camera was disconnected.', true);
       this.updateControls();
     });
     this.tracker = new TagTracker();
-    this.setMessage('Place the camera so that all five tags are seen.');
+    this.setMessage('Place the camera so that all five tags are visible.');
   }
 
   /** Switches the camera off and ends the task that uses it. */
@@ -203,73 +203,73 @@ export class MeasureView {
     this.updateControls();
   }
 
-  /** Finds the tags in a picture that was taken at `seconds`, and draws them over the picture. */
-  private async processPicture(picture: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
-    const filmHelper = await this.getFilmHelper();
+  /** Finds the tags in a frame that was taken at `seconds`, and draws them over the video. */
+  private async processFrame(frame: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
+    const videoHelper = await this.getVideoHelper();
     const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.tracker.addDetection(await filmHelper.call((film) => film.findTags(transfer(picture, [picture]), seconds, isKept)));
+      this.tracker.addDetection(await videoHelper.call((video) => video.findTags(transfer(frame, [frame]), seconds, isKept)));
       this.protocol?.setPlace(this.tracker.offsetToMiddle);
       drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
-      this.setMessage(messageOf(error), true);
+      this.setMessage(getMessage(error), true);
     }
   }
 
-  /** Reads a film file and measures the walks in it. */
-  private async readFilm(file: File): Promise<void> {
+  /** Reads a video file and measures the walks in it. */
+  private async readVideo(file: File): Promise<void> {
     this.switchCameraOff();
-    const filmHelper = await this.getFilmHelper();
-    await filmHelper.call((film) => film.clear());
+    const videoHelper = await this.getVideoHelper();
+    await videoHelper.call((video) => video.clear());
     this.tracker = new TagTracker();
     this.task = 'play';
-    this.hasFilm = false;
+    this.hasVideo = false;
     this.setMessage(`Reading ${file.name}…`);
     this.updateControls();
     try {
       await this.source.playFile(file);
       if (this.task !== 'play') return;
-      this.hasFilm = true;
-      await this.measureWalks(this.wholeFilmWalks);
+      this.hasVideo = true;
+      await this.measureWalks(this.wholeVideoWalks);
     } finally {
       this.task = 'idle';
     }
   }
 
-  /** The whole film as one walk of the chosen gait; empty if the gaits are to be recognized by their paths. */
-  private get wholeFilmWalks(): RequestedWalk[] {
+  /** The whole video as one walk of the chosen gait; empty if the gaits are to be recognized by their paths. */
+  private get wholeVideoWalks(): RequestedWalk[] {
     const gait = this.gaitList.value;
     return gait === '' ? [] : [{ gait, during: null }];
   }
 
-  /** Does what the start button shows: starts or ends recording or driving, or measures the film file again. */
+  /** Does what the start button shows: starts or ends recording or driving, or measures the video file again. */
   private async handleStartButton(): Promise<void> {
-    if (this.task === 'record') return this.measureWalks(this.wholeFilmWalks);
+    if (this.task === 'record') return this.measureWalks(this.wholeVideoWalks);
     if (this.task === 'drive') return void this.session.ask(WORDS.stop);
-    if (this.hasFilm) return this.measureWalks(this.wholeFilmWalks);
+    if (this.hasVideo) return this.measureWalks(this.wholeVideoWalks);
     const isPageDriving = this.driverList.value === 'page';
-    const gaits = isPageDriving ? this.drivableGaits() : [];
-    const filmHelper = await this.getFilmHelper();
-    await filmHelper.call((film) => film.clear());
+    const gaits = isPageDriving ? this.getDrivableGaits() : [];
+    const videoHelper = await this.getVideoHelper();
+    await videoHelper.call((video) => video.clear());
     this.tracker.clear();
     if (isPageDriving) return this.driveGaits(gaits);
     this.task = 'record';
     this.setMessage('Recording. Let the robot walk at least four cycles, then press Done.');
   }
 
-  /** Returns the ticked gaits. Throws the reason why the page cannot drive. */
-  private drivableGaits(): Gait[] {
+  /** Returns the ticked gaits. Throws the reason if the page cannot drive. */
+  private getDrivableGaits(): Gait[] {
     const session = this.session;
     const tickedCommands = [...this.gaitBoxes.querySelectorAll('input')].filter(({ checked }) => checked).map(({ name }) => name);
     const gaits = session.description.gaits.filter(({ command }) => tickedCommands.includes(command));
     if (this.isSetupOpen()) throw new Error('Hands may be in the robot: leave the set-up first.');
-    if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that one, or write this one to the board.`);
+    if (session.otherRobot) throw new Error(`The board has another robot, ${session.otherRobot.name}: choose that robot, or write this one to the board.`);
     if (!session.isFirmwareAnswering) throw new Error(`No robot answers from the ${session.link.name}.`);
     if (gaits.length === 0) throw new Error('Tick at least one gait.');
     return gaits;
   }
 
-  /** Lets the robot walk the gaits, and measures the walks, also after an interruption. */
+  /** Drives the gaits, and measures the walks even after an interruption. */
   private async driveGaits(gaits: Gait[]): Promise<void> {
     const session = this.session;
     const { cycles, pause } = this.values;
@@ -310,7 +310,7 @@ export class MeasureView {
   private async waitUntilPutBack(protocol: Protocol): Promise<void> {
     this.isBeingPutBack = true;
     this.putBackButton.hidden = false;
-    this.setMessage('The robot is near the end of what the camera measures, or its tag is hidden: put it back to the middle of the strips, and press the button.', true);
+    this.setMessage('The robot is near the edge of the measurable area, or its tag is hidden: put it back in the centre of the strips, and press the button.', true);
     await new Promise<void>((resolve) => {
       this.putBackButton.onclick = () => resolve();
       protocol.onEnd = resolve;
@@ -319,20 +319,20 @@ export class MeasureView {
     this.isBeingPutBack = false;
   }
 
-  /** Measures walks in the film. Shows the results, the given problems and the reasons why walks are not measured. */
+  /** Measures walks in the video. Shows the results, the given problems, and the reason for each walk without a result. */
   private async measureWalks(walks: RequestedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
-    const filmHelper = await this.getFilmHelper();
+    const videoHelper = await this.getVideoHelper();
     const { height = null, ruler } = this.values;
     try {
-      const results = await filmHelper.call((film) => film.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
+      const results = await videoHelper.call((video) => video.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
       problems.push(...results.problems);
     } catch (error) {
       this.resultsView.show([]);
-      problems.push(messageOf(error));
+      problems.push(getMessage(error));
     }
     this.task = 'idle';
     this.setMessage(problems.map((problem) => `${problem}.`).join(' '), true);
@@ -340,23 +340,23 @@ export class MeasureView {
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    const filmHelper = await this.getFilmHelper();
-    saveFile('sheet.pdf', [await filmHelper.call((film) => film.sheet(isLetter))], 'application/pdf');
+    const videoHelper = await this.getVideoHelper();
+    saveFile('sheet.pdf', [await videoHelper.call((video) => video.sheet(isLetter))], 'application/pdf');
     this.setMessage('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
   /** Shows and enables the controls that are usable during the current task. */
   private updateControls(): void {
-    const { task, source, hasFilm } = this;
-    const isPageDriving = this.driverList.value === 'page' && !hasFilm;
+    const { task, source, hasVideo } = this;
+    const isPageDriving = this.driverList.value === 'page' && !hasVideo;
     this.view.hidden = !source.isCamera && task !== 'play';
     element('measure-rate').hidden = element('measure-seen').hidden = this.view.hidden;
     this.cameraButton.setAttribute('aria-pressed', String(source.isCamera));
     element('measure-one').hidden = isPageDriving;
     this.gaitBoxes.hidden = !isPageDriving;
     for (const label of this.room.querySelectorAll<HTMLElement>('[data-driver]')) label.hidden = !isPageDriving;
-    this.startButton.textContent = task === 'record' ? 'Done' : task === 'drive' ? 'Stop' : hasFilm ? 'Measure again' : isPageDriving ? 'Drive and measure' : 'Record';
-    this.startButton.disabled = task === 'play' || task === 'compute' || (!source.isCamera && !hasFilm);
+    this.startButton.textContent = task === 'record' ? 'Done' : task === 'drive' ? 'Stop' : hasVideo ? 'Measure again' : isPageDriving ? 'Drive and measure' : 'Record';
+    this.startButton.disabled = task === 'play' || task === 'compute' || (!source.isCamera && !hasVideo);
     this.driverList.disabled = task !== 'idle';
   }
 

@@ -1,4 +1,4 @@
-// A number input that marks values out of range and ignores them.
+// A number input that marks and ignores values out of range.
 
 /** The range of valid numbers, and the step of the input's arrows. */
 export interface Range {
@@ -8,8 +8,8 @@ export interface Range {
 }
 
 /**
- * Sets an input's range. `onNumber` is called with each valid number that is typed, and with null when the input is
- * emptied. When the user leaves the input with an invalid number, the last valid one is restored.
+ * Sets an input's range. `onNumber` is called with each valid number that the user types, and with null when the input
+ * is empty. When the user leaves the input with an invalid number, the last valid number is restored.
  */
 export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Range, onNumber: (value: number | null) => void): void {
   Object.assign(input, { type: 'number', min: String(min), max: String(max), step: String(step), title: `from ${min} to ${max}` });
@@ -28,7 +28,7 @@ export function setUpNumberInput(input: HTMLInputElement, { min, max, step }: Ra
   });
 }
 
-/** Sets the number of an input; the text stays while the user is typing in the input. */
+/** Sets the number of an input; the text stays while the user is typing in it. */
 export function putNumber(input: HTMLInputElement, value: number): void {
   input.defaultValue = String(value);
   if (document.activeElement === input) return;

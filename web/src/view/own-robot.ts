@@ -1,13 +1,13 @@
-// The user's own robots: when a link or another robot is opened, the changed robot is put aside and never lost.
+// The user's own robots: when the user opens a link or another robot, the changed robot is put aside.
 import { browserStorage, type SavedChanges } from '../browser-storage';
 import type { Session } from '../session';
 import type { ProblemList } from './problems';
 
-/** Returns the name of the robot in a robot.toml. */
-const nameIn = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
+/** Returns the robot's name in a robot.toml. */
+const readName = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
 
 export class OwnRobot {
-  /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots that are put aside. */
+  /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots put aside. */
   constructor(
     private readonly session: Session,
     private readonly problems: ProblemList,
@@ -17,23 +17,23 @@ export class OwnRobot {
     this.updateList();
   }
 
-  /** Puts the previous robot aside and offers to restore it, if it was changed and another robot has replaced it. */
+  /** If another robot has replaced a changed robot, puts the changed robot aside and offers to restore it. */
   putAside(previous: SavedChanges | null): void {
     if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
-    this.storeAside([previous, ...browserStorage.getPutAside().filter(({ toml }) => toml !== previous.toml)]);
-    this.problems.setMessage('own', 'This is another robot. Your own one is put aside, and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
+    this.storeAside([previous, ...browserStorage.getRobotsAside().filter(({ toml }) => toml !== previous.toml)]);
+    this.problems.setMessage('own', 'This is another robot. Your own robot is put aside and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
   }
 
-  /** Restores the robot with this index among those that were put aside, and puts the current robot aside. */
+  /** Restores the robot with this index among the robots put aside, and puts the current robot aside. */
   async restore(index = 0): Promise<void> {
-    const robotsAside = browserStorage.getPutAside();
+    const robotsAside = browserStorage.getRobotsAside();
     const ownRobot = robotsAside[index];
     this.problems.setMessage('own', null);
     if (!ownRobot) return;
     const previous = browserStorage.getChanges();
     await this.loadFile(ownRobot.file);
     const session = this.session;
-    // If the robot's file has changed since then, only the stored text is loaded.
+    // If the robot's file has changed meanwhile, only the stored text is loaded.
     if (!(await session.restoreSaved(ownRobot)) && (await session.change(ownRobot.toml))) return;
     this.storeAside(robotsAside.filter((_, n) => n !== index));
     this.putAside(previous);
@@ -45,6 +45,6 @@ export class OwnRobot {
   }
 
   private updateList(): void {
-    this.listNames(browserStorage.getPutAside().map(({ toml }) => nameIn(toml)));
+    this.listNames(browserStorage.getRobotsAside().map(({ toml }) => readName(toml)));
   }
 }

@@ -1,4 +1,4 @@
-// The slider of the pace of all gaits, which also shows the pace that the robot reports.
+// The slider for the pace of all gaits, which also shows the reported pace.
 import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
@@ -6,7 +6,7 @@ import { element } from './canvas';
 export class Pace {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly valueText = element('speed-out');
-  /** True from the user's first move of the slider until the line with its value is answered. */
+  /** True between the user's first move of the slider and the answer to the line with its value. */
   private isPending = false;
 
   constructor(session: Session) {

@@ -1,4 +1,4 @@
-// The colours of theme.css for canvases; only theme.css defines the colours of light and dark mode.
+// The colours of theme.css for canvases. Only theme.css defines the colours of light and dark mode.
 
 const COLOUR_NAMES = [
   'card', 'ink', 'soft', 'line', 'floor', 'grid', 'skin', 'skin-edge', 'frame', 'frame-edge', 'steel', 'tube',
@@ -11,7 +11,7 @@ let cachedPalette: Palette | null = null;
 const changeCallbacks: (() => void)[] = [];
 
 /** Returns the colours of the current colour scheme. */
-export function palette(): Palette {
+export function getPalette(): Palette {
   if (!cachedPalette) {
     const style = getComputedStyle(document.documentElement);
     cachedPalette = Object.fromEntries(COLOUR_NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()])) as Palette;
@@ -29,8 +29,8 @@ matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
   for (const callback of changeCallbacks) callback();
 });
 
-/** Returns the colour of a servo and of its leg. */
-export function servoColour(servo: number): string {
-  const { a1, a2, a3, a4 } = palette();
+/** Returns the colour of a servo and its leg. */
+export function getServoColour(servo: number): string {
+  const { a1, a2, a3, a4 } = getPalette();
   return [a1, a2, a3, a4][servo] ?? a1;
 }

@@ -1,10 +1,10 @@
-// The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files for printing
-// and cutting. The code for 3D is loaded only when 3D is shown or the panel is opened.
+// The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files to print and
+// to cut. The 3D code is loaded only when 3D is shown or the panel is opened.
 import type { RobotView } from '../parts/robot-view';
 import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/workshop';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { element, showMessage } from './canvas';
 import { saveFile } from './download';
 import { make } from './make';
@@ -14,7 +14,7 @@ import { isShown } from './rooms';
 const ORIGIN: Place = { x: 0, y: 0, heading: 0 };
 
 /** Converts the guide's Markdown, which uses only bold and code, to plain text. */
-const plainText = (markdown: string) => markdown.replaceAll('**', '').replaceAll('`', '');
+const toPlainText = (markdown: string) => markdown.replaceAll('**', '').replaceAll('`', '');
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
@@ -23,24 +23,24 @@ export class PartsView {
   private readonly canvas = element<HTMLCanvasElement>('canvas-3d');
   private readonly explosionSlider = element<HTMLInputElement>('explosion');
   private readonly partList = element<HTMLSelectElement>('part');
-  /** The buttons that make files: `all` makes every file, `changed` only those that the edited lengths change. */
+  /** The buttons that make files: `all` makes every file, `changed` only the files that the edited lengths change. */
   private readonly buttons = { all: element<HTMLButtonElement>('parts-save'), changed: element<HTMLButtonElement>('parts-changed') };
   private robotView: RobotView | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
-  /** The robot.toml that is shown or being loaded; empty for none. */
+  /** The shown or loading robot.toml; empty for none. */
   private shownToml = '';
-  /** The robot.toml to which the shown list of files belongs. */
+  /** The robot.toml of the shown list of files. */
   private listedToml = '';
   /** The number of the shown step of the guide, from 1; null for the whole robot. */
   private step: number | null = null;
-  /** The index of the picked part; null without one. */
+  /** The index of the picked body; null for none. */
   private pickedBody: number | null = null;
-  /** The two parts that overlap or come too close to each other, which are shown in red; null if all fit. */
+  /** The two parts that overlap or come too close, which are shown in red; null if all parts fit. */
   private clash: Clash | null = null;
-  /** Angles and lags of the pose that was requested last, as text; empty if the pose must be requested again. */
+  /** Angles and lags of the last requested pose, as text; empty if the pose must be requested again. */
   private requestedPose = '';
-  /** Cancels the making of files; null while none are being made. */
+  /** Cancels making files; null while no files are being made. */
   private cancelMaking: (() => void) | null = null;
 
   constructor(private readonly session: Session) {
@@ -97,7 +97,7 @@ export class PartsView {
       const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/workshop'), import('../parts/robot-view')]);
       const { solids, model, meshes } = await Solids.make(toml);
       if (toml !== this.shownToml) return solids.dispose();
-      // The previous robot was shown until now.
+      // Until now, the previous robot was shown.
       this.solids?.dispose();
       this.solids = solids;
       this.model = model;
@@ -111,7 +111,7 @@ export class PartsView {
       if (toml !== this.shownToml) return;
       // A failed download is repeated when the 3D view is opened again.
       this.shownToml = '';
-      this.setMessage('parts-said', `The parts of this robot cannot be made: ${messageOf(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
+      this.setMessage('parts-said', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
 
@@ -121,7 +121,7 @@ export class PartsView {
       return new RobotViewClass(this.canvas, (body) => this.pickBody(body));
     } catch {
       this.canvas.hidden = true;
-      this.setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off, so the robot cannot be shown in 3D. You can still make the files.');
+      this.setMessage('canvas-3d-none', 'This browser has no WebGL, or it is switched off; it cannot show the robot in 3D. You can still make the files.');
       return null;
     }
   }
@@ -147,14 +147,14 @@ export class PartsView {
     const shownStep = step === null ? undefined : this.model.steps[step - 1];
     const count = this.model.steps.length;
     this.setMessage('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
-    this.setMessage('step-words', shownStep ? plainText(shownStep.instructions) : '');
+    this.setMessage('step-words', shownStep ? toPlainText(shownStep.instructions) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
     element<HTMLButtonElement>('step-on').disabled = step === count;
     element<HTMLButtonElement>('step-all').disabled = step === null;
     this.updateRobotView();
   }
 
-  /** Highlights the body with this index and describes it; null for none. */
+  /** Highlights and describes the body with this index; null for none. */
   private pickBody(index: number | null): void {
     this.pickedBody = index;
     this.partList.value = index === null ? '' : String(index);
@@ -173,7 +173,7 @@ export class PartsView {
     this.updateRobotView();
   }
 
-  /** Shows in red two parts that come too close to each other, in the pose in which they do; null if all fit. */
+  /** Shows two clashing parts in red, in the pose of their clash; null if all parts fit. */
   showClash(clash: Clash | null): void {
     if (clash === this.clash) return;
     this.clash = clash;
@@ -203,7 +203,7 @@ export class PartsView {
       void solids.pose(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) robotView.placeMounts(places);
-        // Another pose was being computed, so this one is requested again.
+        // Another pose was being computed; this pose is requested again.
         else if (this.requestedPose === poseText) this.requestedPose = '';
       });
     }
@@ -215,7 +215,7 @@ export class PartsView {
     if (this.cancelMaking) return this.cancelMaking();
     const { toml, original, file } = this.session;
     const bar = element<HTMLProgressElement>('parts-progress');
-    const stageTexts = { prove: 'Proving that no two parts meet', make: 'Making the files' };
+    const stageTexts = { prove: 'Proving that no two parts collide', make: 'Making the files' };
     const button = this.buttons[selection];
     const label = button.textContent;
     bar.hidden = false;
@@ -229,8 +229,7 @@ export class PartsView {
     try {
       const workshop = await import('../parts/workshop');
       const { result, cancel } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
-        // Reports come through a channel of their own: some arrive after the result, or after the worker was
-        // terminated.
+        // Reports have their own channel: some arrive after the result, or after the worker was terminated.
         if (isOver) return;
         bar.max = total;
         bar.value = done;
@@ -246,10 +245,10 @@ export class PartsView {
       const archive = await Promise.race([result, cancellation]).finally(() => (isOver = true));
       if (!archive) return;
       if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
-      this.setMessage('files-said', this.savedText(archive, selection));
+      this.setMessage('files-said', this.describeArchive(archive, selection));
       if (selection === 'changed') this.listFiles(archive.paths);
     } catch (error) {
-      this.setMessage('files-said', `The files cannot be made: ${messageOf(error)}`);
+      this.setMessage('files-said', `Cannot make the files: ${getMessage(error)}`);
     } finally {
       this.cancelMaking = null;
       bar.hidden = true;
@@ -258,10 +257,10 @@ export class PartsView {
     }
   }
 
-  private savedText({ paths, count, least: leastMm }: PartsArchive, selection: 'all' | 'changed'): string {
-    const distanceText = leastMm === null ? '' : ` No two parts come nearer than ${leastMm.toFixed(2)} mm at any pose that the guard accepts.`;
+  private describeArchive({ paths, count, smallestMm }: PartsArchive, selection: 'all' | 'changed'): string {
+    const distanceText = smallestMm === null ? '' : ` No two parts come nearer than ${smallestMm.toFixed(2)} mm in any pose that the guard accepts.`;
     if (selection === 'all') return `${count} files.${distanceText}`;
-    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files differ from those of ${this.session.file}.toml:`;
+    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files differ from the files of ${this.session.file}.toml:`;
   }
 
   private listFiles(paths: string[]): void {

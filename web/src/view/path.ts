@@ -1,4 +1,4 @@
-// The panel in which the user draws a gesture: a closed line that the point of the head or of the tail follows.
+// The panel in which the user draws a gesture: a closed line that the end point of the head or the tail follows.
 import type { DrawnGait, End, Workspace } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
@@ -8,9 +8,9 @@ import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { Writer } from './writer';
 
-/** Least distance between two recorded points. */
+/** Smallest distance between two recorded points. */
 const MIN_POINT_DISTANCE_MM = 0.3;
-/** Least number of points of a line; fewer points count as a tap. */
+/** Smallest number of points of a line; fewer points count as a tap. */
 const MIN_POINT_COUNT = 8;
 /** Number of points of a predefined line. */
 const SHAPE_POINT_COUNT = 96;
@@ -20,8 +20,8 @@ const MARGIN_MM = 4;
 type Point = [number, number];
 
 /**
- * The predefined lines: each returns the point at an angle of 0 to 2π along the line, relative to the neutral point.
- * The unit is a tenth of the distance from the base to the neutral point.
+ * The predefined lines: each function returns the line's point at an angle of 0 to 2π, relative to the neutral point.
+ * The unit is a tenth of the distance between the base and the neutral point.
  */
 const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   circle: (angle) => [Math.sin(angle), Math.cos(angle) - 1],
@@ -30,7 +30,7 @@ const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   nod: (angle) => [0, Math.sin(angle)],
 };
 
-/** The key of a gesture's number that has an input. */
+/** The key of a gesture's number with an input. */
 type GestureNumber = 'period' | 'size' | 'terms';
 /** Ranges of the inputs: the period in s, the size in percent, and the number of terms of the Fourier series. */
 const NUMBER_RANGES: Record<GestureNumber, Range> = {
@@ -52,7 +52,7 @@ export class PathView {
   private readonly neutralDot = this.plane.appendChild(makeSvg('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
-  /** The workspace of the end's point; null until the panel is opened, or if there is none. */
+  /** The workspace of the end point; null until the panel is opened. */
   private workspace: Workspace | null = null;
 
   constructor(
@@ -78,7 +78,7 @@ export class PathView {
     followShownRobot(element<HTMLDetailsElement>('path-editor'), session, () => this.showPlane(this.gesture.points.length > 0));
   }
 
-  /** Shows the plane of the chosen end, head or tail, with the current line if `keepsLine`, else the chosen shape. */
+  /** Shows the plane of the chosen end with the current line if `keepsLine`, else with the chosen shape. */
   private showPlane(keepsLine = false): void {
     this.workspace = this.session.robot.workspace(this.gesture.end === 'head' ? 0 : 1);
     if (!this.workspace) return;
@@ -98,13 +98,13 @@ export class PathView {
     this.trial.predict();
   }
 
-  /** Converts a point from the plane to the picture or back. Outward is up for the head and down for the tail. */
+  /** Converts a point between the plane and the picture. Outward is up for the head and down for the tail. */
   private toPicture([x, y]: Point): Point {
     return [x, this.gesture.end === 'head' ? -y : y];
   }
 
-  /** Returns the SVG path through points, which is closed by default. */
-  private pathText(points: Point[], suffix = 'Z'): string {
+  /** Returns the SVG path through points, closed by default. */
+  private formatPath(points: Point[], suffix = 'Z'): string {
     return points.length === 0 ? '' : `M ${points.map((point) => this.toPicture(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${suffix}`;
   }
 
@@ -118,12 +118,12 @@ export class PathView {
         if (!allowed[row * columns + column]) continue;
         let endColumn = column;
         while (endColumn < columns && allowed[row * columns + endColumn]) endColumn += 1;
-        cells.push(this.pathText([corner(column, row), corner(endColumn, row), corner(endColumn, row + 1), corner(column, row + 1)]));
+        cells.push(this.formatPath([corner(column, row), corner(endColumn, row), corner(endColumn, row + 1), corner(column, row + 1)]));
         column = endColumn;
       }
     }
     this.workspacePath.setAttribute('d', cells.join(' '));
-    this.baseLine.setAttribute('d', this.pathText(shafts, ''));
+    this.baseLine.setAttribute('d', this.formatPath(shafts, ''));
     const [x, y] = this.toPicture(neutral);
     setAttributes(this.neutralDot, { cx: x, cy: y });
     const farY = firstY + rows * spacing;
@@ -140,25 +140,25 @@ export class PathView {
     put('terms', gesture.terms);
     if (document.activeElement !== this.nameInput) this.nameInput.value = gesture.name;
     this.endList.value = gesture.end;
-    this.drawnLine.setAttribute('d', this.pathText(gesture.points));
-    this.smoothedLine.setAttribute('d', this.pathText((gesture.points.length > 0 && this.session.robot.path(gesture)) || []));
+    this.drawnLine.setAttribute('d', this.formatPath(gesture.points));
+    this.smoothedLine.setAttribute('d', this.formatPath((gesture.points.length > 0 && this.session.robot.path(gesture)) || []));
   }
 
-  /** Records lines that the user draws with a finger or a mouse. */
+  /** Records the lines that the user draws with a finger or a mouse. */
   private recordLines(): void {
     let points: Point[] | null = null;
-    const pointOf = ({ clientX, clientY }: PointerEvent): Point | null => {
+    const toPlane = ({ clientX, clientY }: PointerEvent): Point | null => {
       const matrix = this.plane.getScreenCTM();
       if (!matrix) return null;
       const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
       return this.toPicture([x, y]);
     };
     const addPoint = (event: PointerEvent) => {
-      const nextPoint = pointOf(event);
+      const nextPoint = toPlane(event);
       const lastPoint = points?.at(-1);
       if (!points || !nextPoint || (lastPoint && Math.hypot(nextPoint[0] - lastPoint[0], nextPoint[1] - lastPoint[1]) < MIN_POINT_DISTANCE_MM)) return;
       points.push(nextPoint);
-      this.drawnLine.setAttribute('d', this.pathText(points, ''));
+      this.drawnLine.setAttribute('d', this.formatPath(points, ''));
     };
     this.plane.addEventListener('pointerdown', (event) => {
       if (!this.workspace) return;
@@ -175,7 +175,7 @@ export class PathView {
       if (!line) return;
       if (line.length < MIN_POINT_COUNT) {
         this.showGesture();
-        return this.trial.setMessage('A tap is not a line: hold and draw it.');
+        return this.trial.setMessage('A tap is not a line: press, hold and draw.');
       }
       this.shapeList.value = 'own';
       this.changeGesture({ points: line, size: 1 });

@@ -1,9 +1,9 @@
-// The list of problems, with one line for each cause. A line stays until its cause is gone or the user dismisses it.
+// The list of problems, with one line per cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../problem';
 import { element } from './canvas';
 import { button, make, paragraph } from './make';
 
-/** A button that solves a problem: its label and its action. */
+/** The label and action of a button that solves a problem. */
 export interface Remedy {
   label: string;
   action: () => void;

@@ -6,7 +6,7 @@ import { makeSvg } from './make';
 /** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
 const BORDER_MODULES = 4;
 
-/** Makes the QR code of a link. Throws if the link is too long for one. */
+/** Makes the QR code of a link. Throws an error if the link is too long. */
 export function makeQrCode(link: string): SVGSVGElement {
   const { size, data } = encode(link, { ecc: 'L', border: BORDER_MODULES });
   const darkModules = data.flatMap((row, y) => row.map((isDark, x) => (isDark ? `M${x} ${y}h1v1h-1z` : ''))).join('');

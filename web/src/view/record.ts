@@ -1,21 +1,21 @@
-// The panel that records runs, saves pictures and films, and lets a second robot walk beside the page's robot.
+// The panel that records runs, saves pictures and videos, and makes a second robot walk next to the page's robot.
 import { Companion } from '../companion';
 import { restartWithGait } from '../gaits/try-gait';
 import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { WORDS } from '../words';
 import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
 import type { Floor } from './floor';
 import { makeSvg } from './make';
-import { palette } from './palette';
+import { getPalette } from './palette';
 import { isShown } from './rooms';
 
-/** MIME types of films with their file extensions, in order of preference: the smallest files first. */
-const FILM_FORMATS = [
+/** MIME types of videos with their file extensions, in order of preference: smallest files first. */
+const VIDEO_FORMATS = [
   ['video/webm;codecs=vp9', 'webm'],
   ['video/webm;codecs=vp8', 'webm'],
   ['video/webm', 'webm'],
@@ -25,7 +25,7 @@ const FILM_FORMATS = [
 /** Period of the firmware's frames. */
 const FRAME_SECONDS = 0.02;
 
-/** Two robots that walk side by side; the first is the page's robot. */
+/** Two robots that walk side by side; the page's robot is the first. */
 interface Pair {
   /** The robot.toml of the second robot. */
   toml: string;
@@ -45,21 +45,21 @@ export class RecordView {
   private recording: Recording | null = null;
   private isRecording = false;
   /**
-   * The running replay: `startedAt` is its start on the page's clock, ms, and `startTime` the recording's time then, s.
-   * Null while the replay is paused or off.
+   * The running replay: `startedAt` is its start on the page's clock, ms, and `startTime` its start in the recording,
+   * s. Null while the replay is paused or off.
    */
   private playback: { startedAt: number; startTime: number } | null = null;
   private isReplaying = false;
-  /** The film that is being recorded; null for none. */
-  private film: MediaRecorder | null = null;
-  /** The second robot; null while there is none. */
+  /** The recorder of the video; null for none. */
+  private video: MediaRecorder | null = null;
+  /** The second robot; null for none. */
   private companion: Companion | null = null;
   private pair: Pair | null = null;
-  /** True until the robot starts its gait; the companion then starts, too. */
+  /** True until the robot starts its gait; the companion starts at the same time. */
   private isWaiting = false;
-  /** Time by which the companion lags behind the robot, s. */
+  /** Time that the companion is behind the robot, s. */
   private pendingSeconds = 0;
-  /** Takes the requested picture after the next drawing of the floor; null if none is requested. */
+  /** Takes the requested picture after the next drawing of the floor; null for none. */
   private onDrawn: (() => void) | null = null;
 
   constructor(
@@ -69,18 +69,18 @@ export class RecordView {
     const onClick = (id: string, action: () => void) => element(id).addEventListener('click', action);
     onClick('record', () => this.setRecording(!this.isRecording));
     onClick('replay', () => this.setReplaying(!this.isReplaying));
-    onClick('csv', () => this.recording && saveFile('run.csv', [this.recording.csv()], 'text/csv'));
+    onClick('csv', () => this.recording && saveFile('run.csv', [this.recording.formatCsv()], 'text/csv'));
     onClick('png', () => this.requestPicture(() => void this.savePng()));
     onClick('svg', () => this.requestPicture(() => void this.saveSvg()));
-    onClick('film', () => this.toggleFilm());
-    onClick('both', () => void this.startBoth(this.chosenPair()));
+    onClick('video', () => this.toggleVideo());
+    onClick('both', () => void this.startBoth(this.makePair()));
     onClick('alone', () => this.removeCompanion());
     this.timeSlider.addEventListener('input', () => {
       this.isReplaying = true;
       this.playback = null;
       this.updateButtons();
     });
-    element<HTMLButtonElement>('film').disabled = !this.filmFormat;
+    element<HTMLButtonElement>('video').disabled = !this.videoFormat;
     this.updateButtons();
     session.followRobot((description) => this.showRobot(description));
     session.state.gait.subscribe((gait) => this.followGait(gait));
@@ -116,7 +116,7 @@ export class RecordView {
     if (place) this.floor.addToTrack(place, true);
   }
 
-  /** Starts or stops the companion together with the robot, whose new activity is `gait`. */
+  /** Starts or stops the companion together with the robot; `gait` is the robot's new activity. */
   private followGait(gait: string): void {
     const { companion, pair, isWaiting } = this;
     if (!companion || !pair) return;
@@ -126,8 +126,8 @@ export class RecordView {
     } else if (!isWaiting && gait === WORDS.stop) companion.send(WORDS.stop);
   }
 
-  /** Returns the frame to draw: the current one, or that of the replay. */
-  frameToDraw(current: Frame | null): Frame | null {
+  /** Chooses the frame to draw: the current frame, or the replay's frame. */
+  chooseFrame(current: Frame | null): Frame | null {
     const { recording } = this;
     if (!this.isReplaying || !recording) return current;
     if (this.playback) {
@@ -135,19 +135,19 @@ export class RecordView {
       this.timeSlider.value = String(time);
       if (time >= recording.duration) this.playback = null;
     }
-    return recording.frameAt(this.timeSlider.valueAsNumber)?.frame ?? current;
+    return recording.findFrame(this.timeSlider.valueAsNumber)?.frame ?? current;
   }
 
-  /** The current frame of the companion; null if there is none. */
+  /** The companion's current frame; null without a companion. */
   get companionFrame(): Frame | null {
     return this.companion?.frame ?? null;
   }
 
-  /** Takes a picture if one is requested; called after each drawing of the floor. */
+  /** Takes the requested picture, if any; called after each drawing of the floor. */
   afterDrawing(): void {
     this.onDrawn?.();
     this.onDrawn = null;
-    this.floor.paintsAlways = this.film !== null;
+    this.floor.paintsAlways = this.video !== null;
   }
 
   /** Updates the texts with numbers; called several times per second. */
@@ -192,34 +192,34 @@ export class RecordView {
     this.updateButtons();
   }
 
-  /** Requests a call of `save` after the next drawing of the floor, which is drawn even if the robot in 3D hides it. */
+  /** Requests a call of `save` after the next drawing of the floor, which is drawn even behind the robot in 3D. */
   private requestPicture(save: () => void): void {
     this.onDrawn = save;
     this.floor.paintsAlways = true;
   }
 
-  /** The first format that the browser can record; undefined if it can record none. */
-  private get filmFormat(): (typeof FILM_FORMATS)[number] | undefined {
-    return typeof MediaRecorder === 'undefined' ? undefined : FILM_FORMATS.find(([type]) => MediaRecorder.isTypeSupported(type));
+  /** The first format that the browser can record; undefined for none. */
+  private get videoFormat(): (typeof VIDEO_FORMATS)[number] | undefined {
+    return typeof MediaRecorder === 'undefined' ? undefined : VIDEO_FORMATS.find(([type]) => MediaRecorder.isTypeSupported(type));
   }
 
-  private toggleFilm(): void {
-    const { filmFormat } = this;
-    if (this.film) this.film.stop();
-    else if (filmFormat) {
-      const [type, extension] = filmFormat;
+  private toggleVideo(): void {
+    const { videoFormat } = this;
+    if (this.video) this.video.stop();
+    else if (videoFormat) {
+      const [type, extension] = videoFormat;
       const pieces: Blob[] = [];
-      const film = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
-      film.addEventListener('dataavailable', ({ data }) => pieces.push(data));
-      film.addEventListener('stop', () => {
-        this.film = null;
+      const video = new MediaRecorder(element<HTMLCanvasElement>('floor').captureStream(), { mimeType: type });
+      video.addEventListener('dataavailable', ({ data }) => pieces.push(data));
+      video.addEventListener('stop', () => {
+        this.video = null;
         this.updateButtons();
-        for (const track of film.stream.getTracks()) track.stop();
+        for (const track of video.stream.getTracks()) track.stop();
         saveFile(`run.${extension}`, pieces, type);
       });
-      film.addEventListener('error', () => this.setMessage('The browser could not write the film.'));
-      film.start(1000);
-      this.film = film;
+      video.addEventListener('error', () => this.setMessage('The browser failed to record the video.'));
+      video.start(1000);
+      this.video = video;
     }
     this.updateButtons();
   }
@@ -228,7 +228,7 @@ export class RecordView {
     const canvas = element<HTMLCanvasElement>('floor');
     const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve));
     if (blob) saveFile('floor.png', [blob], 'image/png');
-    else this.setMessage('The browser could not write the picture.');
+    else this.setMessage('The browser failed to write the picture.');
   }
 
   private async saveSvg(): Promise<void> {
@@ -237,20 +237,20 @@ export class RecordView {
       const { clientWidth, clientHeight } = element('floor');
       const context = new Context(clientWidth, clientHeight);
       const label = this.floor.drawWith(context as unknown as CanvasRenderingContext2D);
-      // The package measures text with an inline style, which the page's Content Security Policy forbids.
-      context.getSvg().append(makeSvg('text', { x: label.x, y: label.y, fill: palette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
+      // The package would measure text with an inline style, which the page's Content Security Policy forbids.
+      context.getSvg().append(makeSvg('text', { x: label.x, y: label.y, fill: getPalette().ink, 'font-size': 12, 'font-family': 'sans-serif' }, label.text));
       saveFile('floor.svg', [context.getSerializedSvg()], 'image/svg+xml');
     } catch (error) {
-      this.setMessage(`The picture cannot be made: ${messageOf(error)}`);
+      this.setMessage(`Cannot make the picture: ${getMessage(error)}`);
     }
   }
 
-  private chosenPair(): Pair {
+  private makePair(): Pair {
     const gaits: [string, string] = [this.firstGaitList.value, this.secondGaitList.value];
     return { toml: this.session.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
   }
 
-  /** Lets the page's robot walk the gait that a search has found, and the second robot the gait before the search. */
+  /** Makes the page's robot walk the found gait of a search, and the second robot the previous gait. */
   async compare(previousGait: Bars, foundGait: Bars, output: HTMLElement): Promise<void> {
     const session = this.session;
     const toml = session.robot.putGait(session.toml, previousGait);
@@ -261,7 +261,7 @@ export class RecordView {
     await this.startBoth({ toml, gaits: [gait, gait], names: ['Found', 'Before'], output });
   }
 
-  /** Starts both robots in the same frame, each from its own starting place. */
+  /** Starts both robots in the same frame, each from its own start. */
   private async startBoth(pair: Pair): Promise<void> {
     const session = this.session;
     const { toml, floor, servos, volts } = session;
@@ -280,7 +280,7 @@ export class RecordView {
       this.floor.fitTwoRobots();
       await session.drive(pair.gaits[0]);
     } catch (error) {
-      this.setMessage(`The second robot cannot start: ${messageOf(error)}`, pair.output);
+      this.setMessage(`Cannot start the second robot: ${getMessage(error)}`, pair.output);
     }
   }
 
@@ -292,7 +292,7 @@ export class RecordView {
   }
 
   private updateButtons(): void {
-    const { recording, isRecording, isReplaying, film } = this;
+    const { recording, isRecording, isReplaying, video } = this;
     const hasRecording = recording !== null && recording.frames.length > 0 && !isRecording;
     const setButton = (id: string, text: string, isPressed: boolean, isEnabled = true) => {
       const button = element<HTMLButtonElement>(id);
@@ -302,7 +302,7 @@ export class RecordView {
     };
     setButton('record', isRecording ? 'Stop recording' : 'Record', isRecording);
     setButton('replay', isReplaying ? 'Back to the robot' : 'Replay', isReplaying, hasRecording);
-    setButton('film', film ? 'Stop the film' : 'Film', film !== null, this.filmFormat !== undefined);
+    setButton('video', video ? 'Stop the video' : 'Video', video !== null, this.videoFormat !== undefined);
     element<HTMLButtonElement>('csv').disabled = !hasRecording;
     this.timeSlider.disabled = !hasRecording;
     element<HTMLButtonElement>('alone').disabled = this.companion === null;

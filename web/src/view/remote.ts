@@ -1,5 +1,5 @@
 // The phone as a remote control: the page fills the screen in landscape, with the stick under one thumb and `stop`
-// under the other. The screen is kept on, since the page stops the robot when the screen goes dark.
+// under the other. The screen stays on, because the page stops the robot when the screen turns off.
 import { element } from './canvas';
 
 /** Duration of a vibration, ms. */
@@ -11,9 +11,9 @@ export class Remote {
 
   constructor() {
     this.button.addEventListener('click', () => void (this.isOn ? this.leave() : this.enter()));
-    // The system's own gesture that leaves full screen also leaves the remote control.
+    // The system's gesture that leaves full screen also leaves the remote control.
     document.addEventListener('fullscreenchange', () => !document.fullscreenElement && this.setRemote(false));
-    // A page that is hidden loses its wake lock.
+    // A hidden page loses its wake lock.
     document.addEventListener('visibilitychange', () => !document.hidden && this.isOn && void this.keepScreenOn());
   }
 
@@ -21,14 +21,14 @@ export class Remote {
     return document.body.classList.contains('remote');
   }
 
-  /** Vibrates the phone, to tell that the robot has stopped by itself. */
+  /** Vibrates the phone to report that the robot has stopped by itself. */
   vibrate(): void {
     if (navigator.userActivation?.hasBeenActive) navigator.vibrate?.(VIBRATION_MS);
   }
 
   private async enter(): Promise<void> {
     this.setRemote(true);
-    // Some browsers, such as that of an iPhone, lack some of these features; the remote control works without them.
+    // Some browsers, for example on an iPhone, do not have all these features; the remote control works without them.
     await document.documentElement.requestFullscreen?.().catch(() => {});
     const { orientation } = screen as Screen & { orientation?: { lock?(to: string): Promise<void> } };
     await orientation?.lock?.('landscape').catch(() => {});

@@ -1,11 +1,11 @@
 // The results of the room Measure: tables on the page, and files to save, share and print.
-import { svgCard, resultsCsv, columnHeadings, rangeSentence, resultRows, titleOf } from '../measure/card';
+import { drawResults, formatCsv, columnHeadings, formatRange, formatRows, formatTitle } from '../measure/card';
 import type { Report } from '../../generated/measure';
 import { element } from './canvas';
 import { saveFile } from './download';
 import { make, table } from './make';
 
-/** Pixels of the PNG for each unit of the SVG. */
+/** Pixels of the PNG per unit of the SVG. */
 const PNG_SCALE = 2;
 
 export class ResultsView {
@@ -16,7 +16,7 @@ export class ResultsView {
     const onClick = (id: string, action: () => void) => element(`measured-${id}`).addEventListener('click', action);
     onClick('svg', () => saveFile('measured.svg', [this.cardSvg], 'image/svg+xml'));
     onClick('png', () => void this.savePng());
-    onClick('csv', () => saveFile('measured.csv', [resultsCsv(this.gaits)], 'text/csv'));
+    onClick('csv', () => saveFile('measured.csv', [formatCsv(this.gaits)], 'text/csv'));
     onClick('json', () => saveFile('measured.json', [JSON.stringify({ gaits: this.gaits }, null, 2)], 'application/json'));
     onClick('print', () => print());
   }
@@ -25,12 +25,12 @@ export class ResultsView {
   show(gaits: Report[]): void {
     this.gaits = gaits;
     element('measure-results').hidden = gaits.length === 0;
-    const sections = gaits.flatMap((report) => [make('h4', {}, titleOf(report)), table(titleOf(report), columnHeadings(report), resultRows(report)), make('p', { className: 'note' }, rangeSentence(report))]);
+    const sections = gaits.flatMap((report) => [make('h4', {}, formatTitle(report)), table(formatTitle(report), columnHeadings(report), formatRows(report)), make('p', { className: 'note' }, formatRange(report))]);
     element('measured').replaceChildren(...sections);
   }
 
   private get cardSvg(): string {
-    return svgCard(this.robotName(), this.gaits);
+    return drawResults(this.robotName(), this.gaits);
   }
 
   private async savePng(): Promise<void> {

@@ -1,4 +1,4 @@
-// The list of robots: the user's own, those that come with the page, and, under a heading, those meant for tests.
+// The list of robots: the user's own robots, the page's robots, and, under a heading, the robots for tests.
 import { files } from '../files';
 import { element } from './canvas';
 
@@ -35,24 +35,24 @@ export class RobotChoice {
   }
 
   /**
-   * Loads the list of the robots that come with the page. Throws an error with a message for the user if it is missing.
+   * Loads the list of the page's robots. Throws an error with a message for the user if the list is missing.
    */
   static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();
     return new RobotChoice(all, tests);
   }
 
-  /** Calls `action` when the user has chosen a robot. */
+  /** Calls `action` when the user chooses a robot. */
   onChange(action: () => void): void {
     this.list.addEventListener('change', action);
   }
 
-  /** The file name of the chosen robot; that of the first one if one of the user's own is chosen. */
+  /** The file name of the chosen robot; the first file name if one of the user's own robots is chosen. */
   get chosenFile(): string {
     return this.robots.find((name) => name === this.list.value) ?? this.robots[0];
   }
 
-  /** Selects a robot by its file name; returns true if it is in the list. */
+  /** Selects a robot by its file name; returns true if the list has this name. */
   select(name: string): boolean {
     const isListed = this.robots.includes(name);
     if (isListed) this.list.value = name;

@@ -1,9 +1,9 @@
-// The panel of the robot.toml as text, which can be edited, opened, dropped on the page, undone, and shared as a link.
-import { addressParts } from '../address';
-import { linkTo, unpack } from '../link-text';
+// The panel with the robot.toml as text: the user can edit, open, drop, undo and share it.
+import { parseFragment } from '../address';
+import { makeLink, unpack } from '../link-text';
 import type { Refused } from '../robot';
 import type { Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import type { Writer } from './writer';
@@ -15,13 +15,13 @@ export class RobotText {
   private readonly textBox = element<HTMLTextAreaElement>('robot-text');
   private readonly undoButton = element<HTMLButtonElement>('robot-undo');
   private readonly redoButton = element<HTMLButtonElement>('robot-redo');
-  /** The texts of robot.toml before the last changes, the latest at the end. */
+  /** The robot.toml texts before the last changes, with the latest text at the end. */
   private undoStack: string[] = [];
-  /** The texts of robot.toml that were undone, the latest at the end. */
+  /** The undone robot.toml texts, with the latest text at the end. */
   private redoStack: string[] = [];
-  /** The session's robot.toml that was shown last; empty before the first. */
+  /** The last shown robot.toml of the session; empty before the first. */
   private shownToml = '';
-  /** The refusal of the shown text; null if the session's robot was loaded from it. */
+  /** The refusal of the shown text; null if the session has loaded this text. */
   refusal: Refused | null = null;
 
   /** `onChange` is called when the text or its refusal changes. */
@@ -48,7 +48,7 @@ export class RobotText {
     opener.addEventListener('change', () => {
       const file = opener.files?.[0];
       if (file) void this.openFile(file);
-      // Otherwise the same file could not be chosen again.
+      // Without this reset, the same file could not be chosen again.
       opener.value = '';
     });
     document.addEventListener('dragover', (event) => {
@@ -65,7 +65,7 @@ export class RobotText {
   /** Shows the session's robot. */
   private showRobot(): void {
     const { toml, file } = this.session;
-    // The name is empty while a robot chosen from the list is loaded: there is nothing to undo then.
+    // The name is empty while a robot chosen from the list is loading: it has no changes to undo.
     if (file === '') this.undoStack = [];
     else if (this.shownToml !== '' && this.shownToml !== toml) this.undoStack = [...this.undoStack.slice(1 - MAX_UNDO_STEPS), this.shownToml];
     if (this.shownToml !== toml) this.redoStack = [];
@@ -84,28 +84,28 @@ export class RobotText {
     return this.undoStack.length > 0 || this.refusal !== null;
   }
 
-  /** Loads the robot in an address, if there is one; returns false if it is invalid. */
+  /** Loads the robot in an address, if any; returns false if the robot is invalid. */
   async loadFromAddress(hash = location.hash): Promise<boolean> {
     try {
-      const encoded = addressParts(hash).get('robot');
+      const encoded = parseFragment(hash).get('robot');
       const toml = encoded === null ? this.session.toml : await unpack(encoded);
       return toml === this.session.toml || (await this.loadAndShow(toml));
     } catch (error) {
       reveal(this.textBox);
-      this.showRefusal({ refused: messageOf(error), consequence: null, line: null, key: '' });
+      this.showRefusal({ refused: getMessage(error), consequence: null, line: null, key: '' });
       return false;
     }
   }
 
   private async openFile(file: File): Promise<void> {
     reveal(this.textBox);
-    // A binary file must not be shown in the box.
+    // The box must not show a binary file.
     const toml = file.size > 1_000_000 ? '' : await file.text();
     if (toml === '' || toml.includes('\0')) return this.showRefusal({ refused: `${file.name} is not a robot.toml.`, consequence: null, line: null, key: '' });
     await this.loadAndShow(toml);
   }
 
-  /** Loads a text as the robot, or shows it with its error; returns true if it was accepted. */
+  /** Loads a text as the robot, or shows it with its error; returns true if the text was accepted. */
   async loadText(toml: string): Promise<boolean> {
     const refusal = await this.session.change(toml);
     if (!refusal) return true;
@@ -115,8 +115,8 @@ export class RobotText {
   }
 
   /**
-   * Loads a text as the robot; if it is refused, opens the panel and selects the line with the error. Returns true if
-   * it was accepted.
+   * Loads a text as the robot; after a refusal, opens the panel and selects the line with the error. Returns true if
+   * the text was accepted.
    */
   private async loadAndShow(toml: string): Promise<boolean> {
     if (await this.loadText(toml)) return true;
@@ -141,17 +141,17 @@ export class RobotText {
     if (lastToml !== undefined) await this.restore(lastToml, undoStack.slice(0, -1), [...redoStack, shownToml]);
   }
 
-  /** Restores the robot that was undone last. */
+  /** Restores the last undone robot. */
   private async redo(): Promise<void> {
     const { undoStack, redoStack, shownToml } = this;
     const nextToml = redoStack.at(-1);
     if (nextToml !== undefined) await this.restore(nextToml, [...undoStack, shownToml], redoStack.slice(0, -1));
   }
 
-  /** Loads an earlier robot into the session, with the stacks for undo and redo that belong to it. */
+  /** Loads another robot into the session, with its stacks for undo and redo. */
   private async restore(toml: string, undoStack: string[], redoStack: string[]): Promise<void> {
     const current = { undoStack: this.undoStack, redoStack: this.redoStack, shownToml: this.shownToml };
-    // The stacks are set first, so that the restored robot is not taken for a new change.
+    // The stacks are set first, so that the restored robot does not count as a new change.
     Object.assign(this, { undoStack, redoStack, shownToml: toml });
     const refusal = await this.session.change(toml);
     if (!refusal) return;
@@ -161,10 +161,10 @@ export class RobotText {
 
   private async copyLink(): Promise<void> {
     try {
-      await navigator.clipboard.writeText(await linkTo(this.session.toml));
+      await navigator.clipboard.writeText(await makeLink(this.session.toml));
       this.setMessage('The link is copied: it opens this robot, without the comments of its text.');
     } catch (error) {
-      this.setMessage(`The link could not be copied: ${messageOf(error)}`);
+      this.setMessage(`Cannot copy the link: ${getMessage(error)}`);
     }
   }
 
@@ -177,11 +177,11 @@ export class RobotText {
     if (!isShown) return this.setMessage('');
     try {
       const { makeQrCode } = await import('./qr-code');
-      codeBox.replaceChildren(makeQrCode(await linkTo(this.session.toml)));
+      codeBox.replaceChildren(makeQrCode(await makeLink(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
-      this.setMessage(isLocal ? 'This address is this computer’s own: a phone reaches the page only where a web server serves it.' : 'A phone’s camera opens this robot.');
+      this.setMessage(isLocal ? 'This address works only on this computer: a phone needs the page’s address on a web server.' : 'Scan the code with a phone’s camera to open this robot.');
     } catch (error) {
-      this.setMessage(`No code can be drawn: ${messageOf(error)}`);
+      this.setMessage(`Cannot draw the code: ${getMessage(error)}`);
     }
   }
 
@@ -204,7 +204,7 @@ export class RobotText {
     button.hidden = refusal?.line == null;
     button.textContent = `Go to line ${refusal?.line}`;
     this.setMessage('');
-    // A QR code that is still shown belongs to another text.
+    // A shown QR code belongs to the previous text.
     element('robot-drawn').replaceChildren();
     element('robot-code').setAttribute('aria-pressed', 'false');
     this.textBox.setAttribute('aria-invalid', String(refusal !== null));

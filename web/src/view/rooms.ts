@@ -1,26 +1,26 @@
-// The rooms beside the stage, of which one is open. The parameter `room` of the page's address names it, so that links
-// and the browser's Back button open a room.
-import { addressParts } from '../address';
+// The rooms next to the stage, of which one is open. The parameter `room` of the page's address names the open room, so
+// that links and the browser's Back button open rooms.
+import { parseFragment } from '../address';
 import type { Description } from '../robot';
 import type { Session } from '../session';
 
-/** The type of the event that is dispatched on the document after another room was opened. */
+/** The type of the event that the document receives after another room is opened. */
 export const ROOM_OPENED = 'room';
 
 const FIRST_ROOM = 'start';
 const PAGE_NAME = document.title;
 
-const roomIdOf = (room: string) => `room-${room}`;
-const allRooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
+const toRoomId = (room: string) => `room-${room}`;
+const findRooms = () => [...document.querySelectorAll<HTMLElement>('.room')];
 
-/** Opens the room that an address names, or the first one. */
+/** Opens the room that an address names, or the first room. */
 export function openRoom(hash: string): void {
-  const requestedId = roomIdOf(addressParts(hash).get('room') ?? FIRST_ROOM);
-  const room = allRooms().find(({ id }) => id === requestedId) ?? allRooms()[0];
+  const requestedId = toRoomId(parseFragment(hash).get('room') ?? FIRST_ROOM);
+  const room = findRooms().find(({ id }) => id === requestedId) ?? findRooms()[0];
   if (!room || room.id === document.body.dataset.at) return;
-  for (const candidate of allRooms()) candidate.hidden = candidate !== room;
+  for (const candidate of findRooms()) candidate.hidden = candidate !== room;
   for (const link of document.querySelectorAll<HTMLAnchorElement>('nav a')) {
-    const isOpenRoom = roomIdOf(addressParts(link.hash).get('room') ?? '') === room.id;
+    const isOpenRoom = toRoomId(parseFragment(link.hash).get('room') ?? '') === room.id;
     if (isOpenRoom) link.setAttribute('aria-current', 'page');
     else link.removeAttribute('aria-current');
   }
@@ -32,10 +32,10 @@ export function openRoom(hash: string): void {
   for (const panel of room.querySelectorAll('details[open]')) panel.dispatchEvent(new Event('toggle'));
 }
 
-/** True if a panel is unfolded and its room is open; other panels draw nothing. */
+/** Returns true if a panel is unfolded and its room is open; other panels draw nothing. */
 export const isShown = (panel: HTMLDetailsElement) => panel.open && panel.closest<HTMLElement>('.room')?.hidden === false;
 
-/** Calls `show` once for each robot.toml of the session, as soon as the panel is shown. */
+/** Calls `show` once per robot.toml of the session, as soon as the panel is shown. */
 export function followShownRobot(panel: HTMLDetailsElement, session: Session, show: (description: Description) => void): void {
   let shownToml = '';
   const update = () => {
@@ -54,6 +54,6 @@ export function reveal(target: HTMLElement): void {
   const panel = target.closest('details');
   if (panel) panel.open = true;
   if (!room || room.id === document.body.dataset.at) return;
-  location.hash = `room=${room.id.slice(roomIdOf('').length)}`;
+  location.hash = `room=${room.id.slice(toRoomId('').length)}`;
   openRoom(location.hash);
 }

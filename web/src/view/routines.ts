@@ -12,12 +12,12 @@ import type { Writer } from './writer';
 
 /** The first step of a new routine. */
 const FIRST_STEP = 'stand 1 s';
-/** Least width and height of the picture of the path without its margin. */
+/** Smallest width and height of the path's picture without its margin. */
 const MIN_SIZE_MM = 160;
 /** Margin around the path in the picture. */
 const MARGIN_MM = 20;
 
-/** Formats a number without decimals; zero has no minus sign. */
+/** Formats a number without decimals and without -0. */
 const formatRounded = (value: number) => (Math.round(value) + 0).toFixed(0);
 
 /** Returns a copy of the list with the item at the index `from` moved to the index `to`. */
@@ -35,11 +35,11 @@ export class RoutinesView {
   private readonly pathPicture = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
   private routines: Routine[] = [];
   private recorder: Recorder | null = null;
-  /** The recorded steps until they are stored under a name or dropped. */
+  /** The recorded steps until the user stores or drops them. */
   private recordedSteps: string[] = [];
-  /** The index of the dragged step, and its new index if it is dropped now; null without a drag. */
+  /** The index of the dragged step, and its new index after a release now; null without a drag. */
   private drag: { from: number; to: number } | null = null;
-  /** Asks for the predicted path. */
+  /** Requests the predicted path. */
   private readonly pathQuestion = createRobotQuestion((robot, question: OnFloor & { routine: string }) => robot.round(question), (path) => this.drawPath(path));
 
   constructor(
@@ -68,7 +68,7 @@ export class RoutinesView {
     follow([state.floor, state.servos], () => this.predict());
   }
 
-  /** Shows the routines in the text, if the panel is shown. */
+  /** Shows the text's routines, if the panel is shown. */
   show(): void {
     if (!isShown(this.panel)) return;
     const { value } = this.routineList;
@@ -81,7 +81,7 @@ export class RoutinesView {
     this.predict();
   }
 
-  /** Predicts the path of the chosen routine, with its steps in the shown order. */
+  /** Predicts the path of the chosen routine with its steps in the shown order. */
   private predict(): void {
     if (!isShown(this.panel)) return;
     const { chosenRoutine } = this;
@@ -99,22 +99,22 @@ export class RoutinesView {
     return { ...chosen, steps: moveItem(chosen.steps, this.drag.from, this.drag.to) };
   }
 
-  /** Starts a recording, or ends it and offers to store its steps. */
+  /** Starts a recording, or ends the recording and offers to store its steps. */
   private toggleRecording(): void {
     const { description, gait, pace, clock } = this.session;
-    const steps = this.recorder?.steps(clock) ?? null;
+    const steps = this.recorder?.listSteps(clock) ?? null;
     this.recorder = steps ? null : new Recorder(description.gaits, gait, pace, clock);
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
     this.offerToStore(steps ?? []);
-    if (steps?.length === 0) this.setMessage('Nothing is recorded: the robot has not walked.');
+    if (steps?.length === 0) this.setMessage('Nothing was recorded, because the robot did not walk.');
     this.showRecording();
   }
 
   /** Shows the steps recorded so far. */
   private showRecording(): void {
-    if (this.recorder) this.setMessage(`Recording: ${this.recorder.steps(this.session.clock).join(', ') || 'drive now'}`);
+    if (this.recorder) this.setMessage(`Recording: ${this.recorder.listSteps(this.session.clock).join(', ') || 'drive the robot now'}`);
   }
 
   /** Offers to store recorded steps under a name; hides the offer if there are no steps. */
@@ -132,9 +132,9 @@ export class RoutinesView {
   private async storeRecorded(): Promise<void> {
     const name = this.nameInput.value.trim().replaceAll(' ', '-');
     const { draft } = this.text;
-    if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`${name} is there already: give it another name.`);
+    if (Robot.routines(draft).some((routine) => routine.name === name)) return this.setMessage(`The routine ${name} already exists; choose another name.`);
     const { text, refusal } = Robot.putSteps(draft, name, this.recordedSteps);
-    // A routine with an invalid step is stored anyway: the step's block shows the error.
+    // A routine with an invalid step is stored, too: the step's block shows the error.
     if (refusal && refusal.key !== `routine.${name}.steps`) return this.setMessage(refusal.refused);
     this.offerToStore([]);
     await this.text.loadText(text);
@@ -142,14 +142,14 @@ export class RoutinesView {
     this.show();
   }
 
-  /** Appends a copy of the last step, and selects its text. */
+  /** Appends a copy of the last step and selects its text. */
   private async addStep(): Promise<void> {
     const { steps, name } = this.chosenRoutine ?? { steps: [], name: 'patrol' };
     await this.replaceSteps([...steps, steps.at(-1) ?? FIRST_STEP], name);
-    this.inputAt(steps.length)?.select();
+    this.findInput(steps.length)?.select();
   }
 
-  /** Replaces the steps of the routine `name`, by default the chosen one. */
+  /** Replaces the steps of the routine `name`, by default the chosen routine. */
   private async replaceSteps(steps: string[], name = this.routineList.value): Promise<void> {
     this.setMessage('');
     await this.text.loadText(Robot.putSteps(this.text.draft, name, steps).text);
@@ -168,7 +168,7 @@ export class RoutinesView {
     await session.drive(this.routineList.value.replaceAll('-', ' '));
   }
 
-  private inputAt(index: number): HTMLInputElement | null {
+  private findInput(index: number): HTMLInputElement | null {
     return this.stepList.children[index]?.querySelector('input') ?? null;
   }
 
@@ -178,9 +178,9 @@ export class RoutinesView {
     const steps = chosenRoutine?.steps ?? [];
     while (stepList.children.length > steps.length) stepList.lastElementChild?.remove();
     while (stepList.children.length < steps.length) stepList.append(this.makeBlock(stepList.children.length));
-    const invalidIndex = chosenRoutine && refusal?.key === `routine.${chosenRoutine.name}.steps` ? invalidStepIndex(refusal) : null;
+    const invalidIndex = chosenRoutine && refusal?.key === `routine.${chosenRoutine.name}.steps` ? parseStepIndex(refusal) : null;
     steps.forEach((step, index) => {
-      const [block, input] = [stepList.children[index], this.inputAt(index)];
+      const [block, input] = [stepList.children[index], this.findInput(index)];
       if (!block || !input) return;
       if (input.value !== step) input.value = step;
       block.classList.toggle('held', this.drag?.to === index);
@@ -196,7 +196,7 @@ export class RoutinesView {
     element('routine-none').hidden = chosenRoutine !== null;
   }
 
-  /** Makes the block of the step at an index, with a grip, an input and buttons. */
+  /** Makes the block of the step with this index: a grip, an input and buttons. */
   private makeBlock(index: number): HTMLLIElement {
     const grip = make('span', { className: 'grip', ariaHidden: 'true' }, '⠿');
     this.addDragHandlers(grip, index);
@@ -220,9 +220,9 @@ export class RoutinesView {
     return this.stepList.children[index]?.querySelector(`[aria-label^="${label}"]`) ?? null;
   }
 
-  /** Lets a pointer drag a step by its grip to another index, and updates the predicted path meanwhile. */
+  /** Lets a pointer drag a step by its grip; the predicted path follows the drag. */
   private addDragHandlers(grip: HTMLElement, index: number): void {
-    const indexAt = (y: number) => [...this.stepList.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
+    const findIndex = (y: number) => [...this.stepList.children].findLastIndex((block) => block.getBoundingClientRect().top <= y);
     const dragTo = (to: number) => {
       if (!this.drag || this.drag.to === to) return;
       this.drag = { from: index, to };
@@ -235,7 +235,7 @@ export class RoutinesView {
       this.drag = { from: index, to: index };
       this.showSteps();
     });
-    grip.addEventListener('pointermove', ({ clientY }) => dragTo(Math.max(0, indexAt(clientY))));
+    grip.addEventListener('pointermove', ({ clientY }) => dragTo(Math.max(0, findIndex(clientY))));
     grip.addEventListener('pointerup', () => {
       const { drag } = this;
       this.drag = null;
@@ -255,12 +255,12 @@ export class RoutinesView {
     element('routine-round').textContent = path && endPlace ? describeRound(path, endPlace) : '';
     if (!path || !endPlace) return;
     const [xs, ys] = [path.places.map(({ x }) => x), path.places.map(({ y }) => -y)];
-    const rangeOf = (values: number[]) => {
+    const computeRange = (values: number[]) => {
       const [smallest, largest] = [Math.min(...values), Math.max(...values)];
       const size = Math.max(MIN_SIZE_MM, largest - smallest) + 2 * MARGIN_MM;
       return { from: (smallest + largest - size) / 2, size };
     };
-    const [horizontal, vertical] = [rangeOf(xs), rangeOf(ys)];
+    const [horizontal, vertical] = [computeRange(xs), computeRange(ys)];
     this.pathPicture.setAttribute('viewBox', `${horizontal.from} ${vertical.from} ${horizontal.size} ${vertical.size}`);
     const findPart = (name: string) => this.pathPicture.querySelector(`.${name}`);
     findPart('track')?.setAttribute('d', `M ${xs.map((x, n) => `${x.toFixed(1)} ${ys[n]?.toFixed(1)}`).join(' L ')}`);
@@ -270,15 +270,15 @@ export class RoutinesView {
   }
 }
 
-/** Returns the index of the step that a refusal names; null if it names none. */
-function invalidStepIndex({ refused }: Refused): number | null {
+/** Returns the index of the step that a refusal names; null if it names no step. */
+function parseStepIndex({ refused }: Refused): number | null {
   const stepText = /: step (\d+), /.exec(refused)?.[1];
   return stepText === undefined ? null : Number(stepText) - 1;
 }
 
-/** Returns a sentence about the duration of a round and the place where it ends. */
-function describeRound({ seconds, is_cut }: RoundPath, { x, y, heading }: Place): string {
-  const subject = is_cut ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
+/** Returns a sentence about a round's duration and end. */
+function describeRound({ seconds, is_truncated }: RoundPath, { x, y, heading }: Place): string {
+  const subject = is_truncated ? `The first ${seconds.toFixed(0)} s of a round` : `A round takes ${seconds.toFixed(1)} s and`;
   const sideText = `${formatRounded(Math.abs(x))} mm to the ${x > 0 ? 'right' : 'left'}`;
-  return `${subject} ${is_cut ? 'end' : 'ends'} ${formatRounded(y)} mm ahead and ${sideText} of its start, turned by ${formatRounded(heading)}°.`;
+  return `${subject} ${is_truncated ? 'end' : 'ends'} ${formatRounded(y)} mm ahead and ${sideText} of its start, turned by ${formatRounded(heading)}°.`;
 }

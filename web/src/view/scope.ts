@@ -1,4 +1,4 @@
-// The panel of the four servos' pulses: the pulses as on an oscilloscope, and their widths as numbers.
+// The panel of the servos' pulses: the pulses as on an oscilloscope, and their widths as numbers.
 import { effect } from '@preact/signals-core';
 
 import type { Description, Scene } from '../robot';
@@ -6,22 +6,22 @@ import type { Session } from '../session';
 import { FREQUENCY_HZ } from '../uno/board';
 import { element, polyline, setText, prepareSurface } from './canvas';
 import { make } from './make';
-import { palette, servoColour } from './palette';
+import { getPalette, getServoColour } from './palette';
 import { isShown } from './rooms';
 
-/** Time span of the scope, CPU cycles: three frames. */
+/** Time span of the scope: three frames, in CPU cycles. */
 const SPAN_CYCLES = 0.06 * FREQUENCY_HZ;
 const CYCLES_PER_US = FREQUENCY_HZ / 1e6;
 
-/** A pulse of a servo: the time of its rising edge and its width, CPU cycles. */
+/** A servo's pulse: the cycle of its rising edge, and its width in CPU cycles. */
 interface Pulse {
   servo: number;
   riseCycle: number;
   widthCycles: number;
 }
 
-/** Returns the name that the board has for the pin with this Arduino number. */
-function pinName(pin: number): string {
+/** Returns the label on the board of the pin with this Arduino number. */
+function formatPin(pin: number): string {
   return pin >= 14 ? `A${pin - 14}` : `D${pin}`;
 }
 
@@ -34,7 +34,7 @@ export class ScopeView {
   private readonly note = element('scope-note');
   /** Pulse widths of the latest frame, CPU cycles; 0 for no pulse. */
   private frameWidths = [0, 0, 0, 0];
-  /** True for the simulated board, whose pulses are known; a real board reports only its pose. */
+  /** True for the simulated board, whose pulses are known; a real board reports only poses. */
   private hasPulses = true;
 
   constructor(session: Session) {
@@ -52,7 +52,7 @@ export class ScopeView {
       const swatch = make('span', { className: 'swatch' });
       swatch.style.background = `var(--a${servo + 1})`;
       const [width, angle] = [make('td', {}, '–'), make('td', {}, '–')];
-      body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, pinName(pin)), width, angle));
+      body.append(make('tr', {}, make('td', {}, swatch, name), make('td', {}, formatPin(pin)), width, angle));
       this.rows.push({ width, angle });
     });
   }
@@ -78,7 +78,7 @@ export class ScopeView {
     this.frameWidths = [...widths];
   }
 
-  /** Updates the table; called less often than `draw`, since each change of a text costs a layout of the page. */
+  /** Updates the table; called less often than `draw`, because each change of a text causes a layout. */
   updateNumbers(scene: Scene | null): void {
     if (!isShown(this.panel)) return;
     this.rows.forEach(({ width, angle }, servo) => {
@@ -96,20 +96,20 @@ export class ScopeView {
     if (!surface) return;
     const { context, width, height } = surface;
     const rowHeight = height / 4;
-    const xOf = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
+    const toX = (cycle: number) => width * (1 - (currentCycle - cycle) / SPAN_CYCLES);
     for (let servo = 0; servo < 4; servo++) {
       const lowY = (servo + 1) * rowHeight - 3;
       const highY = servo * rowHeight + 5;
-      context.strokeStyle = palette().grid;
+      context.strokeStyle = getPalette().grid;
       context.lineWidth = 1;
       context.strokeRect(-1, servo * rowHeight, width + 2, rowHeight);
       if (!this.hasPulses) continue;
-      context.strokeStyle = servoColour(servo);
+      context.strokeStyle = getServoColour(servo);
       context.lineWidth = 2;
       context.beginPath();
       const edges = this.pulses
         .filter((pulse) => pulse.servo === servo)
-        .map(({ riseCycle, widthCycles }) => [xOf(riseCycle), xOf(riseCycle + widthCycles)])
+        .map(({ riseCycle, widthCycles }) => [toX(riseCycle), toX(riseCycle + widthCycles)])
         .filter(([, to]) => to >= 0);
       polyline(context, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
       context.stroke();

@@ -1,17 +1,17 @@
-// The dialog of the first connection, in which a new robot is set up step by step. The user can enter and leave the
-// steps in any order.
+// The dialog of the first connection, which sets up a new robot step by step. The user can enter and leave the steps in
+// any order.
 import type { Guide } from '../../generated/board';
 import { follow } from '../follow';
 import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
 import { BoardGuide } from '../setup/guide';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { GAITS, NOTHING_SAVED_LINE } from '../words';
 import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import { boardStep } from './setup/board';
-import { makeDrawing, SERVO_PLACES } from './setup/drawing';
+import { makeDrawing, SERVO_POSITIONS } from './setup/drawing';
 import { firmwareStep } from './setup/firmware';
 import { hornsStep } from './setup/horns';
 import { keepStep } from './setup/keep';
@@ -25,10 +25,10 @@ import { walkStep } from './setup/walk';
 import type { WriteContent, Writer } from './writer';
 
 const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, new SignsStep(), trimsStep, new ScaleStep(), new LimitsStep(), walkStep, keepStep];
-const LOST_MESSAGE = 'The board is not connected any more. What was not saved is lost. Connect it again and go on here.';
+const LOST_MESSAGE = 'The board is no longer connected. Unsaved settings are lost. Connect it again and continue here.';
 const NO_ROBOT_MESSAGE = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
-/** The dialog. The steps call its methods as plain functions, so these methods are arrow functions. */
+/** The dialog. The steps call its methods as plain functions; therefore these methods are arrow functions. */
 export class Setup implements StepTools {
   guide: BoardGuide | null = null;
   servo = 0;
@@ -43,23 +43,23 @@ export class Setup implements StepTools {
   private readonly drawingBox = element('setup-drawing');
   private readonly message = element('setup-said');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
-  /** Number of actions that were started or dropped so far; identifies the result of an outdated action. */
+  /** Number of started or dropped actions so far; identifies the result of an outdated action. */
   private actionCount = 0;
   private isBusy = false;
-  /** True if the dialog itself has started the running action; the action of a button then waits until it ends. */
+  /** True if the dialog itself started the running action; a button's action then waits until it ends. */
   private isAutomatic = false;
-  /** The action of a button that starts when the running action ends; null for none. */
+  /** The button's action that starts after the running action; null for none. */
   private waitingAction: (() => Promise<string>) | null = null;
-  /** Settles when the last action ends. */
+  /** Settles at the end of the last action. */
   private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
   private wasReal = false;
   /**
-   * True from the loss of a board until the next connection, or until the user goes on without it: an action that
-   * started on the lost board must not continue on another one.
+   * True from the loss of a board until the next connection, or until the user continues without the board: an action
+   * that started on the lost board must not continue on another board.
    */
   private isLost = false;
-  /** True if the board has reported that no calibration is saved on it. */
+  /** True if the board has reported that it has no saved calibration. */
   private isUncalibrated = false;
 
   constructor(
@@ -74,7 +74,7 @@ export class Setup implements StepTools {
     for (const { name } of STEPS) {
       this.stepList.append(make('li', {}, button(name, () => this.goTo(name))));
     }
-    SERVO_PLACES.forEach((place, servo) => {
+    SERVO_POSITIONS.forEach((place, servo) => {
       const choose = () => {
         this.servo = servo;
         this.message.textContent = '';
@@ -87,7 +87,7 @@ export class Setup implements StepTools {
     follow([link, banner, bannerCount, description, writer.isBusy], () => link.value && this.followLink());
   }
 
-  /** True while the dialog is open; hands may then be in the robot. */
+  /** True while the dialog is open; the user's hands may then be in the robot. */
   get isOpen(): boolean {
     return !this.dialog.hidden;
   }
@@ -102,10 +102,10 @@ export class Setup implements StepTools {
     this.enterStep(step);
   }
 
-  /** Opens the first step that a newly connected board needs, if it needs one. */
+  /** Opens the first step that a newly connected board needs, if any. */
   openNeededStep(): void {
     const { banner, hasThisRobot, link } = this.session;
-    // Nothing can be written by radio, and a user who has added a radio module has been through these steps.
+    // A radio cannot write, and a user with a radio module has already finished these steps.
     if (link.kind === 'radio' && this.dialog.hidden) return;
     const step = banner === null || (banner !== 'unknown' && !hasThisRobot) ? firmwareStep : this.isUncalibrated ? hornsStep : null;
     if (this.dialog.hidden) {
@@ -113,12 +113,12 @@ export class Setup implements StepTools {
     } else this.enterStep(this.step === boardStep && step ? step : this.step);
   }
 
-  /** Notes a line that the robot has sent. */
+  /** Evaluates a line from the robot. */
   noteReceived(line: string): void {
     if (line.startsWith(NOTHING_SAVED_LINE)) this.isUncalibrated = true;
   }
 
-  /** Updates the view for the session's link; drops the current action if the link is a new one. */
+  /** Updates the view for the session's link; drops the current action if the link is new. */
   private followLink(): void {
     const { link, isReal } = this.session;
     if (link === this.lastLink) return this.update();
@@ -137,12 +137,12 @@ export class Setup implements StepTools {
     if (this.guide && !this.guide.isCurrent) {
       const { isChanged } = this.guide;
       this.dropAction(isChanged);
-      this.setMessage(isChanged ? 'The board has restarted. What was not saved is lost.' : 'The board has restarted.');
+      this.setMessage(isChanged ? 'The board has restarted. Unsaved settings are lost.' : 'The board has restarted.');
     }
     if (!this.dialog.hidden && !this.isBusy) this.redraw();
   }
 
-  /** Drops the current action. Finished steps stay finished, unless unsaved settings are lost (`areSettingsLost`). */
+  /** Drops the current action. If `areSettingsLost`, finished steps are no longer finished. */
   private dropAction(areSettingsLost = true): void {
     this.actionCount += 1;
     this.setBusy(false);
@@ -152,16 +152,16 @@ export class Setup implements StepTools {
     for (const step of STEPS) step.reset?.();
   }
 
-  /** Closes the dialog after the current action; if settings are unsaved, restores the previous calibration. */
+  /** Closes the dialog after the current action; restores the previous calibration if settings are unsaved. */
   private async leave(): Promise<void> {
     if (this.guide?.isCurrent) await this.runningAction;
     let message = '';
     const { guide } = this;
     if (guide?.isCurrent) {
       try {
-        if (await guide.run((board) => board.restore())) message = 'The first connection was left: the robot has the calibration that it had before.';
+        if (await guide.run((board) => board.restore())) message = 'You have left the first connection; the robot has its previous calibration.';
       } catch (error) {
-        message = `The first connection was left, and the robot may have a calibration that is not saved, until its reset: ${messageOf(error)}`;
+        message = `You have left the first connection; the robot may have an unsaved calibration until its next reset: ${getMessage(error)}`;
       }
     }
     this.dialog.hidden = true;
@@ -193,7 +193,7 @@ export class Setup implements StepTools {
       const calibration = parseCalibration(text, name);
       const guide = await this.requireGuide();
       await guide.run((board) => board.replace(calibration));
-      return `The robot has the calibration of ${name}. It is not saved yet.`;
+      return `The robot has the calibration of ${name}, which is not saved yet.`;
     });
   };
 
@@ -206,7 +206,7 @@ export class Setup implements StepTools {
       return 'The robot stands.';
     });
 
-  /** Returns the guide for the connected robot; starts it first if needed. */
+  /** Returns the guide for the connected robot; starts the guide if needed. */
   private async requireGuide(): Promise<BoardGuide> {
     if (this.isLost) throw new Error(LOST_MESSAGE);
     if (!this.session.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
@@ -214,7 +214,7 @@ export class Setup implements StepTools {
     return this.guide;
   }
 
-  /** Runs an action, unless another one is running; `isAutomatic` is true if the dialog itself starts it. */
+  /** Runs an action unless another action is running; `isAutomatic` is true if the dialog itself starts the action. */
   private runAction(action: () => Promise<string>, isAutomatic = false): void {
     if (this.isBusy) {
       if (this.isAutomatic && !isAutomatic) this.waitingAction = action;
@@ -225,7 +225,7 @@ export class Setup implements StepTools {
     this.setBusy(true);
     this.setMessage('');
     this.runningAction = action()
-      .catch(messageOf)
+      .catch(getMessage)
       .then((message) => {
         if (actionNumber !== this.actionCount) return;
         this.setBusy(false);
@@ -263,7 +263,7 @@ export class Setup implements StepTools {
     this.redraw();
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;
-    // Servos that the previous step has turned go back to neutral.
+    // Servos that the previous step turned return to neutral.
     const { guide } = this;
     if (!guide) this.runAction(async () => this.requireGuide().then(() => ''), true);
     else if (this.session.gait !== GAITS.stand) this.runAction(async () => guide.run((board) => board.stand()).then(() => ''), true);
@@ -305,7 +305,7 @@ export class Setup implements StepTools {
             ...(isLost ? [button('Try this step on the simulated UNO', tryOnSimulation)] : []),
           ),
         ];
-    // The focus stays on the button with the same text, or goes to the main button, or else to the title.
+    // The focus stays on a button with the same text, or else moves to the main button or the title.
     const focusedText = this.content.contains(document.activeElement) ? document.activeElement?.textContent : null;
     this.content.replaceChildren(...elements);
     if (focusedText === null) return;

@@ -1,10 +1,10 @@
-// A drawing of the robot whose joints can be dragged, and a slider for one length. Invalid lengths are refused during
-// the drag.
+// A drawing of the robot with joints that the user can drag, and a slider for one length. Invalid lengths are refused
+// during the drag.
 import type { Edits, Length, Scene, Point } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
 import type { RobotWorkerApi } from '../robot-worker';
 import type { Session } from '../session';
-import { bars, type Joint, joints } from '../sketch/joints';
+import { type Joint, listBars, listJoints } from '../sketch/joints';
 import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
@@ -15,7 +15,7 @@ import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 type Question = Parameters<RobotWorkerApi['lengths']>[0];
 type Answer = ReturnType<RobotWorkerApi['lengths']>;
 
-/** Movement of the pointer above which a press is a drag, CSS pixels. */
+/** Movement of the pointer beyond which a press is a drag, CSS pixels. */
 const DRAG_THRESHOLD_PX = 3;
 /** Margin around the robot in the drawing. */
 const MARGIN_MM = 14;
@@ -29,9 +29,9 @@ export class Sketch {
   /** Tries other lengths in a worker. */
   private readonly lengthsQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.requestDrawing());
-  /** The dragged joint, as at the start of the drag; null if none is dragged. */
+  /** The dragged joint, in its state at the start of the drag; null without a drag. */
   private draggedJoint: Joint | null = null;
-  /** True from the end of a drag until the answer for its last position. */
+  /** True between the end of a drag and the answer for its last position. */
   private isDragEnding = false;
 
   constructor(
@@ -48,7 +48,7 @@ export class Sketch {
     this.requestDrawing();
   }
 
-  /** Requests a drawing of the session's robot, and the range of the slider's length. */
+  /** Requests a drawing of the session's robot and the range of the slider's length. */
   private requestDrawing(): void {
     this.lengthsQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
@@ -59,7 +59,7 @@ export class Sketch {
     this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast, keys: [] });
   }
 
-  /** Searches for valid lengths instead of refused ones, and offers them. */
+  /** Searches for valid alternatives to refused lengths and offers them. */
   offerValidLengths(edits: Edits): void {
     this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
@@ -68,17 +68,17 @@ export class Sketch {
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.applyRange(range);
     if (edits.length === 0) return;
-    // This is the answer for `offerValidLengths`: the user has typed a number that was refused.
+    // This answer belongs to `offerValidLengths`: the user has typed a number that was refused.
     if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session);
     if (!isLast) this.fit.checkDragged(refusal ? null : text);
     const { lengths } = this.session.description;
-    const outcomeText = !isLast ? '' : nearest ? ` It is ${formatLengths(nearest.lengths, lengths)}, the nearest valid value.` : ' It stays as it was.';
+    const outcomeText = !isLast ? '' : nearest ? ` The nearest valid value is used: ${formatLengths(nearest.lengths, lengths)}.` : ' The length stays unchanged.';
     this.message.textContent = refusal ? `${describeRefusal(formatLengths(edits, lengths), edits, refusal, lengths)}${outcomeText}` : `${formatLengths(edits, lengths)}.`;
     this.message.classList.toggle('refusal', refusal !== null);
     if (isLast) void this.endDrag(refusal ? (nearest?.text ?? null) : text).then(() => showOffers({ nearest: null, without }, this.session));
   }
 
-  /** Ends a drag, and loads the resulting robot.toml; null if the robot stays. */
+  /** Ends a drag and loads the resulting robot.toml; null keeps the robot. */
   private async endDrag(toml: string | null): Promise<void> {
     const session = this.session;
     this.isDragEnding = false;
@@ -99,12 +99,12 @@ export class Sketch {
     if (this.slider.isChosen) this.fit.findRange(this.slider.keys, range, (printable, message) => this.slider.markPrintable(printable, message));
   }
 
-  /** Draws the robot; if `fitsView`, also fits the view to it. A drag keeps the view and the elements of the joints. */
+  /** Draws the robot; if `fitsView`, fits the view to it. A drag keeps the view and the elements of the joints. */
   private draw(scene: Scene, fitsView: boolean): void {
     const toPicture = ([x, y]: Point): Point => [x, -y];
     const lengths = new Map(this.session.description.lengths.map((length) => [length.key, length]));
     this.barGroup.replaceChildren(
-      ...bars(scene).map(({ key, from, to }) => {
+      ...listBars(scene).map(({ key, from, to }) => {
         const [[x1, y1], [x2, y2]] = [toPicture(from), toPicture(to)];
         const length = lengths.get(key);
         const title = length ? `${length.label} (${key.replace('links.', '')}): ${length.value} ${length.unit}` : key;
@@ -120,12 +120,12 @@ export class Sketch {
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + MARGIN_MM - left} ${Math.max(...ys) + MARGIN_MM - top}`);
     }
     if (this.draggedJoint) {
-      // The joints are drawn where the lengths put them, so the dragged joint may be away from the pointer.
-      joints(scene, () => 0).forEach(({ position: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
+      // The lengths determine the joints' positions; the dragged joint may therefore be away from the pointer.
+      listJoints(scene, () => 0).forEach(({ position: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
       return;
     }
-    const lengthOf = (key: string) => lengths.get(key)?.value ?? 0;
-    this.jointGroup.replaceChildren(...joints(scene, lengthOf).map((joint) => this.makeJoint(joint, toPicture(joint.position))));
+    const getLength = (key: string) => lengths.get(key)?.value ?? 0;
+    this.jointGroup.replaceChildren(...listJoints(scene, getLength).map((joint) => this.makeJoint(joint, toPicture(joint.position))));
   }
 
   private makeJoint(joint: Joint, [cx, cy]: Point): SVGCircleElement {
@@ -155,7 +155,7 @@ export class Sketch {
     const matrix = this.picture.getScreenCTM();
     if (!matrix) return;
     const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-    this.tryOut(joint.editsFor([x, -y], this.symmetryBox.checked), isLast);
+    this.tryOut(joint.makeEdits([x, -y], this.symmetryBox.checked), isLast);
   }
 
   /** Selects the number input for the length of a clicked bar. */

@@ -1,26 +1,26 @@
-// Manual steering: keys, a stick on the screen or a gamepad give a direction, and the robot walks the gait for this
-// direction as long as the control is held.
+// Manual steering: keys, the stick on the screen or a gamepad give a direction, and the robot walks the gait for this
+// direction while the user holds the control.
 import type { PredictedGait, Predictor } from '../predictor';
 import type { Displacement } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element } from './canvas';
 
-/** A direction of steering: its components forward and to the left, each from -1 to 1. */
+/** A steering direction; `forward` and `left` are from -1 to 1. */
 export interface Direction {
   forward: number;
   left: number;
 }
 
-/** Dead zone of a stick, as a share of its full deflection. */
+/** Dead zone of a stick, as a fraction of its full deflection. */
 const DEAD_ZONE = 0.35;
-/** Deflection of a stick below which the robot walks at half its pace, as a share of the full deflection. */
+/** Deflection of a stick below which the robot walks at half its pace, as a fraction of the full deflection. */
 const HALF_PACE_DEFLECTION = 0.65;
-/** Deflection of a stick above which the robot returns to its full pace; the hysteresis avoids fluttering. */
+/** Deflection of a stick above which the robot returns to its full pace; the hysteresis prevents flutter. */
 const FULL_PACE_DEFLECTION = 0.75;
 /** Lowest pace that the robot accepts. */
 const MIN_PACE_PERCENT = 10;
-/** The direction of each button of a gamepad's D-pad, by its index in the browser; any other button stops the robot. */
+/** The direction of each D-pad button of a gamepad, by its index in the browser; all other buttons stop the robot. */
 const D_PAD_DIRECTIONS: Record<number, Direction> = {
   12: { forward: 1, left: 0 },
   13: { forward: -1, left: 0 },
@@ -28,13 +28,13 @@ const D_PAD_DIRECTIONS: Record<number, Direction> = {
   15: { forward: 0, left: -1 },
 };
 
-/** Least cosine of the angle between a gait's displacement and the direction of steering. */
+/** Smallest cosine of the angle between a gait's displacement and the steering direction. */
 const MIN_COSINE = 0.8;
 
-/** Least displacement per cycle that counts; a smaller one is drift. */
+/** Smallest displacement per cycle that counts; smaller displacements are drift. */
 const MIN_DISPLACEMENT = { forwardMm: 2, turnDeg: 1 };
 
-/** The direction of each key, by its code. */
+/** The direction of each key, by code. */
 const KEY_DIRECTIONS: Record<string, Direction> = {
   ArrowUp: { forward: 1, left: 0 },
   ArrowDown: { forward: -1, left: 0 },
@@ -47,49 +47,49 @@ const KEY_DIRECTIONS: Record<string, Direction> = {
 };
 
 /**
- * Returns the command of the best gait for a direction; null if none fits. Distances and turns are compared as shares
- * of the largest among the gaits; among gaits with the same direction, the one that moves farthest is best.
+ * Returns the command of the best gait for a direction; null if no gait fits. Distances and turns are compared as
+ * fractions of the largest values among the gaits. Among gaits with the same direction, the farthest movement is best.
  */
-export function gaitFor({ forward, left }: Direction, gaits: PredictedGait[]): string | null {
+export function chooseGait({ forward, left }: Direction, gaits: PredictedGait[]): string | null {
   const deflection = Math.hypot(forward, left);
   if (deflection < DEAD_ZONE) return null;
-  const largestOf = (componentOf: (displacement: Displacement) => number | null) => Math.max(...gaits.map(({ displacement }) => Math.abs(componentOf(displacement) ?? 0)), 0);
-  const [largestForward, largestTurn] = [largestOf(({ forward }) => forward), largestOf(({ turn }) => turn)];
-  // Drift counts as zero, even if no gait that turns is predicted yet and the drift would be the largest turn.
-  const shareOf = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
+  const findLargest = (getComponent: (displacement: Displacement) => number | null) => Math.max(...gaits.map(({ displacement }) => Math.abs(getComponent(displacement) ?? 0)), 0);
+  const [largestForward, largestTurn] = [findLargest(({ forward }) => forward), findLargest(({ turn }) => turn)];
+  // Drift counts as zero, even if no turning gait is predicted yet and the drift would be the largest turn.
+  const toFraction = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
   let best: { command: string; score: number } | null = null;
   for (const { command, displacement } of gaits) {
-    const forwardShare = shareOf(displacement.forward, MIN_DISPLACEMENT.forwardMm, largestForward);
-    const turnShare = shareOf(displacement.turn, MIN_DISPLACEMENT.turnDeg, largestTurn);
-    if (forwardShare === 0 && turnShare === 0) continue;
-    const length = Math.hypot(forwardShare, turnShare);
-    const cosine = (forwardShare * forward + turnShare * left) / (length * deflection);
+    const forwardFraction = toFraction(displacement.forward, MIN_DISPLACEMENT.forwardMm, largestForward);
+    const turnFraction = toFraction(displacement.turn, MIN_DISPLACEMENT.turnDeg, largestTurn);
+    if (forwardFraction === 0 && turnFraction === 0) continue;
+    const length = Math.hypot(forwardFraction, turnFraction);
+    const cosine = (forwardFraction * forward + turnFraction * left) / (length * deflection);
     if (cosine < MIN_COSINE) continue;
-    // The direction counts more than the distance, so that a gait in an arc is not preferred to one straight ahead.
+    // The direction counts more than the distance, so that an arc is not preferred to a straight gait.
     const score = cosine ** 4 * Math.min(1, length) ** 0.25;
     if (!best || score > best.score) best = { command, score };
   }
   return best?.command ?? null;
 }
 
-/** The controls for manual steering, and the commands that were sent for them. */
+/** The controls for manual steering, and the commands that they have sent. */
 export class Steering {
   private readonly heldKeys = new Set<string>();
   private readonly stick = element('stick');
   private readonly knob = element('knob');
   private stickDirection: Direction = { forward: 0, left: 0 };
   private gamepadDirection: Direction = { forward: 0, left: 0 };
-  /** True once the gamepads' sticks were in the dead zone after `release`; until then, a held stick does not steer. */
+  /** True once the gamepads' sticks are in the dead zone after `release`; until then, a held stick does not steer. */
   private isGamepadReleased = true;
-  /** True while a gamepad's button that stops the robot is pressed. */
+  /** True while a gamepad's stop button is pressed. */
   private isStopButtonPressed = false;
-  /** The element that the pointer has pressed last; null once Tab has moved the focus. */
+  /** The element that the pointer pressed last; null once Tab has moved the focus. */
   private pressedElement: EventTarget | null = null;
   /** True while another window has the keyboard focus. */
   private isWindowInactive = false;
-  /** The command of the gait that was sent last; null while no control is held. */
+  /** The last sent gait command; null while no control is held. */
   private sentGait: string | null = null;
-  /** The pace to restore, percent, while a stick asks for half of it; null otherwise. */
+  /** The pace to restore, percent, while a stick halves the pace; null otherwise. */
   private fullPace: number | null = null;
 
   /** `isDrivingForbidden` returns true while the robot must not be driven. */
@@ -98,11 +98,11 @@ export class Steering {
     private readonly predictor: Predictor,
     private readonly isDrivingForbidden: () => boolean,
   ) {
-    // The keys are handled in the capture phase, before a slider or a view can handle an arrow key.
+    // Keys are handled in the capture phase, before a slider or a view can handle an arrow key.
     document.addEventListener('keydown', (event) => this.handleKey(event, true), true);
     document.addEventListener('pointerdown', ({ target }) => (this.pressedElement = target), true);
     document.addEventListener('keyup', (event) => this.handleKey(event, false));
-    // A user in another window does not see the robot.
+    // The user of another window does not see the robot.
     addEventListener('blur', () => {
       this.isWindowInactive = true;
       this.release();
@@ -144,7 +144,7 @@ export class Steering {
     this.applyDirection();
   }
 
-  /** Releases all controls; if `stopsRobot`, also stops a robot that walks because of them. */
+  /** Releases all controls; if `stopsRobot`, also stops a robot that they drive. */
   release(stopsRobot = true): void {
     this.heldKeys.clear();
     this.gamepadDirection = { forward: 0, left: 0 };
@@ -162,11 +162,10 @@ export class Steering {
       return;
     }
     const { target } = event;
-    // Text inputs and the setup keep these keys for themselves; so do sliders, lists and views that were reached with
-    // Tab.
+    // Text inputs and the setup handle these keys themselves; so do sliders, lists and views with focus by Tab.
     const textFields = 'textarea, [type="text"], [type="number"], #setup';
-    const isKeptByTarget = target instanceof Element && target.closest(target === this.pressedElement ? textFields : `${textFields}, input, select, canvas, [role="log"]`) !== null;
-    if (isKeptByTarget || event.ctrlKey || event.altKey || event.metaKey) return;
+    const isHandledByTarget = target instanceof Element && target.closest(target === this.pressedElement ? textFields : `${textFields}, input, select, canvas, [role="log"]`) !== null;
+    if (isHandledByTarget || event.ctrlKey || event.altKey || event.metaKey) return;
     event.preventDefault();
     if (event.repeat) return;
     this.heldKeys.add(event.code);
@@ -185,7 +184,7 @@ export class Steering {
     this.applyDirection();
   }
 
-  /** Sends the gait and the pace for all held controls, if they have changed. */
+  /** Sends the gait and the pace for all held controls, if these have changed. */
   private applyDirection(): void {
     const direction = { forward: this.stickDirection.forward + this.gamepadDirection.forward, left: this.stickDirection.left + this.gamepadDirection.left };
     for (const code of this.heldKeys) {
@@ -199,8 +198,8 @@ export class Steering {
       this.fullPace = this.session.pace;
       void this.session.drive(`${WORDS.speed} ${Math.max(MIN_PACE_PERCENT, Math.round(this.fullPace / 2))}`);
     }
-    const gait = isIdle ? null : gaitFor(direction, this.predictor.gaits);
-    // If no gait has this direction, the current one goes on.
+    const gait = isIdle ? null : chooseGait(direction, this.predictor.gaits);
+    // If no gait has this direction, the current gait continues.
     if (gait !== this.sentGait && (isIdle || gait !== null)) {
       this.sentGait = gait;
       void this.session.drive(gait ?? WORDS.stop);

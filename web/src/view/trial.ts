@@ -1,28 +1,28 @@
-// The view of the trial of an edited gait in a simulation: its figures, the nearest valid values if the gait is
-// refused, and the buttons that use the gait.
+// The view of an edited gait's trial in a simulation: the results, the nearest valid values if the gait is refused,
+// and the buttons that use the gait.
 import { applyGait, tryGait } from '../gaits/try-gait';
-import { type Alternative, isRefused, type EditedGait, type OnFloor, type RefusedTrial, type Trial } from '../robot';
+import { type EditedGait, type GaitParameter, isRefused, type OnFloor, type RefusedTrial, type Trial } from '../robot';
 import { createRobotQuestion } from '../robot-helper';
 import type { Session } from '../session';
 import { element, setText } from './canvas';
 import { button } from './make';
 import type { Writer } from './writer';
 
-/** The gait editor, as its trial uses it. */
+/** The trial's access to the gait editor. */
 export interface TrialEditor {
   /** The prefix of the editor's element ids. */
   prefix: 'gait' | 'path';
   /** Returns the edited gait; null if there is none. */
   editedGait(): EditedGait | null;
-  /** Sets a number of the gait to a valid value that a refusal offers. */
-  change(key: Alternative, value: number): void;
+  /** Sets a parameter of the gait to a valid value that a refusal offers. */
+  change(key: GaitParameter, value: number): void;
 }
 
 /** Formats a number with a unit; null stands for an uncertain displacement. */
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** Formats the figures of a trial; the speed is that of walking if `unit` is mm/s, else that of turning. */
-export function formatFigures({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
+/** Formats the results of a trial; `unit` selects the walking speed, mm/s, or the turning speed. */
+export function formatResults({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
     way: formatNumber(forward, ' mm'),
@@ -35,15 +35,15 @@ export function formatFigures({ forward, turn, period, least, limit, margin, ser
 }
 
 /** The labels of the buttons that offer a valid value. */
-const OFFER_LABELS: Record<Alternative, (value: number) => string> = {
-  amplitude: (value) => `Amplitude ${value}° would do`,
-  size: (value) => `A size of ${(100 * value).toFixed(0)} % would do`,
-  period: (value) => `A cycle of ${value} s would do`,
+const OFFER_LABELS: Record<GaitParameter, (value: number) => string> = {
+  amplitude: (value) => `Use amplitude ${value}°`,
+  size: (value) => `Use a size of ${(100 * value).toFixed(0)} %`,
+  period: (value) => `Use a cycle of ${value} s`,
 };
 
 export class TrialView {
   private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
-  /** The last valid trial; null if the gait was refused. */
+  /** The result of the last trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
@@ -77,13 +77,13 @@ export class TrialView {
     this.trial = validTrial;
     for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !validTrial;
     const show = (name: string, text: string) => setText(this.element(name), text);
-    const shownFigures = validTrial && formatFigures(validTrial);
-    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) show(name, shownFigures?.[name] ?? '–');
+    const results = validTrial && formatResults(validTrial);
+    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) show(name, results?.[name] ?? '–');
     show('table', validTrial?.table ?? '');
     this.element('no').hidden = refusal === null;
     show('refusal', refusal?.refused ?? '');
     this.element('instead').replaceChildren(
-      ...(refusal?.alternatives ?? []).map(({ what, value }) => button(OFFER_LABELS[what](value), () => this.editor.change(what, value))),
+      ...(refusal?.alternatives ?? []).map(({ parameter, value }) => button(OFFER_LABELS[parameter](value), () => this.editor.change(parameter, value))),
     );
     this.setMessage('');
   }
@@ -93,7 +93,7 @@ export class TrialView {
     if (!gait) return;
     this.setMessage('The robot restarts with this gait…');
     const refusal = await tryGait(this.session, gait);
-    this.setMessage(refusal?.refused ?? `It does ${gait.name.replaceAll('-', ' ')}, which is now a button of Drive and in Download robot.toml.`);
+    this.setMessage(refusal?.refused ?? `The robot starts ${gait.name.replaceAll('-', ' ')}, which now has a button in Drive and is part of the downloaded robot.toml.`);
   }
 
   private async writeToBoard(): Promise<void> {
@@ -104,7 +104,7 @@ export class TrialView {
     if (refusal) return this.setMessage(refusal.refused);
     const message = this.element('said');
     if (!(await this.writer.writeRobot({ message, progress: this.element<HTMLProgressElement>('progress') }))) return;
-    this.setMessage(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} is a button of Drive.`);
+    this.setMessage(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);
   }
 
   private async copyTable(): Promise<void> {
@@ -112,7 +112,7 @@ export class TrialView {
       await navigator.clipboard.writeText(this.trial?.table ?? '');
       this.setMessage('The table for robot.toml is copied.');
     } catch {
-      this.setMessage('The browser does not let the page copy; mark the table and copy it by hand.');
+      this.setMessage('The browser does not allow the page to copy; select the table and copy it by hand.');
     }
   }
 }

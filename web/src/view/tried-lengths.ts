@@ -1,33 +1,33 @@
-// Lengths that the user has tried: their text, the reason for a refusal, and buttons for valid alternatives.
+// Lengths that the user has tried: their text, the reason for a refusal, and buttons with valid alternatives.
 import type { Edits, Length, Refused, TriedLengths } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { button } from './make';
 
-/** Returns the edit of a length and, if `isSymmetric`, the same edit of its twin on the opposite side. */
-export function editsWithTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
+/** Makes the edit of a length and, if `isSymmetric`, the same edit of its twin on the opposite side. */
+export function makeEditsWithTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
   const twin = lengths.find((length) => length.key === key)?.twin ?? key;
   return [...new Set(isSymmetric ? [key, twin] : [key])].map((editedKey) => [editedKey, value]);
 }
 
-/** Formats lengths, grouped by their values, such as `l1 = l4 = 30 mm`. */
+/** Formats lengths grouped by their values, such as `l1 = l4 = 30 mm`. */
 export function formatLengths(edits: Edits, lengths: Length[]): string {
   const keysByValue = new Map<number, string[]>();
   for (const [key, value] of edits) keysByValue.set(value, [...(keysByValue.get(value) ?? []), key]);
-  const unitOf = (key = '') => lengths.find((length) => length.key === key)?.unit ?? 'mm';
-  return [...keysByValue].map(([value, keys]) => `${keys.map((key) => key.replace('links.', '')).join(' = ')} = ${value} ${unitOf(keys[0])}`).join(', ');
+  const findUnit = (key = '') => lengths.find((length) => length.key === key)?.unit ?? 'mm';
+  return [...keysByValue].map(([value, keys]) => `${keys.map((key) => key.replace('links.', '')).join(' = ')} = ${value} ${findUnit(keys[0])}`).join(', ');
 }
 
 /**
- * Returns a sentence with the reason why lengths are refused; `lengthsText` names these lengths, and `lengths` are
- * those of the current robot.
+ * Returns a sentence with the reason for refusing lengths; `lengthsText` names these lengths, and `lengths` are the
+ * current robot's lengths.
  */
 export function describeRefusal(lengthsText: string, edits: Edits, { refused, consequence, key }: Refused, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
   const judgement = changes.every((change) => change >= 0) ? `too ${more}` : changes.every((change) => change <= 0) ? `too ${less}` : 'not possible';
-  // A refusal without a consequence has the key as the subject of its message.
+  // The message of a refusal without a consequence starts with the key.
   const reason = consequence ?? refused.slice(Math.max(0, refused.indexOf(key))).replace(key, lengthByKey.get(key)?.label ?? key);
   return `${lengthsText} is ${judgement}: ${reason}.`;
 }

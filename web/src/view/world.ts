@@ -1,6 +1,6 @@
-// The controls of the simulated world: leg drive, feet, floor, mass, servos, supply voltage and the contacts at the
+// The controls of the simulated world: leg drive, feet, floor, mass, servos, supply voltage, and the contacts at the
 // robot's inputs.
-import { type Floor, type Kind, canLag, type ServoModel } from '../robot';
+import { canLag, type Floor, type LegDrive, type ServoModel } from '../robot';
 import type { Session } from '../session';
 import { element } from './canvas';
 import { make } from './make';
@@ -10,7 +10,7 @@ const DECIMALS = { force: 1, play: 1, leaf: 1, twist: 1, friction: 2, ratio: 2, 
 type SliderName = keyof typeof DECIMALS;
 const SLIDER_NAMES = Object.keys(DECIMALS) as SliderName[];
 
-/** The label of each input of the robot: the event that closes its contact. */
+/** The label of each of the robot's inputs: the event that closes its contact. */
 const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
 export class World {
@@ -22,7 +22,7 @@ export class World {
   constructor(private readonly session: Session) {
     this.driveList.addEventListener('change', () => this.applyFloor());
     for (const name of SLIDER_NAMES) {
-      const input = this.sliderOf(name);
+      const input = this.getSlider(name);
       input.addEventListener('input', () => this.showText(input, input.valueAsNumber.toFixed(DECIMALS[name])));
       input.addEventListener('change', () => this.applyFloor());
     }
@@ -43,22 +43,22 @@ export class World {
     const { floor, description } = this.session;
     this.driveList.value = floor.kind;
     for (const name of SLIDER_NAMES) {
-      const input = this.sliderOf(name);
-      // The range of the slider grows to include the value.
+      const input = this.getSlider(name);
+      // The slider's range grows to include the value.
       if (floor[name] > Number(input.max)) input.max = String(floor[name]);
       if (floor[name] < Number(input.min)) input.min = String(floor[name]);
       input.value = String(floor[name]);
       this.showText(input, floor[name].toFixed(DECIMALS[name]));
     }
     this.enableSliders(floor);
-    this.servoList.replaceChildren(...description.models.map((model) => new Option(describeServo(model), model.name)));
+    this.servoList.replaceChildren(...description.models.map((model) => new Option(formatServo(model), model.name)));
     this.showServos();
     this.supplyInput.value = String(this.session.volts);
     this.showVolts(this.supplyInput);
     const [slowVolts, stopVolts, restVolts] = description.supply;
     this.showInputs();
     element('supply-note').textContent =
-      `Below ${slowVolts} V gaits go at ${description.slow_pace} % of their pace at most and nothing is saved, below ${stopVolts} V the robot stops, below ${restVolts} V the pulses end.`;
+      `Below ${slowVolts} V, the pace is at most ${description.slow_pace} % and settings cannot be saved; below ${stopVolts} V, the robot stops; below ${restVolts} V, the pulses end.`;
   }
 
   private chooseServos(servos: string): void {
@@ -67,20 +67,20 @@ export class World {
     this.enableSliders(this.session.floor);
   }
 
-  /** Shows the servo model and its voltage, which is the model's own unless the user has set another. */
+  /** Shows the servo model and its voltage, which is the model's voltage unless the user has set another voltage. */
   private showServos(): void {
     const { description, servos } = this.session;
     const [name = '', supply] = servos.split(' at ');
     this.servoList.value = name;
-    const figures = description.models.find((model) => model.name === name)?.figures;
-    this.voltsInput.disabled = !figures;
-    if (!figures) return;
-    this.voltsInput.max = String(Math.max(6, figures[3]));
-    this.voltsInput.value = supply ?? String(figures[3]);
+    const ratings = description.models.find((model) => model.name === name)?.ratings;
+    this.voltsInput.disabled = !ratings;
+    if (!ratings) return;
+    this.voltsInput.max = String(Math.max(6, ratings[3]));
+    this.voltsInput.value = supply ?? String(ratings[3]);
     this.showVolts(this.voltsInput);
   }
 
-  /** Shows a checkbox for each input of the robot: its simulated contact is closed while the box is ticked. */
+  /** Shows a checkbox for each of the robot's inputs; the simulated contact is closed while the box is ticked. */
   private showInputs(): void {
     const { description, closedInputs } = this.session;
     const boxes = description.inputs.map(([name]) => {
@@ -92,7 +92,7 @@ export class World {
     element('inputs').hidden = boxes.length === 0;
   }
 
-  private sliderOf(name: SliderName): HTMLInputElement {
+  private getSlider(name: SliderName): HTMLInputElement {
     return element<HTMLInputElement>(name);
   }
 
@@ -100,11 +100,11 @@ export class World {
   private enableSliders(floor: Floor): void {
     const hasSprings = floor.kind !== 'rigid';
     const isElastic = hasSprings || this.session.servos !== 'ideal';
-    this.sliderOf('force').disabled = !hasSprings;
-    // If neither springs nor servos yield, friction has no effect; mass has none if, besides, no foot is too long.
-    this.sliderOf('friction').disabled = !isElastic;
-    this.sliderOf('mass').disabled = !isElastic && floor.twist === 0;
-    this.sliderOf('leaf').disabled = floor.twist === 0;
+    this.getSlider('force').disabled = !hasSprings;
+    // If neither springs nor servos yield, friction has no effect; if also no foot is too long, mass has no effect.
+    this.getSlider('friction').disabled = !isElastic;
+    this.getSlider('mass').disabled = !isElastic && floor.twist === 0;
+    this.getSlider('leaf').disabled = floor.twist === 0;
     element('rigid-note').hidden = isElastic || canLag(floor) || floor.twist !== 0;
   }
 
@@ -117,10 +117,10 @@ export class World {
 
   /** Applies the sliders' values to the session. */
   private applyFloor(): void {
-    // A value that its slider shows unchanged keeps its exact number.
-    const floor: Floor = { ...this.session.floor, kind: this.driveList.value as Kind };
+    // A value that appears unchanged on its slider keeps its exact number.
+    const floor: Floor = { ...this.session.floor, kind: this.driveList.value as LegDrive };
     for (const name of SLIDER_NAMES) {
-      const value = this.sliderOf(name).valueAsNumber;
+      const value = this.getSlider(name).valueAsNumber;
       if (floor[name].toFixed(DECIMALS[name]) !== value.toFixed(DECIMALS[name])) floor[name] = value;
     }
     this.enableSliders(floor);
@@ -128,9 +128,9 @@ export class World {
   }
 }
 
-/** Returns the label of a servo model in the list. */
-function describeServo({ name, figures }: ServoModel): string {
-  if (!figures) return 'ideal: where the pulse says, at once';
-  const [torque, seconds, volts] = figures;
-  return `${name === 'own' ? 'as in robot.toml' : name}: ${torque} kg cm, ${seconds} s for 60° at ${volts} V`;
+/** Formats a servo model's label in the list. */
+function formatServo({ name, ratings }: ServoModel): string {
+  if (!ratings) return 'ideal: follows its pulse at once';
+  const [torqueKgCm, seconds, volts] = ratings;
+  return `${name === 'own' ? 'as in robot.toml' : name}: ${torqueKgCm} kg cm, ${seconds} s for 60° at ${volts} V`;
 }

@@ -2,7 +2,7 @@
 import { signal } from '@preact/signals-core';
 
 import type { Progress, Session } from '../session';
-import { messageOf } from '../problem';
+import { getMessage } from '../problem';
 import { setText } from './canvas';
 
 /** The elements that show the progress and the result. */
@@ -14,13 +14,13 @@ export interface Display {
 /** The content to write: the page's robot alone, firmware and robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
-/** The message when no board is connected. */
-const NO_BOARD_MESSAGE = 'No board is connected: Connect a board… is in the room Board. The simulated board has this robot already.';
+/** The message if no board is connected. */
+const NO_BOARD_MESSAGE = 'No board is connected: press Connect a board… in the room Board. The simulated board already has this robot.';
 
-/** The message of each step, and the percentages of the progress bar at its start and at its end. */
+/** The message of each step, and the progress bar's percentages at its start and its end. */
 const PROGRESS_STEPS = {
-  again: ['no answer; the board is called again…', 0, 0],
-  reading: ['reading what the board has…', 0, 25],
+  again: ['no answer; calling the board again…', 0, 0],
+  reading: ['reading the board…', 0, 25],
   writing: ['writing…', 25, 75],
   verifying: ['verifying…', 75, 100],
 } as const;
@@ -31,14 +31,14 @@ export class Writer {
 
   constructor(private readonly session: Session) {}
 
-  /** Writes the page's robot alone to a real board; returns true if it was written and answers. */
+  /** Writes the page's robot alone to a real board; returns true if the board then reports this robot. */
   async writeRobot(display: Display): Promise<boolean> {
     if (this.session.isReal) return this.write('robot', display);
     display.message.textContent = NO_BOARD_MESSAGE;
     return false;
   }
 
-  /** Writes and verifies, then waits for the board's banner; returns true if all of this succeeded. */
+  /** Writes and verifies, then waits for the board's banner; returns true if all steps succeed. */
   async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {
     if (this.isBusy.value) return false;
     const session = this.session;
@@ -53,18 +53,18 @@ export class Writer {
     let isWritten = false;
     const showProgress: Progress = (step, done, total) => {
       const [text, from, to] = PROGRESS_STEPS[step];
-      // The bar never moves back, although the first page of the program is written after all others were verified.
+      // The bar never moves back, although the program's first page is written after all other pages are verified.
       progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);
       setText(message, text);
     };
     try {
       await (content === 'robot' ? session.flash(session.robotSection, true, showProgress) : session.flash(content === 'all' ? session.image : content, false, showProgress));
       isWritten = true;
-      // The name tells that the simulated board was written, not a real one.
+      // The name shows that the simulated board was written, not a real board.
       const targetText = isReal ? '' : ` to the ${name}`;
       message.textContent = `written${targetText} and verified in ${formatSeconds(performance.now() - start)}`;
     } catch (error) {
-      message.textContent = `not written: ${messageOf(error)}`;
+      message.textContent = `not written: ${getMessage(error)}`;
     }
     progress.hidden = true;
     this.isBusy.value = false;

@@ -1,4 +1,4 @@
-//! The conversion of a robot's calibration to JavaScript and back.
+//! Conversion of a robot's calibration to JavaScript and back.
 
 use js_sys::JSON;
 use lizard_robot::Calibration;
@@ -10,14 +10,14 @@ const TYPES: &str = "
 import type { Calibration } from './lizard';
 ";
 
-/// Reads a calibration from the robot's answer to `cal`, skipping other lines; null if one of its lines is missing.
+/// Reads a calibration from the robot's answer to `cal`, and skips other lines; null if a line is missing.
 #[must_use]
 #[wasm_bindgen(js_name = readCalibration, unchecked_return_type = "Calibration | null")]
 pub fn read_calibration(lines: Vec<String>) -> JsValue {
     to_js(Calibration::from_cal_answer(&lines))
 }
 
-/// Converts a value to JavaScript; to `null` if it cannot be written as JSON.
+/// Converts a value to JavaScript, or to `null` if the value cannot be written as JSON.
 pub(crate) fn to_js(value: impl Serialize) -> JsValue {
     let text = serde_json::to_string(&value).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)

@@ -1,4 +1,4 @@
-//! The page's connection to a robot's console, for a calibration.
+//! The page's connection to a robot's console, used by a calibration.
 
 use std::time::Duration;
 
@@ -9,11 +9,11 @@ use wasm_bindgen::prelude::*;
 
 #[wasm_bindgen(typescript_custom_section)]
 const CONSOLE: &str = "
-/** A connection to a robot's console. Times are in ms by the robot's clock: a simulated robot may run slower than real time. */
+/** A connection to a robot's console. Times are in ms of the robot's clock, which may be slower than real time. */
 export interface Console {
-  /** Sends a line; returns the answer as `text`, and the `#` lines that came before it. Rejects if there is no answer. */
+  /** Sends a line; returns the answer, and the preceding `#` lines as `notes`. Rejects if there is no answer. */
   ask(line: string): Promise<{ notes: string[]; text: string }>;
-  /** Waits for `durationMs` by the robot's clock. */
+  /** Waits for `durationMs` of the robot's clock. */
   wait(durationMs: number): Promise<void>;
 }
 ";
@@ -31,7 +31,7 @@ extern "C" {
     async fn wait(this: &Console, duration_ms: f64) -> Result<JsValue, JsValue>;
 }
 
-/// The robot at the other end of the page's connection. Its errors are the values that the page throws.
+/// The robot at the other end of the page's connection. The errors are the values that the page throws.
 #[derive(Debug)]
 pub(crate) struct JsConsole(pub(crate) Console);
 
@@ -59,22 +59,22 @@ fn string_or_empty(value: JsValue) -> String {
         .map_or(String::new(), Into::into)
 }
 
-/// Converts an error to the one that is thrown: the page's own, or a sentence about the robot's reply.
+/// Converts an error to the thrown value: the page's own error, or a sentence about the robot's reply.
 pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
     match error {
         ConsoleError::Reply(BadReply::Refused { line, reason }) => {
-            // The digits at the start are the error's code, which is for programs.
+            // The leading digits are the error's code, which is for programs.
             let reason = reason.trim_start_matches(|c: char| c.is_ascii_digit());
-            js_error(&format!("The robot refuses \"{line}\":{reason}."))
+            make_js_error(&format!("The robot refuses \"{line}\":{reason}."))
         }
         ConsoleError::Reply(BadReply::Unclear { .. }) => {
-            js_error("The robot does not answer as this page knows it: write this firmware first.")
+            make_js_error("The robot's answer is unknown to this page; write this firmware first.")
         }
         ConsoleError::Link(error) => error,
     }
 }
 
 /// Creates a JavaScript error with this message.
-pub(crate) fn js_error(text: &str) -> JsValue {
+pub(crate) fn make_js_error(text: &str) -> JsValue {
     JsError::new(text).into()
 }

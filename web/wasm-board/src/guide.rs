@@ -1,14 +1,14 @@
 //! The JavaScript class that calibrates a robot.
-#![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with the robot's refusal as a sentence
+#![allow(clippy::missing_errors_doc)] // each rejects with the page's own error, or with a sentence about the refusal
 
 use lizard_calibrate::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, SendError};
 use wasm_bindgen::prelude::*;
 
 use crate::calibration::{from_js, to_js};
-use crate::console::{Console, JsConsole, error_to_js, js_error};
+use crate::console::{Console, JsConsole, error_to_js, make_js_error};
 
-/// A calibration in progress. Angles are in deg, counter-clockwise; servos 0 to 3 are A1 to A4. Only one function can
-/// run at a time: until its promise has settled, every other call throws.
+/// A calibration in progress. Angles are in deg, counter-clockwise; servos 0 to 3 are A1 to A4. Only one function runs
+/// at a time: every other call throws until the function's promise has settled.
 #[wasm_bindgen]
 #[derive(Debug)]
 pub struct Guide(lizard_calibrate::Guide<JsConsole>);
@@ -28,7 +28,7 @@ impl Guide {
         to_js(self.0.calibration())
     }
 
-    /// True if the calibration is not saved, or if it is uncertain whether it is.
+    /// True if the calibration is not saved, or may not be saved.
     #[must_use]
     #[wasm_bindgen(getter, js_name = isChanged)]
     pub fn is_changed(&self) -> bool {
@@ -40,21 +40,21 @@ impl Guide {
         self.0.stand().await.map(drop).map_err(error_to_js)
     }
 
-    /// Ends the pulses, so that no servo moves when the servos get power.
+    /// Ends the pulses, so that no servo moves when the supply is switched on.
     pub async fn rest(&mut self) -> Result<(), JsValue> {
         self.0.rest().await.map_err(error_to_js)
     }
 
     /// Moves every servo to its middle, without its trim, for fitting the horns.
     pub async fn center(&mut self) -> Result<(), JsValue> {
-        self.0.center().await.map_err(error_to_js)
+        self.0.center_servos().await.map_err(error_to_js)
     }
 
     /// Turns one servo from its neutral angle far enough to see its direction; returns the turn.
     #[wasm_bindgen(js_name = turnForSign)]
     pub async fn turn_for_sign(&mut self, servo: usize) -> Result<f64, JsValue> {
         self.0
-            .turn(servo, &SIGN_TURNS_DEG)
+            .turn_servo(servo, &SIGN_TURNS_DEG)
             .await
             .map_err(error_to_js)
     }
@@ -63,24 +63,24 @@ impl Guide {
     #[wasm_bindgen(js_name = turnForScale)]
     pub async fn turn_for_scale(&mut self, servo: usize) -> Result<f64, JsValue> {
         self.0
-            .turn(servo, &SCALE_TURNS_DEG)
+            .turn_servo(servo, &SCALE_TURNS_DEG)
             .await
             .map_err(error_to_js)
     }
 
-    /// Moves one servo to an angle, and the others to neutral; returns the angle, 0 to 360.
+    /// Moves one servo to an angle, and the other servos to neutral; returns the angle, 0 to 360.
     pub async fn point(&mut self, servo: usize, degrees: f64) -> Result<f64, JsValue> {
-        self.0.point(servo, degrees).await.map_err(error_to_js)
+        self.0.move_servo(servo, degrees).await.map_err(error_to_js)
     }
 
     /// Reverses the sign of a servo.
     pub async fn reverse(&mut self, servo: usize) -> Result<(), JsValue> {
-        self.0.reverse(servo).await.map_err(error_to_js)
+        self.0.reverse_sign(servo).await.map_err(error_to_js)
     }
 
     /// Changes a servo's trim by this angle.
     pub async fn trim(&mut self, servo: usize, change: f64) -> Result<(), JsValue> {
-        self.0.trim(servo, change).await.map_err(error_to_js)
+        self.0.change_trim(servo, change).await.map_err(error_to_js)
     }
 
     /// Sets the scale of a servo that turned by `measured` instead of `commanded`; returns the scale, us per deg.
@@ -91,18 +91,21 @@ impl Guide {
         commanded: f64,
         measured: f64,
     ) -> Result<f64, JsValue> {
-        let scale = self.0.scale_by_turn(servo, commanded, measured).await;
+        let scale = self.0.set_scale_from_turn(servo, commanded, measured).await;
         scale.map_err(error_to_js)
     }
 
     /// Sets a servo's travel, counter-clockwise from the first angle to the second.
     pub async fn limit(&mut self, servo: usize, from: f64, to: f64) -> Result<(), JsValue> {
-        self.0.limit(servo, [from, to]).await.map_err(error_to_js)
+        self.0
+            .set_limit(servo, [from, to])
+            .await
+            .map_err(error_to_js)
     }
 
-    /// Starts `walk`, or else the first gait that moves; returns the gait's name, undefined if no gait moves.
+    /// Starts `walk`, or else the first moving gait; returns the gait's name, or undefined if no gait moves.
     pub async fn walk(&mut self) -> Result<Option<String>, JsValue> {
-        self.0.walk().await.map_err(error_to_js)
+        self.0.start_walk().await.map_err(error_to_js)
     }
 
     /// Saves the calibration in the board's EEPROM.
@@ -110,13 +113,13 @@ impl Guide {
         self.0.save().await.map_err(error_to_js)
     }
 
-    /// Makes the robot stand, and restores the calibration that was in effect at the start or at the last save; returns
-    /// true if that changed anything.
+    /// Makes the robot stand, and restores the calibration from the start or from the last save; returns true if the
+    /// calibration changed.
     pub async fn restore(&mut self) -> Result<bool, JsValue> {
         self.0.restore().await.map_err(error_to_js)
     }
 
-    /// Replaces the calibration without saving it. If the robot refuses the new one, the previous one is restored.
+    /// Replaces the calibration without saving it. If the robot refuses the new calibration, restores the previous one.
     pub async fn replace(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: JsValue,
@@ -124,7 +127,7 @@ impl Guide {
         let outcome = self.0.replace(&from_js(&calibration)?).await;
         outcome.map_err(|error| match error {
             SendError::Refused(error) | SendError::Mixed(error) => error_to_js(error),
-            SendError::Differs => js_error("The robot did not accept all of it."),
+            SendError::Differs => make_js_error("The robot did not accept the whole calibration."),
         })
     }
 }

@@ -1,5 +1,4 @@
-//! The upload of firmware and robot to a board from a browser, with the order of flash pages and the messages of
-//! `lizard flash`.
+//! The upload of firmware and robot from a browser to a board, with the page order and the messages of `lizard flash`.
 
 use js_sys::Function;
 use lizard_core::numbers::mark::Mark;
@@ -8,28 +7,28 @@ use wasm_bindgen::prelude::*;
 
 use crate::line::{JsBoard, SerialLine};
 
-/// Reads an image in Intel HEX; returns its bytes from address 0 on.
+/// Parses an image in Intel HEX; returns the bytes from address 0 on.
 ///
 /// # Errors
 /// Fails if the text is not the image of a program for a UNO.
-#[wasm_bindgen(js_name = imageOf)]
-pub fn image_of(hex: &str) -> Result<Vec<u8>, JsError> {
+#[wasm_bindgen(js_name = parseImage)]
+pub fn parse_image(hex: &str) -> Result<Vec<u8>, JsError> {
     Ok(Image::from_hex(hex)?.bytes().to_vec())
 }
 
-/// True if an image contains this firmware, in any version.
+/// Returns true if an image contains this firmware, in any version.
 #[wasm_bindgen(js_name = isLizard)]
 pub fn is_lizard(image: &[u8]) -> bool {
     Mark::find(image).is_some()
 }
 
-/// True if an image from address 0 up to `end` reaches into the boot section of a Nano.
+/// Returns true if an image from address 0 up to `end` reaches into a Nano's boot section.
 #[wasm_bindgen(js_name = needsUno)]
 pub fn needs_uno(end: usize) -> bool {
     end > lizard_upload::NANO_BOOT_ADDRESS
 }
 
-/// The kind of board that a user names; `Unknown` if nobody was asked.
+/// The kind of board that the user names; `Unknown` if the page did not ask.
 #[wasm_bindgen]
 #[derive(Debug, Clone, Copy)]
 pub enum Board {
@@ -41,12 +40,12 @@ pub enum Board {
     Nano,
 }
 
-/// Writes an image from address 0 on, or only a robot's section, to a board, reads it back and starts the program.
+/// Writes an image from address 0 on, or only a robot's section, to a board, verifies it and starts the program.
 /// `report` gets the progress: `reading`, `writing` or `verifying`, the number of finished pages and their total
 /// number; or `again` if the board is reset for another attempt.
 ///
 /// # Errors
-/// Rejects with a sentence for the user that says what the flash holds now.
+/// Rejects with a sentence for the user that states the flash's current content.
 #[wasm_bindgen]
 pub async fn upload(
     line: SerialLine,
@@ -71,7 +70,7 @@ pub async fn upload(
         may_be_nano: false,
     };
     let report = |step: &str, done: usize, total: usize| {
-        // An error of the page is no reason to stop in the middle of an upload.
+        // An error in the page must not interrupt an upload.
         let _ = report.call3(&JsValue::NULL, &step.into(), &done.into(), &total.into());
     };
     let mut loader = Loader::new(JsBoard(line));
@@ -86,7 +85,7 @@ pub async fn upload(
     Ok(())
 }
 
-/// Resets a board, finds its model by its boot loader, and starts its program; returns `UNO` or `Nano`.
+/// Resets a board, identifies its model by its boot loader, and starts its program; returns `UNO` or `Nano`.
 ///
 /// # Errors
 /// Rejects with a sentence for the user if the board is neither a UNO nor a Nano, or does not answer.

@@ -1,8 +1,8 @@
-//! The JavaScript class that films the robot and measures its gaits.
+//! The JavaScript class that tracks the robot in frames and measures its gaits.
 
 use js_sys::JSON;
-use lizard_film::Picture;
 use lizard_measure::Paper;
+use lizard_video::Frame;
 use serde::Serialize;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
@@ -10,7 +10,7 @@ use crate::camera::{Camera, Refused};
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
-/** A point of a picture, px. */
+/** A point of a frame, px. */
 export type Pixel = [number, number];
 /** A component of a cycle's movement: mm or deg. */
 export interface Component {
@@ -27,23 +27,26 @@ export interface Component {
 /** A gait as `lizard measure --json` prints it. */
 export interface Report {
   gait: string;
-  /** The pace, percent of the gait's own pace. */
+  /** The pace, percent of the gait's nominal pace. */
   speed: number;
   cycles: number;
   forward: Component;
   left: Component;
   turn: Component;
-  /** The movement per cycle that MuJoCo computes with ideal servos: mm forward, mm to the left, deg counter-clockwise; known only for some robots. */
+  /**
+   * MuJoCo's movement per cycle with ideal servos: mm forward, mm to the left, deg counter-clockwise; known only for
+   * some robots.
+   */
   mujoco?: [number, number, number];
   range?: Range;
 }
-/** The range of the predicted distance or turn per cycle, mm or deg, when one assumption at a time is changed. */
+/** The range of the predicted distance or turn per cycle, mm or deg, while one assumption at a time is changed. */
 export interface Range {
   /** Name and unit of the distance or turn. */
   part: string;
   least: number;
   most: number;
-  /** The changed assumption that gives each bound; null if the values of robot.toml give it. */
+  /** The changed assumption that gives each bound; null if robot.toml itself gives it. */
   least_by: string | null;
   most_by: string | null;
 }
@@ -60,25 +63,25 @@ fn to_js(value: impl Serialize) -> JsValue {
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-/// The page's camera: finds tags in pictures, adds pictures to a film, and measures the gaits in it.
+/// The page's camera: finds tags in frames, adds frames to a video, and measures the gaits in it.
 #[wasm_bindgen(js_name = Camera)]
 #[derive(Default)]
 pub struct PageCamera(Camera);
 
 #[wasm_bindgen(js_class = Camera)]
 impl PageCamera {
-    /// Creates a camera with an empty film.
+    /// Creates a camera with an empty video.
     #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Finds the tags in a picture that was taken at `seconds` on the film's clock; if `is_kept`, adds the picture to
-    /// the film. A grey picture has one byte per pixel, a colour picture has four.
+    /// Finds the tags in a frame that was taken at `seconds` on the video's clock; if `is_kept`, adds the frame to the
+    /// video. A grey frame has one byte per pixel, a colour frame four bytes.
     ///
     /// # Errors
-    /// Fails if the picture is incomplete, or if it is to be kept but does not belong to the film or shows a tag twice.
+    /// Fails if the frame is incomplete, or if it is to be kept but does not fit the video or shows a tag twice.
     #[wasm_bindgen(js_name = findTags, unchecked_return_type = "TagEntry[]")]
     pub fn find_tags(
         &mut self,
@@ -88,36 +91,36 @@ impl PageCamera {
         seconds: f64,
         is_kept: bool,
     ) -> Result<JsValue, JsError> {
-        let picture = match pixels.len() == width * height {
-            true => Picture::new(width, height, pixels),
-            false => Picture::from_rgba(width, height, &pixels),
+        let frame = match pixels.len() == width * height {
+            true => Frame::new(width, height, pixels),
+            false => Frame::from_rgba(width, height, &pixels),
         };
-        let picture = picture.ok_or_else(|| JsError::new("the picture is incomplete"))?;
+        let frame = frame.ok_or_else(|| JsError::new("the frame is incomplete"))?;
         Ok(to_js(match is_kept {
-            true => self.0.add_picture(&picture, seconds)?,
-            false => self.0.find_tags(&picture),
+            true => self.0.add_frame(&frame, seconds)?,
+            false => self.0.find_tags(&frame),
         }))
     }
 
-    /// Measures gaits in the film.
+    /// Measures gaits in the video.
     ///
     /// # Errors
-    /// Fails if the film does not show what is needed; see [`Camera::measure`].
+    /// Fails as [`Camera::measure`] does.
     #[wasm_bindgen(unchecked_return_type = "Results")]
     pub fn measure(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "MeasureRequest")] request: &JsValue,
     ) -> Result<JsValue, JsError> {
         let json = JSON::stringify(request)
-            .map_err(|_| JsError::new("the request cannot be written as JSON"))?;
+            .map_err(|_| JsError::new("the request cannot be converted to JSON"))?;
         let request = serde_json::from_str(&String::from(json))?;
         Ok(to_js(self.0.measure(&request)?))
     }
 
-    /// Returns the sheet of tags as PDF, for US Letter paper if `is_letter`, otherwise for A4.
+    /// Draws the sheet of tags as PDF, for US Letter paper if `is_letter`, otherwise for A4.
     #[must_use]
     pub fn sheet(is_letter: bool) -> Vec<u8> {
         let paper = if is_letter { Paper::Letter } else { Paper::A4 };
-        paper.tag_sheet_pdf()
+        paper.draw_tag_sheet()
     }
 }

@@ -1,11 +1,12 @@
-//! The measurement of a walking robot by the page's camera, with the same analysis and report as `lizard measure`.
+//! Measures a walking robot with the page's camera, with the same analysis and report as `lizard measure`.
 //!
-//! A browser hands over pictures one by one, with their times, and gets back the tags that each of them shows.
-//! Afterwards it requests the report of the gaits that the robot has walked. [`Camera`] holds the film; [`PageCamera`]
-//! is its class for JavaScript. This crate is a WebAssembly module of its own, which the page loads only when needed.
+//! The browser passes each frame with its time and gets the tags in the frame. Afterwards it requests the report of the
+//! gaits that the robot has walked. [`Camera`] stores the video; [`PageCamera`] is the class for JavaScript. This crate
+//! is a WebAssembly module of its own, which the page loads only when needed.
 //!
 //! # When not to use it
-//! The interface is made for this page and changes with it. A program in Rust uses `lizard-film` and `lizard-measure`.
+//! The interface is made for this page and changes with it. Programs in Rust should use `lizard-video` and
+//! `lizard-measure`.
 
 mod camera;
 mod javascript;

@@ -1,4 +1,4 @@
-//! The JavaScript class that makes a robot's parts. A refusal is thrown as a [`Refused`].
+//! The JavaScript class that makes a robot's parts. It throws a refusal as a [`Refused`].
 
 use js_sys::{Function, JSON};
 use serde::Serialize;
@@ -15,7 +15,7 @@ export interface Clash {
   second: string;
   /** Their distance, mm; negative if they overlap. */
   mm: number;
-  /** Servo angles at which they overlap or come too close, deg; null if they do so in every pose, or if no such pose is known. */
+  /** Servo angles of a pose in which they overlap or come too close, deg; null if no single pose is responsible. */
   pose: number[] | null;
 }
 ";
@@ -47,10 +47,10 @@ pub struct Parts(Model);
 
 #[wasm_bindgen]
 impl Parts {
-    /// Makes the parts of a robot.toml.
+    /// Makes the parts for a robot.toml.
     ///
     /// # Errors
-    /// Fails for an invalid robot.toml, or a robot whose parts cannot be made.
+    /// Fails for an invalid robot.toml, or for a robot whose parts cannot be made.
     #[wasm_bindgen(constructor)]
     pub fn new(toml: &str) -> Result<Self, Refused> {
         Ok(Self(Model::read(toml)?))
@@ -66,12 +66,12 @@ impl Parts {
     /// Makes the triangles of the solids, in the order of `BodyEntry.solid`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no closed body.
+    /// Fails if the layers of a part do not form a closed body.
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         self.0.solids()
     }
 
-    /// Returns x, y, cosine and sine of every mount, at servo angles and leg lags in deg; undefined if a loop does not
+    /// Returns x, y, cosine and sine of every mount for servo angles and leg lags in deg; undefined if a loop does not
     /// close, or if an array does not have four numbers.
     #[must_use]
     pub fn pose(
@@ -81,15 +81,15 @@ impl Parts {
     ) -> Option<Vec<f64>> {
         let places = self
             .0
-            .mount_places(angles.try_into().ok()?, lags.try_into().ok()?)?;
+            .place_mounts(angles.try_into().ok()?, lags.try_into().ok()?)?;
         Some(places.into_flattened())
     }
 
-    /// Proves that no two parts overlap or come too close; returns the least distance, mm, or undefined if no pair was
-    /// checked. Calls `progress` with the number of finished checks and their total number.
+    /// Proves that no two parts overlap or come too close; returns the smallest distance, mm, or undefined if no pair
+    /// was checked. Calls `progress` with the number of finished checks and their total number.
     ///
     /// # Errors
-    /// Returns the two parts that overlap or come too close.
+    /// Returns two parts that overlap or come too close.
     pub fn prove(
         &self,
         #[wasm_bindgen(unchecked_param_type = "(done: number, total: number) => void")]
@@ -104,7 +104,7 @@ impl Parts {
     /// Makes one group of files; `group` is the group's index, below `ModelEntry.files`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
+    /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
     pub fn files(&self, group: usize) -> Result<Vec<PartFile>, Refused> {
         let files = self.0.files(group)?.into_iter();
         Ok(files

@@ -1,9 +1,9 @@
-//! The model that the page shows: bodies, printed parts, and the steps of the guide.
+//! The model that the page shows: bodies, printed parts and the guide's steps.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, BuildProblem, CollidingPair, File, Mount, Part, Placement, PrintToBody, Step,
-    coupon, documents, part_files, steps,
+    Assembly, Bill, BuildError, CollidingPair, File, Mount, Part, Placement, PrintToBody, Step,
+    build_coupon, build_steps, make_documents, make_part_files,
 };
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD_TURN_SIGN;
@@ -21,7 +21,7 @@ pub struct Refused {
 }
 
 impl Refused {
-    fn of(error: impl ToString) -> Self {
+    fn without_clash(error: impl ToString) -> Self {
         Self {
             refused: error.to_string(),
             clash: None,
@@ -29,11 +29,11 @@ impl Refused {
     }
 }
 
-impl From<BuildProblem> for Refused {
-    fn from(problem: BuildProblem) -> Self {
+impl From<BuildError> for Refused {
+    fn from(error: BuildError) -> Self {
         Self {
-            clash: problem.colliding_pair(),
-            ..Self::of(problem)
+            clash: error.colliding_pair(),
+            ..Self::without_clash(error)
         }
     }
 }
@@ -45,17 +45,17 @@ pub struct BodyEntry {
     pub name: String,
     /// The kind of body, in a word or two.
     pub kind: &'static str,
-    /// The index of the mount that it moves with.
+    /// The index of the mount with which the body moves.
     pub mount: usize,
-    /// The index of the servo that the body belongs to; `None` for chassis and sides.
+    /// The index of the servo to which the body belongs; `None` for chassis and sides.
     pub servo: Option<usize>,
     /// The number of the guide's step that adds the body, from 1; 0 if no step adds it.
     pub step: usize,
-    /// Height by which the guide's exploded picture lifts the body, as a share of the picture's full lift.
+    /// Height by which the guide's exploded picture lifts the body, as a fraction of the picture's full lift.
     pub lift: f64,
     /// The index of the body's printed part; `None` for bought bodies.
     pub part: Option<usize>,
-    /// The solid's pose in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
+    /// The solid's placement in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
     pub place: [f64; 16],
     /// The index of the body's solid in [`Model::solids`].
     pub solid: usize,
@@ -81,7 +81,7 @@ pub struct StepEntry {
     pub instructions: String,
 }
 
-/// The description of the complete model, except the triangles.
+/// The description of the model, without triangles.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct ModelEntry {
     /// Every body of the robot.
@@ -107,12 +107,12 @@ pub struct Model {
 }
 
 impl Model {
-    /// Reads the model of a robot.toml.
+    /// Makes the model for a robot.toml.
     ///
     /// # Errors
-    /// Fails for an invalid robot.toml, or a robot whose parts cannot be made.
+    /// Fails for an invalid robot.toml, or for a robot whose parts cannot be made.
     pub fn read(toml: &str) -> Result<Self, Refused> {
-        let robot = Robot::parse(toml).map_err(Refused::of)?;
+        let robot = Robot::parse(toml).map_err(Refused::without_clash)?;
         let assembly = Assembly::new(&robot);
         assembly.check_dimensions()?;
         let mut mounts: Vec<Mount> = Vec::new();
@@ -122,8 +122,8 @@ impl Model {
             }
         }
         Ok(Self {
-            parts: assembly.parts(),
-            steps: steps(robot.drive().strut().is_some()),
+            parts: assembly.collect_parts(),
+            steps: build_steps(robot.drive().strut().is_some()),
             assembly,
             mounts,
         })
@@ -147,75 +147,75 @@ impl Model {
             BodyEntry {
                 name: body.name.clone(),
                 kind: body.kind.word(),
-                mount: self.mount_index(body.mount),
+                mount: self.find_mount(body.mount),
                 servo: body.mount.servo(),
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
                 part,
-                place: matrix_of(motion),
+                place: to_matrix(motion),
                 solid,
             }
         });
         let bodies = bodies.collect();
-        let part_entry = |part: &Part| PartEntry {
+        let make_part_entry = |part: &Part| PartEntry {
             name: part.name.clone(),
             file: part.file_stem(),
             count: part.count(),
         };
-        let step_entry = |step: &Step| StepEntry {
+        let make_step_entry = |step: &Step| StepEntry {
             title: step.title,
             instructions: step.instructions.clone(),
         };
         ModelEntry {
             bodies,
-            parts: self.needed_parts().map(part_entry).collect(),
-            steps: self.steps.iter().map(step_entry).collect(),
+            parts: self.needed_parts().map(make_part_entry).collect(),
+            steps: self.steps.iter().map(make_step_entry).collect(),
             mounts: self.mounts.len(),
             floor: -sole_z,
             files: self.ordered_parts().count() + 1,
         }
     }
 
-    /// The assembly of the robot.
+    /// Returns the robot's assembly.
     #[must_use]
     pub fn assembly(&self) -> &Assembly {
         &self.assembly
     }
 
-    /// Returns the parts that the robot is built of, without the alternatives to them.
+    /// Returns the parts of which the robot is built, without their alternatives.
     pub(crate) fn needed_parts(&self) -> impl Iterator<Item = &Part> {
         self.parts.iter().filter(|part| part.instead_of.is_none())
     }
 
-    fn mount_index(&self, mount: Mount) -> usize {
+    fn find_mount(&self, mount: Mount) -> usize {
         let index = self.mounts.iter().position(|candidate| *candidate == mount);
         index.expect("every body's mount is in the list")
     }
 
-    /// Returns the pose of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its x
-    /// axis. `angles` are those of the servos (deg, chassis frame), `lags` those of the legs behind them (deg, foot
-    /// forward positive). `None` if a loop does not close.
+    /// Returns the placement of every mount in the chassis frame: x and y of its origin, mm, and the unit vector of its
+    /// x axis. `angles` are the servo angles (deg, chassis frame), and `lags` are the lags of the legs behind the
+    /// servos (deg, foot forward positive). `None` if a loop does not close.
     #[must_use]
-    pub fn mount_places(&self, angles: [f64; 4], lags: [f64; 4]) -> Option<Vec<[f64; 4]>> {
+    pub fn place_mounts(&self, angles: [f64; 4], lags: [f64; 4]) -> Option<Vec<[f64; 4]>> {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
         let plans = &self.assembly.layout().legs;
         let places = self.mounts.iter().map(|&mount| {
-            let driven_place = self.assembly.place(mount, &pose);
-            let leg_at = |servo: usize| {
+            let driven_place = self.assembly.placement(mount, &pose);
+            let place_leg = |servo: usize| {
                 let angle = angles[servo] - FORWARD_TURN_SIGN[servo] * lags[servo];
-                (angle, plans[servo].place_at(angles[servo], angle))
+                (angle, plans[servo].points_at(angles[servo], angle))
             };
             let Placement { origin, x_axis } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
-                    x_axis: Vector::direction(leg_at(servo).0),
+                    x_axis: Vector::direction(place_leg(servo).0),
                     ..driven_place
                 },
                 Mount::Foot(servo) => Placement {
-                    origin: leg_at(servo).1.joints[0],
+                    origin: place_leg(servo).1.joints[0],
                     ..driven_place
                 },
                 Mount::Strut(servo) => {
-                    let [from, to] = leg_at(servo).1.strut_anchors;
+                    let [from, to] = place_leg(servo).1.strut_anchors;
                     let direction = to - from;
                     Placement {
                         origin: from,
@@ -229,23 +229,23 @@ impl Model {
         Some(places.collect())
     }
 
-    /// Returns all parts in the order in which `lizard parts` makes them: the coupon, if any, and the robot's parts
-    /// with their alternatives.
+    /// Returns all parts in the order of `lizard parts`: the coupon, if any, and the robot's parts with their
+    /// alternatives.
     fn ordered_parts(&self) -> impl Iterator<Item = Part> {
-        let coupon = coupon(self.assembly.robot().parts());
+        let coupon = build_coupon(self.assembly.robot().parts());
         coupon.into_iter().chain(self.parts.iter().cloned())
     }
 
-    /// Makes one group of the files that `lizard parts` writes: the files of one part, or, as the last group, the
-    /// bill of materials and the guide. Empty for a larger `group`.
+    /// Makes one group of the files that `lizard parts` writes: the files of one part, or, as the last group, the bill
+    /// of materials and the guide. Empty for a larger `group`.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no closed body, or a screw that cannot be reached.
+    /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
     pub fn files(&self, group: usize) -> Result<Vec<File>, Refused> {
         let robot = self.assembly.robot();
         let count = self.ordered_parts().count();
         if let Some(part) = self.ordered_parts().nth(group) {
-            return Ok(part_files(&part, robot.parts().kerf)?);
+            return Ok(make_part_files(&part, robot.parts().kerf)?);
         }
         if group > count {
             return Ok(Vec::new());
@@ -253,25 +253,26 @@ impl Model {
         let pose = robot
             .lizard()
             .solve(&robot.neutral_pose())
-            .map_err(Refused::of)?;
-        let bill = Bill::of(&self.assembly, &self.parts, &pose);
-        Ok(documents(&self.assembly, &bill, &pose)?)
+            .map_err(Refused::without_clash)?;
+        let bill = Bill::compute(&self.assembly, &self.parts, &pose);
+        Ok(make_documents(&self.assembly, &bill, &pose)?)
     }
 
-    /// Proves that no two parts overlap or come too close in any pose that the guard accepts. Returns the least distance
-    /// between two parts that are not designed to touch, mm; `None` if no such pair was checked.
+    /// Proves that no two parts overlap or come too close in any pose that the guard accepts. Returns the smallest
+    /// distance between two parts that are not designed to touch, mm; `None` if no such pair was checked.
     ///
     /// # Errors
     /// Returns the two parts that overlap most, or else come closest.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refused> {
         let proof = self.assembly.prove(progress);
-        proof.judge().map_err(BuildProblem::from)?;
+        proof.judge().map_err(BuildError::from)?;
         Ok(proof.nearest_separate_pair().map(|pair| pair.lower_bound))
     }
 }
 
-/// Returns the homogeneous matrix, column by column, of a solid's pose in its mount's frame; the identity for `None`.
-fn matrix_of(motion: Option<PrintToBody>) -> [f64; 16] {
+/// Returns the homogeneous matrix, column by column, of a solid's placement in its mount's frame; `None` gives the
+/// identity.
+fn to_matrix(motion: Option<PrintToBody>) -> [f64; 16] {
     let identity = PrintToBody {
         is_flipped: false,
         lift: 0.0,

@@ -1,4 +1,4 @@
-//! The triangles of all solids, as the arrays that a graphics chip needs.
+//! The triangles of all solids, as arrays for a graphics chip.
 
 use lizard_parts::{Body, Mesh, Prism, Solid};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -20,14 +20,14 @@ impl Model {
     /// printed parts, as in their STL files, then the bought bodies.
     ///
     /// # Errors
-    /// Fails for a part whose layers make no closed body.
+    /// Fails if the layers of a part do not form a closed body.
     pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
         let printed = self
             .needed_parts()
-            .map(|part| triangles_of(&part.name, &part.printed_layers().0));
+            .map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
         let bought = self
             .bought_bodies()
-            .map(|body| triangles_of(&body.name, &body.prisms));
+            .map(|body| make_triangles(&body.name, &body.prisms));
         printed.chain(bought).collect()
     }
 
@@ -42,10 +42,10 @@ impl Model {
     }
 }
 
-fn triangles_of(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
-    let mesh = Mesh::of(&Solid::of(prisms));
+fn make_triangles(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
+    let mesh = Mesh::from_solid(&Solid::from_prisms(prisms));
     if !mesh.is_closed() {
-        return Err(lizard_parts::BuildProblem::OpenSurface(name.to_owned()).into());
+        return Err(lizard_parts::BuildError::OpenSurface(name.to_owned()).into());
     }
     let corners = mesh.corners.as_flattened().iter();
     let triangles = mesh.triangles.as_flattened().iter();

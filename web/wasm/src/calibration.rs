@@ -1,4 +1,4 @@
-//! The conversion of a robot's calibration between JavaScript and its file.
+//! Conversion of a robot's calibration between JavaScript and a file.
 
 use lizard_robot::Calibration;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
@@ -8,7 +8,7 @@ use crate::javascript::{from_js, to_js};
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
 export interface ServoSettings {
-  /** The turn that corrects the horn's mounting angle, deg, counter-clockwise. */
+  /** The rotation that corrects the horn's mounting angle, deg, counter-clockwise. */
   trim: number;
   /** Ends of the travel, deg, chassis frame. */
   limit: [number, number];
@@ -21,13 +21,13 @@ export interface ServoSettings {
 export interface Calibration {
   /** The action after power-on: a gait, or rest. */
   boot: string;
-  /** Time without a line from the host after which a gait ends, ms; 0 for never. */
+  /** Time without a line from the host after which a gait ends, ms; 0 if it never ends. */
   deadman: number;
   servos: Four<ServoSettings>;
 }
 ";
 
-/// Reads a calibration from the text of a file; `name` is the file's name, for the error message.
+/// Parses the text of a calibration file; `name` is the file's name, for the error message.
 ///
 /// # Errors
 /// Fails with the first mistake in the text.
@@ -36,12 +36,12 @@ pub fn parse_calibration(text: &str, name: &str) -> Result<JsValue, JsError> {
     Ok(to_js(Calibration::parse(text, name)?))
 }
 
-/// Formats a calibration as the text of its file.
+/// Formats a calibration as the text of a file.
 ///
 /// # Errors
 /// Fails if the value is not a calibration.
-#[wasm_bindgen(js_name = calibrationText)]
-pub fn calibration_text(
+#[wasm_bindgen(js_name = formatCalibration)]
+pub fn format_calibration(
     #[wasm_bindgen(unchecked_param_type = "Calibration")] calibration: &JsValue,
 ) -> Result<String, JsError> {
     Ok(from_js::<Calibration>(calibration)?.to_toml())

@@ -1,7 +1,7 @@
-//! The firmware's core, run in the page without a simulated chip, for a second robot.
+//! The firmware's core, which runs a second robot in the page without a simulated chip.
 //!
-//! Simulating another chip would double the CPU time. The core is plain integer Rust, so its answers
-//! and pulses equal those of a UNO to the bit; only the timing of single CPU cycles is missing.
+//! Simulating another chip would double the CPU time. The core is plain integer Rust; its answers and pulses equal a
+//! UNO's to the bit. Only the timing of single CPU cycles is missing.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::memory::restart::Restart;
@@ -24,7 +24,7 @@ pub struct CoreFrame {
     pub text: String,
 }
 
-/// A robot's core in operation.
+/// A running core of a robot.
 pub struct CoreRun {
     running_robot: RunningRobot,
     /// Voltage at the measuring pin, behind the divider, while the servos' rail is healthy, mV; 0 without a rail.
@@ -32,7 +32,7 @@ pub struct CoreRun {
 }
 
 impl CoreRun {
-    /// Starts a robot's core as at power-on, with these contents of its EEPROM.
+    /// Starts a robot's core as at power-on, with these EEPROM contents.
     #[must_use]
     pub fn power_on(robot: CoreRobot, memory: Eeprom) -> Self {
         Self {
@@ -41,13 +41,13 @@ impl CoreRun {
         }
     }
 
-    /// Ends the run and returns the contents of the EEPROM.
+    /// Ends the run and returns the EEPROM's contents.
     #[must_use]
     pub fn into_memory(self) -> Eeprom {
         self.running_robot.board.memory
     }
 
-    /// Runs one frame of 20 ms with a board supply of `volts`; the core first receives `bytes` from the serial line.
+    /// Runs a frame of 20 ms with a board supply of `volts`; the core first receives `bytes` from the serial line.
     pub fn run_frame(&mut self, bytes: &[u8], volts: f64) -> CoreFrame {
         let adc_code = |pin_volts: f64, supply_volts: f64| {
             (ADC_FULL_SCALE * pin_volts / supply_volts).clamp(0.0, ADC_FULL_SCALE - 1.0)
@@ -76,7 +76,7 @@ mod tests {
     use lizard_robot::Robot;
 
     use super::*;
-    use crate::paper::paper_robot;
+    use crate::paper::load_paper_robot;
 
     /// Sends a line in the first frame and runs `frames` frames; returns the last pulse widths in CPU cycles.
     fn send_and_run(
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_low_supply_is_reported() {
-        let mut core = CoreRun::power_on(*paper_robot().firmware(), Eeprom::blank());
+        let mut core = CoreRun::power_on(*load_paper_robot().firmware(), Eeprom::blank());
         let mut output = String::new();
         send_and_run(&mut output, &mut core, "", 200);
         for _ in 0..200 {

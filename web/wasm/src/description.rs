@@ -1,4 +1,4 @@
-//! The description of a robot, which the page reads before anything moves.
+//! The description of a robot, which the page reads before the robot moves.
 
 use lizard_core::console::text::Text;
 use lizard_core::console::word::Word;
@@ -12,7 +12,7 @@ use serde::Serialize;
 use tsify::Tsify;
 
 use crate::floor::Floor;
-use crate::scene::Spot;
+use crate::scene::Point;
 
 /// A gait of the robot.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
@@ -21,22 +21,23 @@ pub struct GaitEntry {
     pub name: String,
     /// Console command that starts the gait.
     pub command: String,
-    /// Time of a cycle at full speed, s.
+    /// Duration of a cycle at full pace, s.
     pub period: f64,
-    /// True if a servo moves in the course of a cycle.
+    /// True if a servo moves during a cycle.
     pub moves: bool,
-    /// True if the gait's phase runs backwards.
+    /// True if the gait's phase runs backward.
     pub reversed: bool,
 }
 
-/// A length of the robot that may be changed.
+/// A length of the robot that the user may change.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct LinkEntry {
     /// Key in robot.toml, such as `links.l1`.
     pub key: String,
-    /// Name shown to the user.
+    /// Name for the user.
     pub label: &'static str,
-    /// Key of the length that must be equal, such as that on the other side; the length's own key if there is none.
+    /// Key of the length that must be equal, such as the same length on the other side. The length's own key if no
+    /// other length must be equal.
     pub twin: String,
     /// Unit: mm, or deg for an angle.
     pub unit: &'static str,
@@ -68,50 +69,50 @@ pub struct ServoEntry {
     pub travel: (f64, f64),
 }
 
-/// Name of the servo model with the servos of robot.toml.
+/// Name of the servo model that describes the servos in robot.toml.
 const OWN_SERVOS: &str = "own";
-/// Name of the servo model with servos that follow their pulses exactly.
+/// Name of the servo model in which servos follow their pulses exactly.
 const IDEAL_SERVOS: &str = "ideal";
 
-/// A model of the servos.
+/// A servo model.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct ModelEntry {
+pub struct ServoModelEntry {
     /// Name of the model.
     pub name: &'static str,
-    /// Stall torque, kg cm; time for 60 deg, s; the supply at which these two are specified, V; the supply
+    /// Stall torque, kg cm; time for 60 deg, s; the supply at which these two values are specified, V; and the supply
     /// in the robot, V. `None` for ideal servos.
-    pub figures: Option<[f64; 4]>,
+    pub ratings: Option<[f64; 4]>,
 }
 
-impl ModelEntry {
-    /// Returns the models that the page offers for a robot; the first is the default.
-    fn all(robot: &Robot) -> Vec<Self> {
-        let entry_of = |name, servo: &ServoType| Self {
+impl ServoModelEntry {
+    /// Returns the models that the page offers for a robot, the default model first.
+    fn list_all(robot: &Robot) -> Vec<Self> {
+        let make_entry = |name, servo: &ServoType| Self {
             name,
-            figures: Some([
-                servo.stall_kg_cm,
+            ratings: Some([
+                servo.stall_torque_kg_cm,
                 servo.s_per_60_deg,
-                servo.at_volts,
-                servo.volts,
+                servo.rated_volts,
+                servo.supply_volts,
             ]),
         };
-        let mut models = vec![entry_of(OWN_SERVOS, robot.servo_type())];
+        let mut models = vec![make_entry(OWN_SERVOS, robot.servo_type())];
         models.extend(
             ServoType::ALL
                 .iter()
-                .map(|servo| entry_of(servo.model, servo)),
+                .map(|servo| make_entry(servo.model, servo)),
         );
         models.push(Self {
             name: IDEAL_SERVOS,
-            figures: None,
+            ratings: None,
         });
         models
     }
 }
 
-/// Returns the servo model that has this name, for a robot. A name such as `copy at 4.2` also sets the supply, V.
-/// `None` for an unknown name, or a supply that robot.toml does not allow.
-pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
+/// Finds a robot's servo model by name. A name such as `copy at 4.2` also sets the supply, V. Returns `None` for an
+/// unknown name, or a supply that robot.toml does not allow.
+pub(crate) fn find_servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
     let (name, supply) = match name.split_once(" at ") {
         Some((name, volts)) => (name, Some(volts.parse().ok()?)),
         None => (name, None),
@@ -121,27 +122,27 @@ pub(crate) fn servo_model(robot: &Robot, name: &str) -> Option<ServoModel> {
         OWN_SERVOS => robot.servo_type(),
         _ => ServoType::ALL.iter().find(|servo| servo.model == name)?,
     };
-    let volts = supply.unwrap_or(servo.volts);
+    let volts = supply.unwrap_or(servo.supply_volts);
     let (min, max) = ServoType::VOLTS_RANGE;
     let is_allowed = (min..=max).contains(&volts);
-    is_allowed.then(|| ServoModel::Motors(robot.motors_of_type(servo, volts)))
+    is_allowed.then(|| ServoModel::Motors(robot.motors_with_type(servo, volts)))
 }
 
-/// The chassis seen from above, as [`Plate`]: mm, chassis frame.
+/// The chassis plate seen from above, mm, chassis frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct PlateEntry {
     /// Half the width and half the length, without the arms.
-    pub half: Spot,
+    pub half: Point,
     /// Radius of the corners.
     pub corner: f64,
     /// Ends of the arms that carry the legs' pivots.
-    pub arms: Vec<[Spot; 2]>,
+    pub arms: Vec<[Point; 2]>,
     /// Half the width of an arm.
     pub arm: f64,
     /// Centres of the servos' cases.
-    pub cases: [Spot; 4],
+    pub cases: [Point; 4],
     /// Width and length of a case.
-    pub case: Spot,
+    pub case: Point,
 }
 
 impl From<Plate> for PlateEntry {
@@ -150,9 +151,9 @@ impl From<Plate> for PlateEntry {
         Self {
             half: plate.half_size.into(),
             corner: plate.corner_radius,
-            arms: arms.map(|arm| arm.map(Spot::from)).collect(),
+            arms: arms.map(|arm| arm.map(Point::from)).collect(),
             arm: plate.arm_half_width,
-            cases: plate.case_centres.map(Spot::from),
+            cases: plate.case_centres.map(Point::from),
             case: plate.case_size.into(),
         }
     }
@@ -165,38 +166,38 @@ pub struct Description {
     pub hash: String,
     /// Name of the robot, as in the banner.
     pub name: String,
-    /// Version of the firmware that the section is for.
+    /// Version of the firmware for which the section is made.
     pub version: String,
     /// Byte address of the robot's section in flash.
     pub start: u16,
-    /// The servos A1 to A4.
+    /// Servos A1 to A4.
     #[tsify(type = "Four<ServoEntry>")]
     pub servos: Vec<ServoEntry>,
-    /// The gaits in the order of the file.
+    /// Gaits in the order of the file.
     pub gaits: Vec<GaitEntry>,
     /// Console commands that start a routine, in the order of the file.
     pub routines: Vec<String>,
-    /// The lengths that may be changed.
+    /// Lengths that the user may change.
     pub lengths: Vec<LinkEntry>,
-    /// The chassis seen from above.
+    /// Chassis plate seen from above.
     pub plate: PlateEntry,
     /// Limits of the margins, in the order of [`crate::Scene::margins`].
     pub margins: Vec<MarginEntry>,
-    /// Least and greatest travel of the sliders, mm from nominal.
+    /// Smallest and largest travel of the sliders, mm from nominal.
     pub stroke: (f64, f64),
-    /// Supply voltages of the board below which the robot slows down, stops, and rests, V.
+    /// Thresholds of the board's supply below which the robot slows down, stops, and rests, V.
     pub supply: [f64; 3],
-    /// Pace limit below the first voltage of `supply`, percent of a gait's own pace.
+    /// Pace limit below the first threshold of `supply`, percent of a gait's nominal pace.
     pub slow_pace: u8,
-    /// ADC channel that measures the servos' rail, and the voltage at its pin with a healthy rail,
-    /// V; `None` if the rail is not measured.
+    /// ADC channel that measures the servos' rail, and the voltage at its pin while the rail is healthy, V. `None` if
+    /// the rail is not measured.
     pub rail: Option<(u8, f64)>,
     /// Name of each input, and the Arduino number of its pin.
     pub inputs: Vec<(&'static str, u8)>,
-    /// Floor, mass, feet, and the drive of the legs.
+    /// Floor, mass, feet and leg drive.
     pub floor: Floor,
-    /// The servo models that the page offers.
-    pub models: Vec<ModelEntry>,
+    /// Servo models that the page offers.
+    pub models: Vec<ServoModelEntry>,
     /// Reserved words of the console, the same for every robot.
     pub words: Vec<&'static str>,
 }
@@ -204,7 +205,7 @@ pub struct Description {
 impl Description {
     /// Describes a robot.
     #[must_use]
-    pub fn of(robot: &Robot) -> Self {
+    pub fn for_robot(robot: &Robot) -> Self {
         let servos = robot
             .servos()
             .iter()
@@ -225,29 +226,29 @@ impl Description {
         });
         let routines = robot.routines().iter();
         let limits = robot.limits();
-        let margins_of = |checks: &[Check], limit: f64| {
-            let entry_of = |check: &Check| MarginEntry {
+        let list_margins = |checks: &[Check], limit: f64| {
+            let make_entry = |check: &Check| MarginEntry {
                 name: check.name(),
                 limit,
             };
-            checks.iter().map(entry_of).collect::<Vec<_>>()
+            checks.iter().map(make_entry).collect::<Vec<_>>()
         };
         let core = robot.core();
         let board = core.supplies().board;
         Self {
             hash: format!("{:08x}", core.hash()),
             name: robot.name().to_string(),
-            version: version(),
+            version: format_version(),
             start: START_ADDRESS,
             servos: servos.collect(),
             gaits: gaits.collect(),
             routines: routines.map(|routine| routine.command()).collect(),
-            lengths: lengths_of(robot),
+            lengths: list_lengths(robot),
             plate: robot.plate().into(),
             margins: [
-                margins_of(&Check::TYPE2, limits.type2),
-                margins_of(&Check::TYPE1, limits.type1),
-                margins_of(&Check::LEG, limits.leg),
+                list_margins(&Check::TYPE2, limits.type2),
+                list_margins(&Check::TYPE1, limits.type1),
+                list_margins(&Check::LEG, limits.leg),
             ]
             .concat(),
             stroke: (limits.stroke_min, limits.stroke_max),
@@ -257,27 +258,27 @@ impl Description {
             inputs: robot.inputs().named_pins().collect(),
             slow_pace: core.slow_pace(),
             supply: [board.slow_mv, board.stop_mv, board.rest_mv].map(|mv| f64::from(mv) / 1000.0),
-            floor: Floor::of(robot),
-            models: ModelEntry::all(robot),
-            words: reserved_words(),
+            floor: Floor::for_robot(robot),
+            models: ServoModelEntry::list_all(robot),
+            words: list_reserved_words(),
         }
     }
 }
 
 /// Returns the core's version as text.
-fn version() -> String {
+fn format_version() -> String {
     let mut version = String::new();
     Text::Version.print(&mut version);
     version
 }
 
-/// Returns the reserved words of the console, which no gait may have as its name.
-fn reserved_words() -> Vec<&'static str> {
+/// Returns the console's reserved words, which may not be gait names.
+fn list_reserved_words() -> Vec<&'static str> {
     let words = Word::ALL.iter().filter(|word| word.is_reserved());
     words.map(|word| word.text()).collect()
 }
 
-/// The label of each link, l0 to l19, and the number of its mirror image (its own number for a base).
+/// The label of each link, l0 to l19, and the number of its mirror image; a base has its own number.
 const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),
@@ -301,10 +302,10 @@ const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
     ("front arm, right", 14),
 ];
 
-/// Returns the lengths of a robot that may be changed, with their present values.
-fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
+/// Returns the lengths of a robot that the user may change, with their current values.
+fn list_lengths(robot: &Robot) -> Vec<LinkEntry> {
     let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
-    let entry_of = |key: &str, label, twin: &str, value| LinkEntry {
+    let make_entry = |key: &str, label, twin: &str, value| LinkEntry {
         key: key.to_string(),
         label,
         twin: twin.to_string(),
@@ -314,7 +315,7 @@ fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
     let values = robot.lizard().links.to_array();
     let links = LINK_LABELS_AND_TWINS.iter().zip(values).enumerate();
     let links = links.map(|(i, ((label, twin), value))| {
-        entry_of(
+        make_entry(
             &format!("links.l{i}"),
             label,
             &format!("links.l{twin}"),
@@ -324,21 +325,21 @@ fn lengths_of(robot: &Robot) -> Vec<LinkEntry> {
     let [forward_key, side_key] = HIP_KEYS;
     let [front_side, hind_side] = feet.hip_side;
     let legs = [
-        entry_of("leg.ground", "leg ground link", "leg.coupler", leg.ground),
-        entry_of("leg.crank", "leg crank", "leg.follower", leg.crank),
-        entry_of("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
-        entry_of("leg.follower", "leg follower", "leg.crank", leg.follower),
-        entry_of(
+        make_entry("leg.ground", "leg ground link", "leg.coupler", leg.ground),
+        make_entry("leg.crank", "leg crank", "leg.follower", leg.crank),
+        make_entry("leg.coupler", "leg coupler", "leg.ground", leg.coupler),
+        make_entry("leg.follower", "leg follower", "leg.crank", leg.follower),
+        make_entry(
             forward_key,
             "hip, fore and aft",
             forward_key,
             feet.hip_forward,
         ),
     ];
-    // If the front and hind hips differ, as derived hips may, one number cannot describe both, so it is not offered.
+    // Derived front and hind hips may differ. One number cannot describe both; therefore it is not offered.
     let side_entry = (front_side == hind_side)
-        .then(|| entry_of(side_key, "hip, sideways", side_key, front_side));
-    let mount_entry = entry_of(
+        .then(|| make_entry(side_key, "hip, sideways", side_key, front_side));
+    let mount_entry = make_entry(
         "leg.mount",
         "outward sweep of the legs",
         "leg.mount",
@@ -357,13 +358,13 @@ mod tests {
 
     #[test]
     fn a_length_is_the_twin_of_its_twin() {
-        let robot = crate::paper::paper_robot();
-        let lengths = Description::of(&robot).lengths;
+        let robot = crate::paper::load_paper_robot();
+        let lengths = Description::for_robot(&robot).lengths;
         for length in &lengths {
             let twin = lengths
                 .iter()
                 .find(|candidate| candidate.key == length.twin);
-            let twin = twin.expect("every twin is one of the lengths");
+            let twin = twin.expect("every twin is in the list");
             assert_eq!((&twin.twin, twin.value), (&length.key, length.value));
         }
     }

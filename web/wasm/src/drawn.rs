@@ -1,8 +1,8 @@
-//! A drawn gait: the end point of head or tail follows a closed line.
+//! A drawn gait, in which the end point of head or tail follows a closed line.
 //!
-//! A line drawn by hand has corners, which no servo can follow. So the line is sampled at even
-//! distances, and only the first few harmonics of the samples are kept. The angles of the two servos
-//! follow from the robot's inverse kinematics, and the gait is checked like any gait of a robot.toml.
+//! A line drawn by hand has corners, which no servo can follow. Therefore the line is sampled at even distances, and
+//! only the first few harmonics of the samples are kept. The robot's inverse kinematics gives the angles of the two
+//! servos, and the gait is checked like any gait in a robot.toml.
 
 use std::f64::consts::TAU;
 
@@ -11,7 +11,7 @@ use lizard_robot::{Harmonic, Path, Robot};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-use crate::workspace::neutral_point;
+use crate::workspace::find_neutral_point;
 
 /// Number of points at which a line is sampled.
 const SAMPLE_COUNT: usize = 256;
@@ -30,11 +30,11 @@ pub struct DrawnGait {
     /// The five-bar whose end point follows the line: `head` or `tail`.
     #[tsify(type = "'head' | 'tail'")]
     pub end: String,
-    /// Time of a cycle, s.
+    /// Duration of a cycle, s.
     pub period: f64,
-    /// Scale of the line about the neutral point.
+    /// Scale factor of the line about the neutral point.
     pub size: f64,
-    /// Number of harmonics that are kept, 1 to 16.
+    /// Number of kept harmonics, 1 to 16.
     pub terms: usize,
     /// Points of the line, mm in the frame of head or tail; the last point is joined to the first.
     pub points: Vec<[f64; 2]>,
@@ -47,7 +47,7 @@ impl DrawnGait {
 
     /// Returns the path that the end point follows; `None` for an unknown `end`, or if the line has no length.
     fn smoothed_path(&self, robot: &Robot) -> Option<Path> {
-        let neutral = neutral_point(robot, self.end()?);
+        let neutral = find_neutral_point(robot, self.end()?);
         let scale_point = |[x, y]: &[f64; 2]| {
             let scale_about_neutral =
                 |axis: usize, value: f64| neutral[axis] + self.size * (value - neutral[axis]);
@@ -58,7 +58,7 @@ impl DrawnGait {
         let terms = self.terms.clamp(1, MAX_HARMONIC_COUNT);
         let [(centre_x, x), (centre_y, y)] = [0, 1].map(|axis| {
             let values: Vec<f64> = even_points.iter().map(|point| point[axis]).collect();
-            harmonics_of(&values, terms)
+            compute_harmonics(&values, terms)
         });
         let centre = [centre_x, centre_y];
         Some(Path { centre, x, y })
@@ -66,20 +66,20 @@ impl DrawnGait {
 
     /// Formats the gait as tables of robot.toml; `None` for an unknown `end`, or if the line has no length.
     #[must_use]
-    pub fn table(&self, robot: &Robot) -> Option<String> {
+    pub fn format_table(&self, robot: &Robot) -> Option<String> {
         let path = self.smoothed_path(robot)?;
-        let series_text = |terms: &[Harmonic]| {
+        let format_series = |terms: &[Harmonic]| {
             let kept_terms = terms
                 .iter()
                 .filter(|term| term.amplitude >= MIN_AMPLITUDE_MM);
             let term_texts = kept_terms.map(|term| {
-                let (k, amplitude, shift) = (term.k, term.amplitude, term.shift);
+                let (k, amplitude, shift) = (term.order, term.amplitude, term.phase_shift);
                 format!("{{ k = {k}, amplitude = {amplitude:.2}, shift = {shift:.4} }}")
             });
             term_texts.collect::<Vec<_>>().join(", ")
         };
         let ([centre_x, centre_y], x, y) =
-            (path.centre, series_text(&path.x), series_text(&path.y));
+            (path.centre, format_series(&path.x), format_series(&path.y));
         let (name, end) = (&self.name, &self.end);
         let period = (self.period * 1000.0).round() / 1000.0;
         Some(format!(
@@ -88,8 +88,8 @@ impl DrawnGait {
         ))
     }
 
-    /// Returns evenly timed points of the path that the end point follows, mm in the frame of head or tail; `None` for
-    /// an unknown `end`, or if the line has no length.
+    /// Returns evenly timed points of the end point's path, mm in the frame of head or tail; `None` for an unknown
+    /// `end`, or if the line has no length.
     #[must_use]
     pub fn shown_points(&self, robot: &Robot) -> Option<Vec<[f64; 2]>> {
         let path = self.smoothed_path(robot)?;
@@ -101,29 +101,29 @@ impl DrawnGait {
     }
 }
 
-/// Returns the mean of values that are evenly spaced over a cycle, and their first `terms` harmonics.
-fn harmonics_of(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
-    let mean_of = |value_of: &dyn Fn(f64, f64) -> f64| {
+/// Returns the mean and the first `terms` harmonics of values that are evenly spaced over a cycle.
+fn compute_harmonics(values: &[f64], terms: usize) -> (f64, Vec<Harmonic>) {
+    let compute_mean = |weight: &dyn Fn(f64, f64) -> f64| {
         let indexed_values = values.iter().enumerate();
         let sum: f64 = indexed_values
-            .map(|(i, value)| value_of(*value, i as f64 / values.len() as f64))
+            .map(|(i, value)| weight(*value, i as f64 / values.len() as f64))
             .sum();
         sum / values.len() as f64
     };
-    let term_of = |k: usize| {
-        let k = k as f64;
-        let cosine = 2.0 * mean_of(&|value, phase| value * (TAU * k * phase).cos());
-        let sine = 2.0 * mean_of(&|value, phase| value * (TAU * k * phase).sin());
+    let compute_harmonic = |order: usize| {
+        let order = order as f64;
+        let cosine = 2.0 * compute_mean(&|value, phase| value * (TAU * order * phase).cos());
+        let sine = 2.0 * compute_mean(&|value, phase| value * (TAU * order * phase).sin());
         Harmonic {
-            k,
+            order,
             amplitude: cosine.hypot(sine),
-            // Rounded to the digits that are written; adding 0.0 removes the sign of a negative zero.
-            shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
+            // Rounded to the written digits; adding 0.0 turns -0.0 into 0.0.
+            phase_shift: (cosine.atan2(sine) / TAU * 1e4).round() / 1e4 + 0.0,
         }
     };
     (
-        mean_of(&|value, _| value),
-        (1..=terms).map(term_of).collect(),
+        compute_mean(&|value, _| value),
+        (1..=terms).map(compute_harmonic).collect(),
     )
 }
 
@@ -145,13 +145,14 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
             passed_length += lengths[segment];
             segment += 1;
         }
-        let segment_share = match lengths[segment] > 0.0 {
+        let segment_fraction = match lengths[segment] > 0.0 {
             true => (distance - passed_length) / lengths[segment],
             false => 0.0,
         };
         let (from, to) = (points[segment], next_point(segment));
-        even_points
-            .push([0, 1].map(|axis| from[axis] + segment_share.min(1.0) * (to[axis] - from[axis])));
+        even_points.push(
+            [0, 1].map(|axis| from[axis] + segment_fraction.min(1.0) * (to[axis] - from[axis])),
+        );
     }
     Some(even_points)
 }
@@ -159,15 +160,15 @@ fn sample_evenly(points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::{PAPER_TOML, paper_robot, paper_robot_and_twin};
+    use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
     use crate::trial::EditedGait;
 
     /// Makes a gait along a circle about the neutral point of head or tail.
-    fn circular_gait(robot: &Robot, end: End, radius: f64) -> DrawnGait {
-        let [x, y] = neutral_point(robot, end);
+    fn make_circular_gait(robot: &Robot, end: End, radius_mm: f64) -> DrawnGait {
+        let [x, y] = find_neutral_point(robot, end);
         let point_at = |i: usize| {
             let angle = TAU * i as f64 / 90.0;
-            [x + radius * angle.cos(), y + radius * angle.sin()]
+            [x + radius_mm * angle.cos(), y + radius_mm * angle.sin()]
         };
         DrawnGait {
             name: "mine".to_string(),
@@ -181,9 +182,9 @@ mod tests {
 
     #[test]
     fn the_end_point_follows_the_drawn_circle() {
-        let (robot, twin) = paper_robot_and_twin();
+        let (robot, twin) = load_paper_robot_and_twin();
         for end in End::ALL {
-            let drawn_gait = circular_gait(&robot, end, 6.0);
+            let drawn_gait = make_circular_gait(&robot, end, 6.0);
             let edited_gait = EditedGait::DrawnGait(drawn_gait);
             let trial = edited_gait
                 .try_on(&twin)
@@ -199,7 +200,7 @@ mod tests {
                 .expect("the line has a length");
             let robot = Robot::parse(&text).expect("the robot with the gait is valid");
             let gait = robot.gait("mine").expect("the gait was added");
-            let [x, y] = neutral_point(&robot, end);
+            let [x, y] = find_neutral_point(&robot, end);
             for i in 0..50 {
                 let pose = gait.pose(f64::from(i) / 50.0);
                 let point = robot
@@ -215,15 +216,17 @@ mod tests {
     }
 
     #[test]
-    fn a_circle_has_one_harmonic_and_its_path_is_the_circle() {
-        let robot = paper_robot();
-        let drawn_gait = circular_gait(&robot, End::Head, 6.0);
-        let table = drawn_gait.table(&robot).expect("the line has a length");
+    fn the_path_of_a_drawn_circle_is_a_circle_with_one_harmonic() {
+        let robot = load_paper_robot();
+        let drawn_gait = make_circular_gait(&robot, End::Head, 6.0);
+        let table = drawn_gait
+            .format_table(&robot)
+            .expect("the line has a length");
         assert!(
             table.contains("k = 1") && !table.contains("k = 2"),
             "{table}"
         );
-        let [x, y] = neutral_point(&robot, End::Head);
+        let [x, y] = find_neutral_point(&robot, End::Head);
         for [px, py] in drawn_gait
             .shown_points(&robot)
             .expect("the line has a length")
@@ -233,9 +236,9 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_offers_the_nearest_size_and_the_nearest_period_that_are_valid() {
-        let (robot, twin) = paper_robot_and_twin();
-        let drawn_gait = circular_gait(&robot, End::Head, 40.0);
+    fn a_refusal_offers_the_nearest_valid_size_and_the_nearest_valid_period() {
+        let (robot, twin) = load_paper_robot_and_twin();
+        let drawn_gait = make_circular_gait(&robot, End::Head, 40.0);
         let try_gait = |drawn_gait: &DrawnGait| {
             EditedGait::DrawnGait(drawn_gait.clone())
                 .try_on(&twin)
@@ -248,47 +251,49 @@ mod tests {
                 refusal.alternatives
             );
         };
-        assert_eq!(size.what, "size");
+        assert_eq!(size.parameter, "size");
         let with_size = |size: f64| DrawnGait {
             size,
             ..drawn_gait.clone()
         };
-        let is_possible = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
+        let is_valid = |drawn_gait: DrawnGait| try_gait(&drawn_gait).is_ok();
         assert!(
-            is_possible(with_size(size.value)) && !is_possible(with_size(size.value + 0.01)),
+            is_valid(with_size(size.value)) && !is_valid(with_size(size.value + 0.01)),
             "{}",
             size.value
         );
         let fast_gait = DrawnGait {
             period: 0.2,
-            ..circular_gait(&robot, End::Head, 8.0)
+            ..make_circular_gait(&robot, End::Head, 8.0)
         };
         let refusal = try_gait(&fast_gait).expect_err("the gait is too fast");
         let offer = refusal
             .alternatives
             .iter()
-            .find(|alternative| alternative.what == "period");
+            .find(|alternative| alternative.parameter == "period");
         let slow_period = offer.expect("a longer period is offered").value;
         let with_period = |period: f64| DrawnGait {
             period,
             ..fast_gait.clone()
         };
         assert!(
-            is_possible(with_period(slow_period)) && !is_possible(with_period(slow_period - 0.01)),
-            "{slow_period}"
+            is_valid(with_period(slow_period)) && !is_valid(with_period(slow_period - 0.01)),
+            "{slow_period} s"
         );
     }
 
     #[test]
-    fn a_line_without_length_makes_no_gait() {
-        let (robot, twin) = paper_robot_and_twin();
-        let mut drawn_gait = circular_gait(&robot, End::Tail, 0.0);
+    fn a_line_without_length_gives_no_gait() {
+        let (robot, twin) = load_paper_robot_and_twin();
+        let mut drawn_gait = make_circular_gait(&robot, End::Tail, 0.0);
         assert!(
             EditedGait::DrawnGait(drawn_gait.clone())
                 .try_on(&twin)
                 .is_none()
         );
         drawn_gait.points.clear();
-        assert!(drawn_gait.shown_points(&robot).is_none() && drawn_gait.table(&robot).is_none());
+        assert!(
+            drawn_gait.shown_points(&robot).is_none() && drawn_gait.format_table(&robot).is_none()
+        );
     }
 }

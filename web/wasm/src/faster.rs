@@ -1,9 +1,8 @@
-//! The search for a gait that walks faster than the edited one.
+//! The search for a gait that is faster than the edited gait.
 //!
-//! A search takes minutes, and the page has one thread for it. So this search tries one gait per call:
-//! its caller can show the progress and the best gait so far, and stop at any time. The kinds of gait
-//! take turns, round by round. Their searches do not depend on each other, so the final gait equals
-//! that of `lizard tune` with the same parameters.
+//! A search takes minutes, and the page has one thread for it. Therefore each call tries one gait: the caller can show
+//! the progress and the best gait so far, and stop at any time. The kinds of gait alternate, round by round. Their
+//! searches do not depend on each other; the final gait equals the result of `lizard tune` with the same parameters.
 
 use lizard_robot::Bars;
 use lizard_tune::{
@@ -20,7 +19,7 @@ use crate::refused::Refused;
 pub struct SearchTask {
     /// The gait to beat.
     pub bars: Bars,
-    /// Speed that no servo may exceed, deg/s; `None` for the largest servo speed in the gait to beat.
+    /// Speed that no servo may exceed, deg/s; `None` selects the largest servo speed of the gait to beat.
     pub rate: Option<f64>,
     /// Number of rounds, as for `lizard tune --rounds`.
     pub rounds: usize,
@@ -31,7 +30,7 @@ pub struct SearchTask {
 /// The extent of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct SearchExtent {
-    /// Number of gaits that the search tries.
+    /// Number of gaits to try.
     pub all: usize,
     /// Speed that no servo may exceed, deg/s.
     pub rate: f64,
@@ -40,9 +39,9 @@ pub struct SearchExtent {
 /// The progress of a search.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Progress {
-    /// Number of gaits that the search has tried.
+    /// Number of gaits tried so far.
     pub done: usize,
-    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s; `None` until a
+    /// Score of the best gait so far: the speed that 95 % of the random robots exceed, mm/s or deg/s. `None` until a
     /// valid gait is found.
     pub best: Option<f64>,
 }
@@ -52,7 +51,7 @@ pub struct Progress {
 pub struct Found {
     /// The best gait found, with the name of the gait to beat.
     pub bars: Bars,
-    /// Comparison of the found gait with the gait to beat, on random robots that the search has not used.
+    /// Comparison of the found gait with the gait to beat, on random robots that the search did not use.
     #[tsify(type = "{ unit: string; rate: number; robots: number; faster: number }")]
     pub comparison: Comparison,
     /// True if the found gait is faster than the gait to beat.
@@ -69,30 +68,28 @@ pub struct FasterSearch {
     searches: [Search; GaitKind::ALL.len()],
     /// Index of the kind whose gaits are being tried.
     kind_index: usize,
-    /// Scores so far of this kind's gaits in the current round.
+    /// Scores of this kind's gaits in the current round, as far as they are tried.
     scores: Vec<Option<f64>>,
     progress: Progress,
     trial_count: usize,
 }
 
 impl FasterSearch {
-    /// Prepares a search with the robot and the floor of a twin; takes as long as a few trials.
+    /// Prepares a search with a twin's robot and floor; takes as long as a few trials.
     ///
     /// # Errors
     /// Returns the limit that the gait to beat violates, or the reason why it cannot be made faster.
     pub fn begin(twin: &Twin, task: &SearchTask) -> Result<Self, Refused> {
         let robot = twin.robot().with_gait(&task.bars.to_toml());
-        let robot = robot.map_err(Refused::of_gait)?;
+        let robot = robot.map_err(Refused::for_gait)?;
         let (gait, ground) = (&robot.gaits()[1], twin.ground());
         let tuning = Tuning::new(&robot, ground, gait, task.rate, &task.bars.name, task.seed);
         let tuning = tuning.map_err(|error| match error {
-            TuningError::Goal(_) => Refused::of_key("", error.to_string()),
-            TuningError::Rate { .. } => {
-                Refused::of_key("rate", format!("servos of at most {error}"))
-            }
+            TuningError::Goal(_) => Refused::for_key("", error.to_string()),
+            TuningError::Rate { .. } => Refused::for_key("rate", format!("servo speed {error}")),
         })?;
         Ok(Self {
-            searches: GaitKind::ALL.map(|kind| tuning.search(kind)),
+            searches: GaitKind::ALL.map(|kind| tuning.start_search(kind)),
             tuning,
             kind_index: 0,
             scores: Vec::new(),
@@ -104,7 +101,7 @@ impl FasterSearch {
         })
     }
 
-    /// Returns the extent of this search.
+    /// Returns the number of gaits to try and the servos' speed limit.
     pub fn extent(&self) -> SearchExtent {
         SearchExtent {
             all: self.trial_count,
@@ -112,7 +109,7 @@ impl FasterSearch {
         }
     }
 
-    /// Tries the next gait, unless all have been tried; returns the progress.
+    /// Tries the next gait, unless all gaits were tried; returns the progress.
     pub fn try_next(&mut self) -> Progress {
         if self.progress.done < self.trial_count {
             let search = &mut self.searches[self.kind_index];
@@ -133,9 +130,9 @@ impl FasterSearch {
         self.progress.clone()
     }
 
-    /// Compares the best gait so far with the gait to beat, on this number of random robots; `None`
-    /// until a valid gait is found.
-    pub fn best_so_far(&self, robots: usize) -> Option<Found> {
+    /// Compares the best gait so far with the gait to beat on `robot_count` random robots; `None` until a valid gait is
+    /// found.
+    pub fn compare_best(&self, robot_count: usize) -> Option<Found> {
         let mut searches = self.searches.clone();
         if !self.scores.is_empty() {
             searches[self.kind_index].accept_scores(self.scores.iter().copied());
@@ -150,7 +147,7 @@ impl FasterSearch {
             })
         });
         let best = self.tuning.build_best(scored_parameters.collect())?;
-        let comparison = self.tuning.compare(&best, robots);
+        let comparison = self.tuning.compare(&best, robot_count);
         Some(Found {
             bars: best.gait().bars()?,
             better: comparison.is_better(),
@@ -163,11 +160,11 @@ impl FasterSearch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::{paper_robot, paper_robot_and_twin};
+    use crate::paper::{load_paper_robot, load_paper_robot_and_twin};
     use crate::trial::EditedGait;
 
-    fn task_of(name: &str) -> SearchTask {
-        let gait = paper_robot()
+    fn make_task(name: &str) -> SearchTask {
+        let gait = load_paper_robot()
             .gait(name)
             .cloned()
             .expect("the robot has this gait");
@@ -179,30 +176,30 @@ mod tests {
         }
     }
 
-    fn refusal_text(task: &SearchTask) -> String {
-        FasterSearch::begin(&paper_robot_and_twin().1, task)
+    fn begin_refused(task: &SearchTask) -> String {
+        FasterSearch::begin(&load_paper_robot_and_twin().1, task)
             .expect_err("the search is refused")
             .refused
     }
 
     #[test]
     fn an_unfinished_search_returns_the_best_gait_so_far() {
-        let (robot, twin) = paper_robot_and_twin();
+        let (robot, twin) = load_paper_robot_and_twin();
         let mut search =
-            FasterSearch::begin(&twin, &task_of("walk")).expect("the gait can be made faster");
+            FasterSearch::begin(&twin, &make_task("walk")).expect("the gait can be made faster");
         assert_eq!(search.extent().all, 40);
-        assert_eq!(search.best_so_far(20), None, "no gait has been tried yet");
+        assert_eq!(search.compare_best(20), None, "no gait has been tried yet");
         let best = (0..3)
             .map(|_| search.try_next())
             .last()
             .expect("three gaits were tried")
             .best;
-        let found = search.best_so_far(20).expect("a gait was valid");
-        // The same gaits, tried by the search of `lizard tune`.
+        let found = search.compare_best(20).expect("a gait was valid");
+        // The search of `lizard tune` tries the same gaits.
         let walk = robot.gait("walk").expect("the robot has this gait");
         let tuning = Tuning::new(&robot, robot.ground(), walk, None, "walk", 3)
             .expect("`walk` goes straight ahead");
-        let round_parameters = tuning.search(GaitKind::Wave).trials().to_vec();
+        let round_parameters = tuning.start_search(GaitKind::Wave).trials().to_vec();
         let tried_parameters = round_parameters
             .into_iter()
             .take(3)
@@ -222,33 +219,33 @@ mod tests {
             .build_best(tried_parameters)
             .expect("a gait was valid");
         assert_eq!(found.comparison, tuning.compare(&best_tuned, 20));
-        // The page takes over exactly the gait that was found.
+        // The page uses exactly the found gait.
         assert_eq!(found.bars.to_toml(), best_tuned.table());
         let trial = EditedGait::Bars(found.bars)
             .try_on(&twin)
             .expect("bars always have a table");
         let trial = trial.expect("the gait is valid");
         assert_eq!(trial.speed, found.comparison.tuned.rate);
-        assert_eq!(search.try_next().done, 4, "the search continues");
+        assert_eq!(search.try_next().done, 4, "the search must continue");
     }
 
     #[test]
-    fn a_gait_that_cannot_be_made_faster_is_refused_with_the_reason() {
-        assert!(refusal_text(&task_of("arc-left")).contains("goes ahead and turns"));
+    fn the_refusal_of_a_search_names_the_reason() {
+        assert!(begin_refused(&make_task("arc-left")).contains("walks along a curve"));
         let rate = Some(900.0);
         assert_eq!(
-            refusal_text(&SearchTask {
+            begin_refused(&SearchTask {
                 rate,
-                ..task_of("walk")
+                ..make_task("walk")
             }),
-            "servos of at most 900: from 10 to 310 deg/s, which is limits.gait_slew in robot.toml"
+            "servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml)"
         );
-        let mut wide_task = task_of("walk");
+        let mut wide_task = make_task("walk");
         wide_task.bars.amplitude = 60.0;
         assert!(
-            refusal_text(&wide_task).starts_with("in \"walk\" "),
+            begin_refused(&wide_task).starts_with("in \"walk\" "),
             "{}",
-            refusal_text(&wide_task)
+            begin_refused(&wide_task)
         );
     }
 }

@@ -1,21 +1,21 @@
-//! The values of the page's sliders: floor, mass, feet, and leg drive.
+//! The values of the page's sliders: floor, mass, feet and leg drive.
 
 use lizard_robot::{Body, Drive, DriveKind, Ground, Robot, Stance};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-/// The kind of drive of the legs, by its name in robot.toml.
+/// The kind of leg drive, by its name in robot.toml.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, Tsify)]
 #[serde(rename_all = "lowercase")]
-pub enum Legs {
+pub enum LegDrive {
     /// A rigid strut.
     Rigid,
     /// A slotted strut with a spring, which yields in one direction.
     Strut,
 }
 
-impl Legs {
-    /// Returns the name of the kind in robot.toml.
+impl LegDrive {
+    /// Returns the kind's name in robot.toml.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -24,7 +24,7 @@ impl Legs {
         }
     }
 
-    fn of(kind: &DriveKind) -> Self {
+    fn from_kind(kind: &DriveKind) -> Self {
         match kind {
             DriveKind::Rigid => Self::Rigid,
             DriveKind::Strut(_) => Self::Strut,
@@ -32,7 +32,7 @@ impl Legs {
     }
 }
 
-/// The values of the sliders. All other values of the ground are the robot's own.
+/// The values of the sliders. The ground's other values are the robot's own.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Floor {
     /// Friction coefficient of a pad that slides forward, above 0.
@@ -41,8 +41,8 @@ pub struct Floor {
     pub ratio: f64,
     /// Mass of the robot, g, above 0.
     pub mass: f64,
-    /// Kind of drive of the legs.
-    pub kind: Legs,
+    /// Kind of leg drive.
+    pub kind: LegDrive,
     /// Pull of the spring in a strut, N, above 0.
     pub force: f64,
     /// Rate of the spring in a strut, N/mm.
@@ -58,7 +58,7 @@ pub struct Floor {
 impl Floor {
     /// Returns a robot's own values.
     #[must_use]
-    pub fn of(robot: &Robot) -> Self {
+    pub fn for_robot(robot: &Robot) -> Self {
         let ground = robot.ground();
         let own_strut = robot.strut_with_coil(&robot.parts().spring);
         let strut = ground.drive.strut().unwrap_or(&own_strut);
@@ -66,19 +66,19 @@ impl Floor {
             friction: ground.friction_coefficient,
             ratio: ground.friction_ratio,
             mass: ground.body.mass,
-            kind: Legs::of(&ground.drive.kind),
-            force: strut.force,
-            rate: strut.rate,
+            kind: LegDrive::from_kind(&ground.drive.kind),
+            force: strut.preload,
+            rate: strut.spring_rate,
             play: ground.drive.play,
             leaf: ground.stance.stiffness,
             twist: ground.stance.twist,
         }
     }
 
-    /// Replaces every value that is out of range by the robot's own.
+    /// Replaces every value out of range by the robot's own value.
     #[must_use]
     pub fn with_valid_values(self, robot: &Robot) -> Self {
-        let own_floor = Self::of(robot);
+        let own_floor = Self::for_robot(robot);
         let finite_or_own = |value: f64, is_in_range: bool, own_value: f64| match is_in_range
             && value.is_finite()
         {
@@ -102,7 +102,7 @@ impl Floor {
 
     /// Returns the robot's ground with these values.
     #[must_use]
-    pub fn ground_for(self, robot: &Robot) -> Ground {
+    pub fn to_ground(self, robot: &Robot) -> Ground {
         let (floor, ground) = (self.with_valid_values(robot), robot.ground());
         Ground {
             friction_coefficient: floor.friction,
@@ -118,8 +118,10 @@ impl Floor {
             },
             drive: Drive {
                 kind: match floor.kind {
-                    Legs::Strut => DriveKind::Strut(robot.strut_with(floor.force, floor.rate)),
-                    Legs::Rigid => DriveKind::Rigid,
+                    LegDrive::Strut => {
+                        DriveKind::Strut(robot.strut_with_spring(floor.force, floor.rate))
+                    }
+                    LegDrive::Rigid => DriveKind::Rigid,
                 },
                 play: floor.play,
             },
@@ -133,15 +135,15 @@ mod tests {
     use super::*;
     use crate::paper::PAPER_TOML;
 
-    fn robot_with(extra_toml: &str) -> Robot {
+    fn parse_robot_with(extra_toml: &str) -> Robot {
         Robot::parse(&format!("{PAPER_TOML}\n{extra_toml}"))
             .expect("paper.toml with these keys is valid")
     }
 
     #[test]
-    fn a_value_out_of_range_is_replaced_by_the_robots_own() {
+    fn the_robots_own_value_replaces_a_value_out_of_range() {
         for extra_toml in ["", "[leg.drive]\nkind = \"strut\"\nforce = 3.0\nplay = 0.5"] {
-            let robot = robot_with(extra_toml);
+            let robot = parse_robot_with(extra_toml);
             let invalid_floor = Floor {
                 friction: 0.0,
                 ratio: -1.0,
@@ -151,9 +153,9 @@ mod tests {
                 play: -0.1,
                 leaf: 0.0,
                 twist: f64::INFINITY,
-                ..Floor::of(&robot)
+                ..Floor::for_robot(&robot)
             };
-            assert_eq!(invalid_floor.ground_for(&robot), *robot.ground());
+            assert_eq!(invalid_floor.to_ground(&robot), *robot.ground());
         }
     }
 
@@ -164,13 +166,16 @@ mod tests {
             "[leg.drive]\nkind = \"strut\"\nforce = 2.5\nplay = 0.4",
             "[feet]\nstiffness = 2.0\ntwist = -0.6",
         ] {
-            let robot = robot_with(extra_toml);
+            let robot = parse_robot_with(extra_toml);
             assert_eq!(
-                Floor::of(&robot).ground_for(&robot),
+                Floor::for_robot(&robot).to_ground(&robot),
                 *robot.ground(),
                 "{extra_toml}"
             );
-            assert_eq!(Floor::of(&robot).kind.name(), robot.drive().kind_name());
+            assert_eq!(
+                Floor::for_robot(&robot).kind.name(),
+                robot.drive().kind_name()
+            );
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The JavaScript class for a robot. Values are passed as JSON, which is fastest for objects with many
-//! small arrays; their TypeScript types come from the structures of this crate.
+//! The JavaScript class of a robot. Values are passed as JSON, which is fastest for objects with many small arrays;
+//! their TypeScript types come from the structures of this crate.
 #![allow(clippy::missing_errors_doc)] // each fails only if an argument has the wrong type
 
 use js_sys::JSON;
@@ -8,44 +8,44 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
-use crate::lengths::{self, Lengths};
+use crate::lengths::{self, TriedLengths};
 use crate::page::Page;
 use crate::place::Place;
-use crate::prediction::Movement;
+use crate::prediction::Displacement;
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
 /** Values in servo order: A1 to A4, or LF, RF, RH, LH. */
 export type Four<T> = [T, T, T, T];
-/** Lengths by their keys in robot.toml. */
+/** TriedLengths by their keys in robot.toml. */
 export type Edits = [key: string, value: number][];
 /** A routine as it is written, valid or not. */
 export interface Routine { name: string; steps: string[]; }
-/** A gait whose legs have one waveform, each with its own start and gain: a bar per leg in the gait diagram. */
+/** A gait whose legs share a waveform, each with its own start and gain: a bar per leg in the gait diagram. */
 export interface Bars {
   name: string;
   /** True if the legs move one after the other and hold still in between. */
   held: boolean;
   /** Period, s. */
   period: number;
-  /** Duty factor: the stance's share of the cycle. */
+  /** Duty factor: the fraction of the cycle spent in stance. */
   duty: number;
   /** Amplitude, deg. */
   amplitude: number;
   /** Phase at which each stance begins, 0 to 1; if the legs hold still in between, only the order matters. */
   start: Four<number>;
-  /** Gain of each leg: its share of the amplitude. */
+  /** Gain of each leg, a factor of the amplitude. */
   gain: Four<number>;
 }
 ";
 
-/// Converts a value to JavaScript; to `null` if it cannot be written as JSON.
+/// Converts a value to JavaScript, or to `null` if the value cannot be written as JSON.
 pub(crate) fn to_js(value: impl Serialize) -> JsValue {
     let text = serde_json::to_string(&value).unwrap_or_default();
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-/// Converts a value or its refusal to JavaScript, where their keys tell them apart.
+/// Converts a value or its refusal to JavaScript; their keys distinguish them.
 fn result_to_js(result: Result<impl Serialize, impl Serialize>) -> JsValue {
     result.map_or_else(to_js, to_js)
 }
@@ -57,7 +57,7 @@ pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError
     Ok(serde_json::from_str(&String::from(text))?)
 }
 
-/// The page's robot, its place on the floor, and the programs that run on it.
+/// The page's robot, its place on the floor, its core, and the search for a faster gait.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Robot(Page);
@@ -71,29 +71,29 @@ impl Robot {
         Self::default()
     }
 
-    /// Loads the robot of a robot.toml. If it is refused, the previous robot stays.
+    /// Loads the robot from a robot.toml. If the text is refused, the previous robot stays.
     #[wasm_bindgen(unchecked_return_type = "Description | Refused")]
     pub fn read(&mut self, toml: &str) -> JsValue {
         result_to_js(self.0.read(toml))
     }
 
-    /// Tries other lengths in a robot.toml; if `searches`, also looks for valid alternatives to refused lengths.
-    #[wasm_bindgen(unchecked_return_type = "Lengths")]
+    /// Tries other lengths in a robot.toml; if `searches`, also searches for valid alternatives to refused lengths.
+    #[wasm_bindgen(unchecked_return_type = "TriedLengths")]
     pub fn lengths(
         toml: &str,
         #[wasm_bindgen(unchecked_param_type = "Edits")] edits: &JsValue,
         searches: bool,
     ) -> Result<JsValue, JsError> {
         let edits: Vec<(String, f64)> = from_js(edits)?;
-        Ok(to_js(Lengths::of(toml, &edits, searches)))
+        Ok(to_js(TriedLengths::try_edits(toml, &edits, searches)))
     }
 
-    /// Returns the least and the greatest value that all these lengths may have together; null for an unknown key or
+    /// Returns the smallest and the largest value that all these lengths may have together; null for an unknown key or
     /// an invalid robot.toml.
     #[must_use]
     #[wasm_bindgen(js_name = lengthRange, unchecked_return_type = "[number, number] | null")]
     pub fn length_range(toml: &str, keys: Vec<String>) -> JsValue {
-        to_js(lengths::accepted_range(toml, &keys))
+        to_js(lengths::find_accepted_range(toml, &keys))
     }
 
     /// Returns the robot.toml with this floor, mass, feet and leg drive, and its refusal, if any.
@@ -112,7 +112,7 @@ impl Robot {
         self.0.section().unwrap_or_default()
     }
 
-    /// Moves the robot for one frame with these pulse widths in CPU cycles, 0 for no pulse; null without a robot.
+    /// Moves the robot for a frame with these pulse widths in CPU cycles, 0 for no pulse; null without a robot.
     #[wasm_bindgen(unchecked_return_type = "Frame | null")]
     pub fn pulses(
         &mut self,
@@ -121,7 +121,7 @@ impl Robot {
         Ok(to_js(self.0.follow_pulses(from_js(widths)?)))
     }
 
-    /// Moves the robot to a pose, deg, which it reaches `frames` frames after the previous one; null without a robot.
+    /// Moves the robot to a pose, deg, in `frames` frames; null without a robot.
     #[wasm_bindgen(unchecked_return_type = "Frame | null")]
     pub fn pose(
         &mut self,
@@ -136,14 +136,16 @@ impl Robot {
         self.0.restart();
     }
 
-    /// Returns the displacement between two places in the frame of the first, mm and deg.
+    /// Returns the displacement from one place to another, in the frame of the first place; mm and deg.
     #[wasm_bindgen(unchecked_return_type = "{ forward: number; left: number; turn: number }")]
     pub fn between(
         #[wasm_bindgen(unchecked_param_type = "Place")] from: &JsValue,
         #[wasm_bindgen(unchecked_param_type = "Place")] to: &JsValue,
     ) -> Result<JsValue, JsError> {
         let from: Place = from_js(from)?;
-        Ok(to_js(Movement::from(from.movement_to(from_js(to)?))))
+        Ok(to_js(Displacement::from(
+            from.displacement_to(from_js(to)?),
+        )))
     }
 
     /// Sets the floor, the mass, the feet and the leg drive.
@@ -162,7 +164,8 @@ impl Robot {
         self.0.set_servos(name);
     }
 
-    /// Predicts the gait with this index; null if there is none. Takes tenths of a second, so the page asks a worker.
+    /// Predicts the gait with this index; null if there is no such gait. Takes tenths of a second; the page therefore
+    /// calls it in a worker.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "GaitPrediction | null")]
     pub fn predict(&self, gait: usize) -> JsValue {
@@ -176,7 +179,7 @@ impl Robot {
         to_js(self.0.map(end))
     }
 
-    /// Returns the gait in reverse.
+    /// Returns the reversed gait.
     #[wasm_bindgen(unchecked_return_type = "Bars")]
     pub fn reversed(
         #[wasm_bindgen(unchecked_param_type = "Bars")] bars: &JsValue,
@@ -192,8 +195,8 @@ impl Robot {
         to_js(self.0.bars(gait))
     }
 
-    /// Tries a gait on the page's robot; takes tenths of a second. Null without a robot, or for a drawn line without
-    /// length.
+    /// Tries a gait on the page's robot; takes tenths of a second. Returns null without a robot, or for a drawn line
+    /// without length.
     #[wasm_bindgen(unchecked_return_type = "Trial | RefusedTrial | null")]
     pub fn trial(
         &self,
@@ -205,8 +208,8 @@ impl Robot {
             .map_or(JsValue::NULL, result_to_js))
     }
 
-    /// Returns the robot.toml with this gait: it replaces the gait of the same name, or else is added. Returns the text
-    /// unchanged for a drawn line without length.
+    /// Returns the robot.toml with this gait. The gait replaces the gait of the same name, or else is added. Returns
+    /// the text unchanged for a drawn line without length.
     #[wasm_bindgen(js_name = putGait)]
     pub fn put_gait(
         &self,
@@ -221,7 +224,7 @@ impl Robot {
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Routine[]")]
     pub fn routines(toml: &str) -> JsValue {
-        to_js(edit::routines(toml))
+        to_js(edit::read_routines(toml))
     }
 
     /// Returns the robot.toml with a routine of these steps, and its refusal, if any.
@@ -231,14 +234,14 @@ impl Robot {
         to_js(Page::put_steps(toml, name, &steps))
     }
 
-    /// Simulates one round of a routine; takes tenths of a second. Null if there is no such routine.
+    /// Simulates one round of a routine; takes tenths of a second. Returns null if there is no such routine.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "RoundPath | null")]
     pub fn round(&self, routine: &str) -> JsValue {
         to_js(self.0.round_path(routine))
     }
 
-    /// Returns the smoothed path that the end point follows; null if the drawn line has no length.
+    /// Returns the end point's smoothed path; null if the drawn line has no length.
     #[wasm_bindgen(unchecked_return_type = "[number, number][] | null")]
     pub fn path(
         &self,
@@ -260,8 +263,8 @@ impl Robot {
         self.0.run_core();
     }
 
-    /// Runs the core for a frame of 20 ms with a board supply of `volts`, after it has received `line` from the serial
-    /// line; null before `runCore`.
+    /// Runs the core for a frame of 20 ms with a board supply of `volts`; the core first receives `line` from the
+    /// serial line. Returns null before `runCore`.
     #[wasm_bindgen(js_name = coreFrame, unchecked_return_type = "CoreFrame | null")]
     pub fn core_frame(&mut self, line: &str, volts: f64) -> JsValue {
         to_js(self.0.core_frame(line.as_bytes(), volts))
@@ -273,7 +276,7 @@ impl Robot {
 #[wasm_bindgen]
 impl Robot {
     /// Prepares the search for a faster gait; returns the number of gaits to try and the speed that no servo may
-    /// exceed. Null without a robot.
+    /// exceed. Returns null without a robot.
     #[wasm_bindgen(js_name = makeFaster, unchecked_return_type = "SearchExtent | Refused")]
     pub fn make_faster(
         &mut self,
@@ -289,14 +292,14 @@ impl Robot {
         to_js(self.0.search().map(|search| search.try_next()))
     }
 
-    /// Returns the best gait so far, compared with the gait to beat on this number of random robots; null until a
-    /// valid gait is found.
+    /// Compares the best gait so far with the gait to beat on `robotCount` random robots; null until a valid gait is
+    /// found.
     #[wasm_bindgen(js_name = fasterFound, unchecked_return_type = "Found | null")]
-    pub fn faster_found(&mut self, robots: usize) -> JsValue {
+    pub fn faster_found(&mut self, robot_count: usize) -> JsValue {
         to_js(
             self.0
                 .search()
-                .and_then(|search| search.best_so_far(robots)),
+                .and_then(|search| search.compare_best(robot_count)),
         )
     }
 }

@@ -1,11 +1,11 @@
 //! Changed lengths of a robot and, if they are refused, valid alternatives.
 //!
-//! There are two alternatives, each checked as a complete robot: the accepted lengths that are nearest
-//! to the requested ones, on the way from the lengths in the text; and the requested lengths without
-//! the gait that forbids them.
+//! There are two alternatives, each checked as a complete robot: the accepted lengths nearest to the requested lengths,
+//! between the lengths in the text and the requested lengths; and the requested lengths without the gait that forbids
+//! them.
 
 use lizard_robot::Robot;
-use lizard_robot::edit::{NoSuchKey, with_number, without_gait};
+use lizard_robot::edit::{KeyError, with_number, without_gait};
 use serde::Serialize;
 use tsify::Tsify;
 
@@ -15,24 +15,24 @@ use crate::refused::Refused;
 /// Step of the offered lengths, mm, or deg for an angle.
 const LENGTH_STEP: f64 = 0.5;
 
-/// Lengths, mm or deg, by their keys, such as `links.l2`.
+/// TriedLengths, mm or deg, by their keys, such as `links.l2`.
 type RequestedLengths = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct Lengths {
+pub struct TriedLengths {
     /// The text with the requested lengths.
     text: String,
     /// The refusal of `text`; `None` if it is a valid robot.
     refusal: Option<Refused>,
-    /// The accepted lengths nearest to the requested ones; `None` if not needed, not searched for, or not found.
+    /// The accepted lengths nearest to the requested lengths; `None` if not needed, not searched for, or not found.
     nearest: Option<NearestLengths>,
-    /// The requested lengths without the gait that forbids them; `None` if not needed or not searched for, or if the
-    /// text without the gait is refused, too.
+    /// The requested lengths without the gait that forbids them; `None` if not needed, not searched for, or if the text
+    /// without the gait is refused, too.
     without: Option<WithoutGait>,
 }
 
-/// The accepted lengths that are nearest to the requested ones.
+/// The accepted lengths that are nearest to the requested lengths.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct NearestLengths {
     /// The lengths by their keys.
@@ -44,22 +44,24 @@ pub struct NearestLengths {
 /// A robot.toml without one of its gaits.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct WithoutGait {
-    /// Name of the gait that is left out.
+    /// Name of the omitted gait.
     gait: String,
     /// The text without this gait.
     text: String,
 }
 
-impl Lengths {
-    /// Sets lengths in the text of a robot.toml; if `searches`, also looks for valid alternatives.
+impl TriedLengths {
+    /// Sets lengths in the text of a robot.toml; if `searches`, also searches for valid alternatives.
     #[must_use]
-    pub fn of(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
+    pub fn try_edits(text: &str, requested: &RequestedLengths, searches: bool) -> Self {
         let changed_text = match with_lengths(text, requested) {
             Ok(text) => text,
-            Err(unknown_key) => return Self::alone(text.to_string(), Some(unknown_key.into())),
+            Err(unknown_key) => {
+                return Self::without_alternatives(text.to_string(), Some(unknown_key.into()));
+            }
         };
         let Err(error) = Robot::parse(&changed_text) else {
-            return Self::alone(changed_text, None);
+            return Self::without_alternatives(changed_text, None);
         };
         let gait = error.key.strip_prefix("gait.");
         let gait = gait.and_then(|rest| rest.split('.').next());
@@ -73,12 +75,11 @@ impl Lengths {
                 Robot::parse(&text).ok()?;
                 Some(WithoutGait { gait, text })
             }),
-            ..Self::alone(changed_text, Some(error.into()))
+            ..Self::without_alternatives(changed_text, Some(error.into()))
         }
     }
 
-    /// Returns a text and its refusal, without alternatives.
-    fn alone(text: String, refusal: Option<Refused>) -> Self {
+    fn without_alternatives(text: String, refusal: Option<Refused>) -> Self {
         Self {
             text,
             refusal,
@@ -88,12 +89,12 @@ impl Lengths {
     }
 }
 
-/// Returns the least and the greatest value, mm or deg, that the lengths of all `keys` may have together.
-/// The search covers half to twice the present value; for an angle, 45 deg to either side. `None`
-/// if the text is not a valid robot or has no such length.
+/// Returns the smallest and the largest value, mm or deg, that the lengths of all `keys` may have together. The search
+/// covers half to twice the current value; for an angle, 45 deg to either side. `None` if the text is not a valid robot
+/// or has no such length.
 #[must_use]
-pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
-    let lengths = Description::of(&Robot::parse(text).ok()?).lengths;
+pub fn find_accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
+    let lengths = Description::for_robot(&Robot::parse(text).ok()?).lengths;
     let length = lengths
         .iter()
         .find(|length| Some(&length.key) == keys.first())?;
@@ -101,10 +102,10 @@ pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
         "deg" => (length.value - 45.0, length.value + 45.0),
         _ => (0.5 * length.value, 2.0 * length.value),
     };
-    let nearest_accepted = |value: f64| {
+    let find_nearest_accepted = |value: f64| {
         let value = (value / LENGTH_STEP).round() * LENGTH_STEP;
         let requested: Vec<_> = keys.iter().map(|key| (key.clone(), value)).collect();
-        let result = Lengths::of(text, &requested, true);
+        let result = TriedLengths::try_edits(text, &requested, true);
         let nearest = result
             .nearest
             .and_then(|nearest| nearest.lengths.first().cloned());
@@ -114,11 +115,14 @@ pub fn accepted_range(text: &str, keys: &[String]) -> Option<(f64, f64)> {
             (Some(_), None) => length.value,
         }
     };
-    Some((nearest_accepted(smallest), nearest_accepted(largest)))
+    Some((
+        find_nearest_accepted(smallest),
+        find_nearest_accepted(largest),
+    ))
 }
 
 /// Returns the text with the requested lengths.
-fn with_lengths(text: &str, requested: &RequestedLengths) -> Result<String, NoSuchKey> {
+fn with_lengths(text: &str, requested: &RequestedLengths) -> Result<String, KeyError> {
     let mut text = text.to_string();
     for (key, value) in requested {
         text = with_number(&text, key, *value)?;
@@ -126,34 +130,34 @@ fn with_lengths(text: &str, requested: &RequestedLengths) -> Result<String, NoSu
     Ok(text)
 }
 
-/// Bisects between the lengths in the text and the requested ones, until they are less than [`LENGTH_STEP`] apart;
+/// Bisects between the lengths in the text and the requested lengths, until the interval is at most [`LENGTH_STEP`];
 /// `None` if no lengths in between are accepted.
 fn find_nearest_lengths(text: &str, requested: &RequestedLengths) -> Option<NearestLengths> {
-    let present_lengths = Description::of(&Robot::parse(text).ok()?).lengths;
+    let current_lengths = Description::for_robot(&Robot::parse(text).ok()?).lengths;
     let changes: Vec<(&String, f64, f64)> = requested
         .iter()
         .map(|(key, to)| {
-            let present_length = present_lengths.iter().find(|length| length.key == *key);
-            (key, present_length.map_or(*to, |length| length.value), *to)
+            let current_length = current_lengths.iter().find(|length| length.key == *key);
+            (key, current_length.map_or(*to, |length| length.value), *to)
         })
         .collect();
     let distances = changes.iter().map(|(_, from, to)| (to - from).abs());
-    let (mut accepted_share, mut refused_share) = (0.0, 1.0);
+    let (mut accepted_fraction, mut refused_fraction) = (0.0, 1.0);
     let mut nearest = None;
-    let share_step = LENGTH_STEP / distances.fold(0.0, f64::max);
-    while refused_share - accepted_share > share_step {
-        let share = f64::midpoint(accepted_share, refused_share);
+    let fraction_step = LENGTH_STEP / distances.fold(0.0, f64::max);
+    while refused_fraction - accepted_fraction > fraction_step {
+        let fraction = f64::midpoint(accepted_fraction, refused_fraction);
         let length_at = |(key, from, to): &(&String, f64, f64)| {
-            let value = ((from + (to - from) * share) / LENGTH_STEP).round() * LENGTH_STEP;
+            let value = ((from + (to - from) * fraction) / LENGTH_STEP).round() * LENGTH_STEP;
             ((*key).clone(), value)
         };
         let lengths: Vec<_> = changes.iter().map(length_at).collect();
         let text = with_lengths(text, &lengths).ok()?;
         if Robot::parse(&text).is_ok() {
-            accepted_share = share;
+            accepted_fraction = fraction;
             nearest = Some(NearestLengths { lengths, text });
         } else {
-            refused_share = share;
+            refused_fraction = fraction;
         }
     }
     nearest
@@ -164,20 +168,21 @@ mod tests {
     use super::*;
     use crate::paper::PAPER_TOML;
 
-    /// Returns a length for a leg's crank and for the follower, which must equal it.
+    /// Returns a length for a leg's crank, and the same length for the follower, which must be equal.
     fn crank_lengths(mm: f64) -> [(String, f64); 2] {
         ["leg.crank", "leg.follower"].map(|key| (key.to_string(), mm))
     }
 
     #[test]
-    fn accepted_lengths_need_no_alternative_and_an_unknown_key_is_refused() {
-        let result = Lengths::of(PAPER_TOML, &crank_lengths(41.0), true);
+    fn accepted_lengths_have_no_alternatives_and_an_unknown_key_is_refused() {
+        let result = TriedLengths::try_edits(PAPER_TOML, &crank_lengths(41.0), true);
         assert_eq!(
             (result.refusal, result.nearest, result.without),
             (None, None, None)
         );
         assert!(result.text.contains("crank = 41.0") && result.text.contains("follower = 41.0"));
-        let with_unknown_key = Lengths::of(PAPER_TOML, &[("links.l99".to_string(), 1.0)], true);
+        let with_unknown_key =
+            TriedLengths::try_edits(PAPER_TOML, &[("links.l99".to_string(), 1.0)], true);
         assert_eq!(with_unknown_key.text, PAPER_TOML);
         let refusal = with_unknown_key.refusal.expect("an unknown key is refused");
         assert_eq!(refusal.refused, "robot.toml has no number links.l99");
@@ -186,13 +191,13 @@ mod tests {
     #[test]
     fn the_refusal_of_a_length_offers_the_longest_accepted_half_millimetre() {
         let slider_lengths = |mm| ["links.l12", "links.l17"].map(|key| (key.to_string(), mm));
-        let result = Lengths::of(PAPER_TOML, &slider_lengths(80.0), true);
+        let result = TriedLengths::try_edits(PAPER_TOML, &slider_lengths(80.0), true);
         let consequence = result.refusal.expect("the lengths are refused").consequence;
         assert_eq!(
             consequence.as_deref(),
-            Some("in the neutral pose the left slider would run into its end")
+            Some("in the neutral pose the left slider would hit its end stop")
         );
-        assert_eq!(result.without, None, "no gait forbids the lengths");
+        assert_eq!(result.without, None, "no gait forbids these lengths");
         let NearestLengths { lengths, text } =
             result.nearest.expect("shorter lengths are accepted");
         let [(_, left_half), (_, right_half)] = lengths[..] else {
@@ -202,21 +207,22 @@ mod tests {
         assert!(45.0 < left_half && left_half < 80.0, "{left_half}");
         assert!(Robot::parse(&text).is_ok());
         let longer_lengths =
-            Lengths::of(PAPER_TOML, &slider_lengths(left_half + LENGTH_STEP), false);
+            TriedLengths::try_edits(PAPER_TOML, &slider_lengths(left_half + LENGTH_STEP), false);
         assert!(
             longer_lengths.refusal.is_some(),
-            "{left_half} is not the longest"
+            "{left_half} mm is not the longest accepted length"
         );
         assert_eq!(longer_lengths.nearest, None, "no search was requested");
     }
 
     #[test]
-    fn the_range_of_a_length_ends_where_half_a_millimetre_more_is_refused() {
+    fn half_a_millimetre_beyond_the_range_of_a_length_is_refused() {
         let keys: Vec<_> = crank_lengths(0.0).into_iter().map(|(key, _)| key).collect();
-        let (smallest, largest) = accepted_range(PAPER_TOML, &keys).expect("the robot has cranks");
+        let (smallest, largest) =
+            find_accepted_range(PAPER_TOML, &keys).expect("the robot has cranks");
         assert!(smallest < 45.0 && 45.0 < largest, "{smallest} to {largest}");
         let is_refused = |mm: f64| {
-            Lengths::of(PAPER_TOML, &crank_lengths(mm), false)
+            TriedLengths::try_edits(PAPER_TOML, &crank_lengths(mm), false)
                 .refusal
                 .is_some()
         };
@@ -229,13 +235,16 @@ mod tests {
             largest == 90.0 || is_refused(largest + LENGTH_STEP),
             "{largest}"
         );
-        assert_eq!(accepted_range(PAPER_TOML, &["links.l99".to_string()]), None);
+        assert_eq!(
+            find_accepted_range(PAPER_TOML, &["links.l99".to_string()]),
+            None
+        );
     }
 
     #[test]
-    fn a_length_that_only_one_gait_forbids_is_offered_without_that_gait() {
+    fn a_length_that_one_gait_forbids_is_offered_without_this_gait() {
         let coupler_lengths = ["links.l2", "links.l3"].map(|key| (key.to_string(), 60.0));
-        let result = Lengths::of(PAPER_TOML, &coupler_lengths, true);
+        let result = TriedLengths::try_edits(PAPER_TOML, &coupler_lengths, true);
         let consequence = result.refusal.expect("the lengths are refused").consequence;
         let expected_consequence = "in \"look\" the left front leg would lock";
         assert_eq!(consequence.as_deref(), Some(expected_consequence));

@@ -1,5 +1,5 @@
-//! The map of singularities of an end: the plane of its two crank angles, the margin at every
-//! point of it, and the curves on which the margin is zero.
+//! The map of singularities of an end: the plane of its two crank angles, the margin at every point, and the curves on
+//! which the margin is zero.
 
 use lizard_kinematics::{Check, End, Pose, SingularPose, Singularity};
 use lizard_robot::Robot;
@@ -8,9 +8,9 @@ use tsify::Tsify;
 
 /// Distance between adjacent points of the map, deg.
 const GRID_STEP_DEG: f64 = 1.5;
-/// Smallest angle of either crank on the map: one change point of the leg's four-bar.
+/// Smallest angle of either crank on the map: a change point of the leg's four-bar.
 const MIN_ANGLE_DEG: f64 = 0.0;
-/// Greatest angle of either crank on the map: the other change point.
+/// Largest angle of either crank on the map: the other change point.
 const MAX_ANGLE_DEG: f64 = 180.0;
 /// Step of the left crank's angle along a curve.
 const CURVE_STEP_DEG: f64 = 0.5;
@@ -27,7 +27,7 @@ pub struct MapPoint(
 /// The singular poses of one kind.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Curve {
-    /// Name of the links that are in line.
+    /// Name of the collinear links.
     pub kind: &'static str,
     /// The poses, in no particular order.
     pub points: Vec<MapPoint>,
@@ -40,14 +40,14 @@ pub struct SingularityMap {
     pub end: String,
     /// Smallest angle of either crank, deg.
     pub min_angle: f64,
-    /// Greatest angle of either crank, deg.
+    /// Largest angle of either crank, deg.
     pub max_angle: f64,
     /// Number of columns, and of rows; the first column and the first row are at `min_angle`.
     pub size: usize,
-    /// Smallest margin at each point, in hundredths, column by column: for each left crank angle, all
-    /// right ones. `None` if the loop does not close.
+    /// Smallest margin at each point, in hundredths, column by column: for each left crank angle, all right crank
+    /// angles. `None` if the loop does not close.
     pub margins: Vec<Option<i8>>,
-    /// True at points within the limits, in the order of `margins`.
+    /// True at points that the limits allow, in the order of `margins`.
     pub safe: Vec<bool>,
     /// The singular poses.
     pub curves: Vec<Curve>,
@@ -56,7 +56,7 @@ pub struct SingularityMap {
 impl SingularityMap {
     /// Computes the map of an end.
     #[must_use]
-    pub fn of(robot: &Robot, end: End) -> Self {
+    pub fn compute(robot: &Robot, end: End) -> Self {
         let size = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / GRID_STEP_DEG) as usize + 1;
         let angle_at = |i: usize| MIN_ANGLE_DEG + GRID_STEP_DEG * i as f64;
         let points = (0..size).flat_map(|left| (0..size).map(move |right| (left, right)));
@@ -70,13 +70,12 @@ impl SingularityMap {
             size,
             margins,
             safe,
-            curves: curves_of(robot, end),
+            curves: find_curves(robot, end),
         }
     }
 }
 
-/// Computes the smallest margin of an end at its crank angles, in hundredths; the bool is true if the limits
-/// allow these angles.
+/// Returns an end's smallest margin at its crank angles, in hundredths, and true if the limits allow these angles.
 fn evaluate_point(robot: &Robot, end: End, left: f64, right: f64) -> (Option<i8>, bool) {
     let Ok(five_bar_pose) = robot.lizard().end(end).forward(left, right) else {
         return (None, false);
@@ -90,13 +89,13 @@ fn evaluate_point(robot: &Robot, end: End, left: f64, right: f64) -> (Option<i8>
     (Some((smallest_margin * 100.0).round() as i8), is_safe)
 }
 
-/// Finds the singular poses of an end within the map.
-fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
+/// Finds the singular poses of an end on the map.
+fn find_curves(robot: &Robot, end: End) -> Vec<Curve> {
     let five_bar = robot.lizard().end(end);
     let step_count = ((MAX_ANGLE_DEG - MIN_ANGLE_DEG) / CURVE_STEP_DEG) as usize;
     let poses: Vec<SingularPose> = (0..=step_count)
-        .flat_map(|i| five_bar.singular_poses_with(MIN_ANGLE_DEG + CURVE_STEP_DEG * i as f64))
-        .chain(five_bar.poses_with_coinciding_tips())
+        .flat_map(|i| five_bar.find_singular_poses(MIN_ANGLE_DEG + CURVE_STEP_DEG * i as f64))
+        .chain(five_bar.find_coinciding_tip_poses())
         .filter(|pose| {
             let is_inside = |theta: f64| (MIN_ANGLE_DEG..=MAX_ANGLE_DEG).contains(&theta);
             is_inside(pose.theta_left) && is_inside(pose.theta_right)
@@ -119,9 +118,9 @@ fn curves_of(robot: &Robot, end: End) -> Vec<Curve> {
     .collect()
 }
 
-/// Returns the point of a pose on the map of an end: left and right crank, deg, 0 to 360.
+/// Returns a pose's point on the map of an end: the angles of left and right crank, deg, 0 to 360.
 #[must_use]
-pub fn map_point(end: End, pose: &Pose) -> MapPoint {
+pub fn to_map_point(end: End, pose: &Pose) -> MapPoint {
     let angles: [f64; 4] = (*pose).into();
     let [left, right] = end
         .pick(angles)
@@ -134,16 +133,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_neutral_pose_is_safe_on_both_maps_and_coinciding_tips_are_not() {
-        let robot = crate::paper::paper_robot();
+    fn both_maps_show_the_neutral_pose_as_safe_and_coinciding_tips_as_unsafe() {
+        let robot = crate::paper::load_paper_robot();
         for end in End::ALL {
-            let map = SingularityMap::of(&robot, end);
+            let map = SingularityMap::compute(&robot, end);
             let index_at = |MapPoint(left, right): MapPoint| {
                 let grid_index =
                     |theta: f64| ((theta - map.min_angle) / GRID_STEP_DEG).round() as usize;
                 grid_index(left) * map.size + grid_index(right)
             };
-            let neutral_point = map_point(end, &robot.neutral_pose());
+            let neutral_point = to_map_point(end, &robot.neutral_pose());
             assert!(
                 (neutral_point.0 - 138.59).abs() < 0.01 && (neutral_point.1 - 41.41).abs() < 0.01,
                 "{neutral_point:?}"

@@ -1,5 +1,4 @@
-//! The state of the page: a robot, its body on the floor, and perhaps the firmware's core without a
-//! simulated chip.
+//! The page's state: a robot, its body on the floor, and optionally the firmware's core without a simulated chip.
 
 use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
@@ -11,11 +10,11 @@ use serde::Serialize;
 use tsify::Tsify;
 
 use crate::core_run::{CoreFrame, CoreRun};
-use crate::description::{Description, servo_model};
+use crate::description::{Description, find_servo_model};
 use crate::drawn::DrawnGait;
 #[cfg(feature = "tune")]
 use crate::faster::{FasterSearch, SearchExtent, SearchTask};
-use crate::floor::{Floor, Legs};
+use crate::floor::{Floor, LegDrive};
 use crate::map::SingularityMap;
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
@@ -31,9 +30,9 @@ const CYCLES_PER_US: f64 = 16.0;
 /// The state of the robot on the floor after a frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Frame {
-    /// The robot at the pose of its servos; `None` if a loop does not close.
+    /// The robot in the pose of its servos; `None` if a loop does not close.
     scene: Option<Scene>,
-    /// The message about the loop that does not close, if any.
+    /// The message about the loop that does not close; `None` if all loops close.
     fault: Option<String>,
     /// Place of the body on the floor.
     place: Place,
@@ -41,7 +40,7 @@ pub struct Frame {
     slides: [f64; 4],
     /// Lag of each leg behind its servo, deg, foot forward positive, in servo order.
     lag: [f64; 4],
-    /// Angle commanded by the pulse minus actual angle of each servo, deg.
+    /// Commanded angle minus actual angle of each servo, deg.
     errors: [f64; 4],
 }
 
@@ -55,7 +54,7 @@ pub struct Edited {
 }
 
 impl Edited {
-    fn of(text: String) -> Self {
+    fn check(text: String) -> Self {
         let refusal = Robot::parse(&text).err().map(Refused::from);
         Self { text, refusal }
     }
@@ -67,7 +66,7 @@ pub struct Page {
     twin: Option<Twin>,
     /// Latest target angles of the servos, deg, chassis frame.
     targets: [f64; 4],
-    /// Name of the servo model that the page has set; `None` for the robot's own servos.
+    /// Name of the servo model that the page set; `None` for the robot's own servos.
     model_name: Option<String>,
     core_run: Option<CoreRun>,
     #[cfg(feature = "tune")]
@@ -75,13 +74,13 @@ pub struct Page {
 }
 
 impl Page {
-    /// Reads a robot.toml and puts the robot at the start of the floor, its servos at neutral.
+    /// Reads a robot.toml and puts the robot at the start on the floor, with its servos at neutral.
     ///
     /// # Errors
     /// Returns the first mistake in the text; the page keeps the previous robot.
     pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
         let robot = Robot::parse(text)?;
-        let description = Description::of(&robot);
+        let description = Description::for_robot(&robot);
         self.targets = robot.neutral_pose().into();
         self.core_run = None;
         #[cfg(feature = "tune")]
@@ -89,10 +88,10 @@ impl Page {
             self.search = None;
         }
         let model_name = self.model_name.as_deref();
-        let model = model_name.and_then(|name| servo_model(&robot, name));
+        let model = model_name.and_then(|name| find_servo_model(&robot, name));
         self.twin = Some(Twin::new(
             &robot,
-            model.unwrap_or_else(|| ServoModel::of(&robot)),
+            model.unwrap_or_else(|| ServoModel::for_robot(&robot)),
         ));
         Ok(description)
     }
@@ -101,22 +100,22 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, since the
+    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, because the
     /// guard's certified cells must be proved.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
         Some(self.robot()?.section())
     }
 
-    /// Sets the floor, the mass, the feet and the leg drive in the text of a robot.toml.
-    /// Values that do not change stay as they are written. The page's robot does not change.
+    /// Sets the floor, the mass, the feet and the leg drive in the text of a robot.toml. Unchanged values keep their
+    /// notation. The page's robot does not change.
     ///
     /// # Errors
-    /// Fails if the text is not a valid robot, or if one of the numbers cannot be added to it.
+    /// Fails if the text is not a valid robot, or if a number cannot be added to it.
     pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
         let robot = Robot::parse(text)?;
-        let own_floor = Floor::of(&robot);
-        // Values out of range are replaced by the robot's own.
+        let own_floor = Floor::for_robot(&robot);
+        // The robot's own values replace values out of range.
         let new_floor = floor.with_valid_values(&robot);
         let mut text = text.to_string();
         let kind = new_floor.kind.name();
@@ -128,11 +127,11 @@ impl Page {
             ("leg.drive.rate", own_floor.rate, new_floor.rate),
         ] {
             text = match floor.kind {
-                Legs::Rigid => without_key(&text, key)?,
-                Legs::Strut if kind != robot.drive().kind_name() || own_value != new_value => {
+                LegDrive::Rigid => without_key(&text, key)?,
+                LegDrive::Strut if kind != robot.drive().kind_name() || own_value != new_value => {
                     with_number(&text, key, new_value)?
                 }
-                Legs::Strut => text,
+                LegDrive::Strut => text,
             };
         }
         for (key, own_value, new_value) in [
@@ -151,21 +150,21 @@ impl Page {
                 text = with_number(&text, key, new_value)?;
             }
         }
-        Ok(Edited::of(text))
+        Ok(Edited::check(text))
     }
 
-    /// Moves the robot for one frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves the servo at
-    /// its angle. `None` without a robot.
+    /// Moves the robot for a frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves the servo at its
+    /// angle. `None` without a robot.
     pub fn follow_pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
-        let state = twin.push(widths.map(|width| (width > 0).then(|| to_us(width))));
+        let state = twin.simulate_pulses(widths.map(|width| (width > 0).then(|| to_us(width))));
         self.targets = std::array::from_fn(|i| state.angles[i] + state.errors[i]);
-        Some(frame_of(twin, &state, state.slips))
+        Some(make_frame(twin, &state, state.slips))
     }
 
     /// Moves the robot to a pose that a real robot reports `frames` frames after its previous pose; angles in deg,
-    /// chassis frame. The frames in between are interpolated. `None` without a robot, or if an angle is not finite.
+    /// chassis frame. Frames in between are interpolated. `None` without a robot, or if an angle is not finite.
     pub fn follow_pose(&mut self, angles: [f64; 4], frames: u32) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         if angles.iter().any(|angle| !angle.is_finite()) {
@@ -177,9 +176,9 @@ impl Page {
         let frames = frames.clamp(1, MAX_INTERPOLATED_FRAMES);
         let mut slides = [0.0; 4];
         let mut advance = |n: u32| {
-            let share = f64::from(n) / f64::from(frames);
-            let sweep_at = |i: usize| from[i] + share * (to[i] - from[i]);
-            let state = twin.push_angles(std::array::from_fn(|i| {
+            let fraction = f64::from(n) / f64::from(frames);
+            let sweep_at = |i: usize| from[i] + fraction * (to[i] - from[i]);
+            let state = twin.simulate_angles(std::array::from_fn(|i| {
                 neutral[i] + FORWARD_TURN_SIGN[i] * sweep_at(i)
             }));
             slides = std::array::from_fn(|i| slides[i] + state.slips[i]);
@@ -190,7 +189,7 @@ impl Page {
         });
         let state = advance(frames);
         self.targets = angles;
-        Some(frame_of(twin, &state, slides))
+        Some(make_frame(twin, &state, slides))
     }
 
     /// Returns the robot to its start on the floor.
@@ -200,21 +199,21 @@ impl Page {
         }
     }
 
-    /// Sets the floor, the mass, the feet and the leg drive from the next frame on.
+    /// Sets the floor, the mass, the feet and the leg drive; takes effect in the next frame.
     pub fn set_floor(&mut self, floor: Floor) {
         if let Some(twin) = &mut self.twin {
-            twin.set_ground(floor.ground_for(twin.robot()));
+            twin.set_ground(floor.to_ground(twin.robot()));
         }
     }
 
-    /// Sets the servo model by its name in [`Description::models`]; `own at 4.2` also sets the supply
-    /// voltage. An unknown name has no effect.
+    /// Sets the servo model by its name in [`Description::models`]; `own at 4.2` also sets the supply voltage. An
+    /// unknown name has no effect.
     pub fn set_servos(&mut self, name: &str) {
         let Some(twin) = &mut self.twin else {
             self.model_name = Some(name.to_owned());
             return;
         };
-        if let Some(model) = servo_model(twin.robot(), name) {
+        if let Some(model) = find_servo_model(twin.robot(), name) {
             self.model_name = Some(name.to_owned());
             twin.set_servo_model(model);
         }
@@ -225,7 +224,7 @@ impl Page {
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
         let gait = twin.robot().gaits().get(gait)?;
-        Some(GaitPrediction::of(twin, gait))
+        Some(GaitPrediction::predict(twin, gait))
     }
 
     /// Returns the gait with this index as bars; `None` without a robot or such a gait, or if the gait stands or
@@ -234,7 +233,7 @@ impl Page {
         self.robot()?.gaits().get(gait)?.bars()
     }
 
-    /// Tries a gait on the page's robot; `None` if no robot was read, or the drawn line has no length.
+    /// Tries a gait on the page's robot; `None` without a robot, or if the drawn line has no length.
     ///
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
@@ -242,8 +241,8 @@ impl Page {
         edited_gait.try_on(self.twin.as_ref()?)
     }
 
-    /// Returns the text of a robot.toml with this gait: it replaces the gait of the same name, or else is added at the
-    /// end. `None` if no robot was read, or the drawn line has no length.
+    /// Returns the text of a robot.toml with this gait. The gait replaces the gait of the same name, or else is added
+    /// at the end. `None` without a robot, or if the drawn line has no length.
     pub fn put_gait(&self, text: &str, edited_gait: &EditedGait) -> Option<String> {
         edited_gait.put_into(text, self.robot()?)
     }
@@ -252,49 +251,49 @@ impl Page {
     /// change.
     #[must_use]
     pub fn put_steps(text: &str, name: &str, steps: &[String]) -> Edited {
-        Edited::of(with_steps(text, name, steps))
+        Edited::check(with_steps(text, name, steps))
     }
 
-    /// Simulates one round of a routine on the current floor with the current servos; `None`
-    /// without a robot or the routine.
+    /// Simulates one round of a routine on the current floor with the current servos; `None` without a robot or such a
+    /// routine.
     pub fn round_path(&self, routine: &str) -> Option<RoundPath> {
-        RoundPath::of(self.twin.as_ref()?, routine)
+        RoundPath::simulate(self.twin.as_ref()?, routine)
     }
 
     /// Prepares the search for a faster gait of the page's robot; `None` without a robot.
     ///
     /// # Errors
-    /// Returns the reason why the search cannot start.
+    /// Returns the reason if the search cannot start.
     #[cfg(feature = "tune")]
     pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
         let search = FasterSearch::begin(self.twin.as_ref()?, task);
         Some(search.map(|search| self.search.insert(search).extent()))
     }
 
-    /// Returns the prepared search; `None` if none has been prepared since the robot was read.
+    /// Returns the prepared search; `None` if no search was prepared since the robot was read.
     #[cfg(feature = "tune")]
     pub fn search(&mut self) -> Option<&mut FasterSearch> {
         self.search.as_mut()
     }
 
-    /// Returns points of the path that the end point of head or tail follows in a drawn gait; `None` without a robot,
-    /// or if the drawn line has no length.
+    /// Returns points of the end point's path in a drawn gait; `None` without a robot, or if the drawn line has no
+    /// length.
     pub fn drawn_path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
         drawn_gait.shown_points(self.robot()?)
     }
 
     /// Returns the workspace of the end point of the head (0) or the tail (1); `None` without a robot.
     pub fn workspace(&self, end: usize) -> Option<Workspace> {
-        Some(Workspace::of(self.robot()?, *End::ALL.get(end)?))
+        Some(Workspace::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// Makes the map of singularities of the head (0) or the tail (1); `None` without a robot.
     pub fn map(&self, end: usize) -> Option<SingularityMap> {
-        Some(SingularityMap::of(self.robot()?, *End::ALL.get(end)?))
+        Some(SingularityMap::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the
-    /// robot has been read again since.
+    /// robot was read again since.
     pub fn run_core(&mut self) {
         let memory = self
             .core_run
@@ -304,19 +303,18 @@ impl Page {
         self.core_run = robot.map(|robot| CoreRun::power_on(*robot.firmware(), memory));
     }
 
-    /// Runs the core for a frame with a board supply of `volts`, after it has received `bytes` from the serial line;
+    /// Runs the core for a frame with a board supply of `volts`; the core first receives `bytes` from the serial line.
     /// `None` before [`Page::run_core`].
     pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
         Some(self.core_run.as_mut()?.run_frame(bytes, volts))
     }
 }
 
-/// Largest number of frames that are interpolated from one pose to the next; after a longer pause, the motion is
-/// unknown.
+/// Largest number of interpolated frames between two poses; after a longer pause, the motion is unknown.
 const MAX_INTERPOLATED_FRAMES: u32 = 50;
 
-fn frame_of(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
-    let scene = Scene::of(twin);
+fn make_frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
+    let scene = Scene::compute(twin);
     let fault = scene.as_ref().err().cloned();
     Frame {
         scene: scene.ok(),

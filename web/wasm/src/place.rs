@@ -1,24 +1,24 @@
-//! The place of the body on the floor, in the page's coordinates.
+//! The body's place on the floor, in the page's coordinates.
 
 use lizard_robot::{Place as RobotPlace, Travel};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-/// Position and heading of the chassis on the floor.
+/// The position and heading of the chassis on the floor.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, Tsify)]
 pub struct Place {
     /// Distance to the right of the start, mm.
     pub x: f64,
     /// Distance ahead of the start, mm.
     pub y: f64,
-    /// Heading, deg, counter-clockwise from the start's; not wrapped.
+    /// Heading, deg, counter-clockwise from the initial heading; not wrapped.
     pub heading: f64,
 }
 
 impl Place {
-    /// Returns the displacement from this place to another, in the frame of this place.
+    /// Returns the displacement from this place to another, in this place's frame.
     #[must_use]
-    pub fn movement_to(self, other: Self) -> Travel {
+    pub fn displacement_to(self, other: Self) -> Travel {
         RobotPlace::from(other).travel_from(self.into())
     }
 }
@@ -48,13 +48,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn movement_is_in_the_frame_of_the_first_place_and_conversion_is_reversible() {
+    fn displacements_are_in_the_frame_of_the_first_place_and_conversion_is_reversible() {
         let place_at = |x, y, heading| Place { x, y, heading };
-        let movement = place_at(0.0, 0.0, 90.0).movement_to(place_at(-10.0, -2.0, 95.0));
-        let error = (movement.forward - 10.0)
-            .hypot(movement.left - 2.0)
-            .hypot(movement.turn - 5.0);
-        assert!(error < 1e-12, "{movement:?}");
+        let displacement = place_at(0.0, 0.0, 90.0).displacement_to(place_at(-10.0, -2.0, 95.0));
+        let error = (displacement.forward - 10.0)
+            .hypot(displacement.left - 2.0)
+            .hypot(displacement.turn - 5.0);
+        assert!(error < 1e-12, "{displacement:?}");
         let place = place_at(3.0, -4.0, 170.0);
         let converted_place = Place::from(RobotPlace::from(place));
         let error = (converted_place.x - 3.0).hypot(converted_place.y + 4.0)

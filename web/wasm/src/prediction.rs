@@ -1,14 +1,14 @@
-//! The prediction of a gait for the page: the displacement per cycle on the current floor, and the share of their
-//! torque-speed line that the servos use at each pace.
+//! The prediction of a gait for the page: the displacement per cycle on the current floor, and the servos' load at each
+//! pace, as a fraction of their torque-speed line.
 
-use lizard_robot::{CheckedGait, Effort, Ground, Prediction, SpringCost, Travel};
+use lizard_robot::{CheckedGait, DriveEffect, Effort, Ground, Prediction, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
 /// The displacement of the body per cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
-pub struct Movement {
+pub struct Displacement {
     /// Ahead, mm; `None` if it is undetermined.
     pub forward: Option<f64>,
     /// To the left, mm; `None` if it is undetermined.
@@ -17,32 +17,27 @@ pub struct Movement {
     pub turn: Option<f64>,
 }
 
-impl From<Travel> for Movement {
-    fn from(movement: Travel) -> Self {
+impl From<Travel> for Displacement {
+    fn from(travel: Travel) -> Self {
         Self {
-            forward: Some(movement.forward),
-            left: Some(movement.left),
-            turn: Some(movement.turn),
+            forward: Some(travel.forward),
+            left: Some(travel.left),
+            turn: Some(travel.turn),
         }
     }
 }
 
-impl From<Prediction> for Movement {
-    fn from(movement: Prediction) -> Self {
-        let Prediction {
-            forward,
-            left,
-            turn,
-        } = movement;
+impl From<Prediction> for Displacement {
+    fn from(prediction: Prediction) -> Self {
         Self {
-            forward,
-            left,
-            turn,
+            forward: prediction.forward,
+            left: prediction.left,
+            turn: prediction.turn,
         }
     }
 }
 
-/// Number of steps of the page's pace slider up to the gait's own pace.
+/// Number of steps of the page's pace slider up to the gait's nominal pace.
 const PACE_COUNT: usize = 20;
 
 /// The prediction of a cycle of a gait.
@@ -50,51 +45,51 @@ const PACE_COUNT: usize = 20;
 pub struct GaitPrediction {
     /// Displacement of the body per cycle.
     #[serde(flatten)]
-    pub movement: Movement,
+    pub displacement: Displacement,
     /// Largest lag of a leg behind its servo, deg; `None` with rigid legs.
     pub lag: Option<f64>,
-    /// The displacement as a share of that with rigid legs; `None` with rigid legs, or if the displacement with rigid
-    /// legs is zero.
-    pub share: Option<f64>,
-    /// Largest share of its torque-speed line that any servo uses, at each step of the pace slider; `None` with ideal
+    /// Displacement as a fraction of the displacement with rigid legs; `None` with rigid legs, or if the displacement
+    /// with rigid legs is zero.
+    pub fraction: Option<f64>,
+    /// Largest fraction of its torque-speed line that a servo uses, at each step of the pace slider; `None` with ideal
     /// servos.
     #[tsify(type = "number[] | null")]
-    pub lines: Option<[f64; PACE_COUNT]>,
+    pub utilisations: Option<[f64; PACE_COUNT]>,
 }
 
 impl GaitPrediction {
-    /// Predicts a gait with the current floor and servos of a twin.
+    /// Predicts a gait with a twin's current floor and servos.
     #[must_use]
-    pub fn of(twin: &Twin, gait: &CheckedGait) -> Self {
+    pub fn predict(twin: &Twin, gait: &CheckedGait) -> Self {
         let prediction = Self::with_ideal_servos(gait, twin.ground());
         let ServoModel::Motors(motors) = twin.servo_model() else {
             return prediction;
         };
-        let movement = prediction.movement;
+        let displacement = prediction.displacement;
         let travel = twin.simulate_cycle(gait).travel();
-        let effort = Effort::of(gait, twin.ground(), &motors);
-        let line_share =
-            |step: usize| effort.line_share((step + 1) as f64 / PACE_COUNT as f64, 1.0);
+        let effort = Effort::simulate(gait, twin.ground(), &motors);
+        let utilisation =
+            |step: usize| effort.utilisation((step + 1) as f64 / PACE_COUNT as f64, 1.0);
         Self {
-            movement: Movement {
-                forward: movement.forward.and(Some(travel.forward)),
-                left: movement.left.and(Some(travel.left)),
-                turn: movement.turn.and(Some(travel.turn)),
+            displacement: Displacement {
+                forward: displacement.forward.and(Some(travel.forward)),
+                left: displacement.left.and(Some(travel.left)),
+                turn: displacement.turn.and(Some(travel.turn)),
             },
-            lines: Some(std::array::from_fn(line_share)),
+            utilisations: Some(std::array::from_fn(utilisation)),
             ..prediction
         }
     }
 
     /// Predicts a gait with ideal servos.
     fn with_ideal_servos(gait: &CheckedGait, ground: &Ground) -> Self {
-        let cost = SpringCost::of(gait, ground);
-        let movement = cost.map_or_else(|| gait.predict(ground), |cost| cost.movement);
+        let effect = DriveEffect::compute(gait, ground);
+        let prediction = effect.map_or_else(|| gait.predict(ground), |effect| effect.movement);
         Self {
-            movement: movement.into(),
-            lag: cost.map(|cost| cost.max_lag),
-            share: cost.and_then(|cost| cost.share_of_rigid),
-            lines: None,
+            displacement: prediction.into(),
+            lag: effect.map(|effect| effect.max_lag),
+            fraction: effect.and_then(|effect| effect.fraction_of_rigid),
+            utilisations: None,
         }
     }
 }

@@ -1,16 +1,16 @@
-//! The refusal of a robot.toml, of a length or of a gait.
+//! The refusal of a robot.toml, a length or a gait.
 
 use lizard_robot::Error;
-use lizard_robot::edit::NoSuchKey;
+use lizard_robot::edit::KeyError;
 use serde::Serialize;
 use tsify::Tsify;
 
-/// A refusal: the message that the user sees, and the key in robot.toml to which it refers.
+/// A refusal: the message for the user, and the key in robot.toml to which it refers.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Tsify)]
 pub struct Refused {
-    /// The message for the user: what is wrong, and where.
+    /// The message for the user: the problem and its position.
     pub refused: String,
-    /// The consequence for the robot, without keys and figures; `None` if the message names no consequence.
+    /// The consequence for the robot, without keys and values; `None` if the message names no consequence.
     pub consequence: Option<String>,
     /// Line of the file, counted from 1; `None` if the refusal belongs to no line.
     pub line: Option<usize>,
@@ -19,8 +19,8 @@ pub struct Refused {
 }
 
 impl Refused {
-    /// Creates a refusal that belongs to a key, or to none if `key` is empty.
-    pub(crate) fn of_key(key: &str, refused: String) -> Self {
+    /// Creates a refusal that belongs to a key, or to no key if `key` is empty.
+    pub(crate) fn for_key(key: &str, refused: String) -> Self {
         Self {
             refused,
             consequence: None,
@@ -29,8 +29,8 @@ impl Refused {
         }
     }
 
-    /// Converts the error of a gait; drops the line, since the user does not see the gait's text.
-    pub(crate) fn of_gait(error: Error) -> Self {
+    /// Converts the error of a gait. Drops the line, because the user does not see the gait's text.
+    pub(crate) fn for_gait(error: Error) -> Self {
         let Error {
             consequence,
             problem,
@@ -57,8 +57,8 @@ impl From<Error> for Refused {
     }
 }
 
-impl From<NoSuchKey> for Refused {
-    fn from(error: NoSuchKey) -> Self {
-        Self::of_key(&error.0, error.to_string())
+impl From<KeyError> for Refused {
+    fn from(error: KeyError) -> Self {
+        Self::for_key(&error.0, error.to_string())
     }
 }

@@ -1,4 +1,4 @@
-//! The lines in which a board reports about itself, as values for JavaScript.
+//! A board's lines about itself, as values for JavaScript.
 
 use lizard_robot::{Banner, Status};
 use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
@@ -10,7 +10,7 @@ const TYPES: &str = "
 /** The firmware's first line after a reset. */
 export interface Banner {
   version: string;
-  /** The robot in its flash; null if there is none or it is damaged. */
+  /** The robot in the flash; null if it is missing or damaged. */
   robot: { name: string; hash: string } | null;
 }
 /** The answer to `status`. */
@@ -31,7 +31,7 @@ export interface Status {
   vcc: number | null;
   /** Number of late edges of pulses. */
   lateEdges: number;
-  /** Number of lost bytes. */
+  /** Number of lost received bytes. */
   lostBytes: number;
   /** Cause of the last reset. */
   resetCause: string;
@@ -40,21 +40,21 @@ export interface Status {
 }
 ";
 
-/// Reads a banner; null for any other line.
+/// Parses a banner; returns null for any other line.
 #[must_use]
 #[wasm_bindgen(js_name = parseBanner, unchecked_return_type = "Banner | null")]
 pub fn parse_banner(line: &str) -> JsValue {
     to_js(Banner::parse(line))
 }
 
-/// Reads an answer `ok gait=...`; null for any other line.
+/// Parses an answer `ok gait=...`; returns null for any other line.
 #[must_use]
 #[wasm_bindgen(js_name = parseStatus, unchecked_return_type = "Status | null")]
 pub fn parse_status(line: &str) -> JsValue {
     to_js(Status::parse(line))
 }
 
-/// Reads the pose of a line `# t=<frame> pose=...`, deg; null for any other line.
+/// Parses the pose in a line `# t=<frame> pose=...`, deg; returns null for any other line.
 #[must_use]
 #[wasm_bindgen(js_name = parsePoseReport, unchecked_return_type = "Four<number> | null")]
 pub fn parse_pose_report(line: &str) -> JsValue {

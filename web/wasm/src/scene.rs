@@ -1,7 +1,7 @@
-//! The points and margins of one pose, as the page draws them.
+//! The points and margins of a pose, as the page draws them.
 
 use lizard_kinematics::{Check, End, Pose, Side, Solution, Vector};
-use lizard_robot::{LegPlace, Robot};
+use lizard_robot::{LegPoints, Robot};
 use lizard_twin::{Shape, Twin};
 use serde::Serialize;
 use tsify::Tsify;
@@ -10,14 +10,14 @@ use crate::map::{self, MapPoint};
 
 /// A point, mm, chassis frame: x to the right, y forward.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
-pub struct Spot(
+pub struct Point(
     /// Distance to the right, mm.
     pub f64,
     /// Distance forward, mm.
     pub f64,
 );
 
-impl From<Vector> for Spot {
+impl From<Vector> for Point {
     fn from(point: Vector) -> Self {
         Self(point.x, point.y)
     }
@@ -26,27 +26,27 @@ impl From<Vector> for Spot {
 /// A leg at a pose.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct LegScene {
-    /// Pivots on the chassis, the driven crank's first.
-    pub pivots: [Spot; 2],
+    /// Pivots on the chassis: the driven crank's pivot, then the follower's.
+    pub pivots: [Point; 2],
     /// Joints of the link that carries the foot.
-    pub joints: [Spot; 2],
-    /// Place of the foot.
-    pub foot: Spot,
-    /// Anchors of the strut: on the servo's crank and on the leg's crank.
-    pub strut: [Spot; 2],
+    pub joints: [Point; 2],
+    /// Position of the foot.
+    pub foot: Point,
+    /// Anchors of the strut: on the servo's crank, and on the leg's crank.
+    pub strut: [Point; 2],
     /// True if the strut has a spring; false if it is rigid.
-    pub sprung: bool,
+    pub has_spring: bool,
 }
 
 /// A slider between two arms.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct SliderScene {
     /// Shafts of the front and the rear servo.
-    pub shafts: [Spot; 2],
-    /// Tips of the front and the rear arm.
-    pub tips: [Spot; 2],
+    pub shafts: [Point; 2],
+    /// Tips of the front arm and the rear arm.
+    pub tips: [Point; 2],
     /// Front end of the slider's rear half, into which the front half slides.
-    pub tube: Spot,
+    pub tube: Point,
     /// Travel from nominal, mm.
     pub travel: f64,
 }
@@ -66,11 +66,11 @@ pub struct Scene {
     /// Servo angles, deg, chassis frame, in servo order.
     pub angles: [f64; 4],
     /// Shafts in servo order.
-    pub shafts: [Spot; 4],
+    pub shafts: [Point; 4],
     /// Tips of the cranks in servo order.
-    pub tips: [Spot; 4],
+    pub tips: [Point; 4],
     /// End points of head and tail.
-    pub points: [Spot; 2],
+    pub points: [Point; 2],
     /// The sliders, left and right.
     #[tsify(type = "[SliderScene, SliderScene]")]
     pub sliders: Vec<SliderScene>,
@@ -92,50 +92,55 @@ impl Scene {
     ///
     /// # Errors
     /// Returns the message about the loop that does not close.
-    pub fn of(twin: &Twin) -> Result<Self, String> {
+    pub fn compute(twin: &Twin) -> Result<Self, String> {
         let (robot, angles) = (twin.robot(), twin.angles());
         let pose = Pose::from(angles);
         let solution = robot
             .lizard()
             .solve(&pose)
             .map_err(|fault| fault.to_string())?;
-        let shape = Shape::at_solution(robot, &solution, twin.leg_sweeps());
-        let sprung = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
+        let shape = Shape::from_solution(robot, &solution, twin.leg_sweeps());
+        let has_spring = twin.ground().drive.kind != lizard_robot::DriveKind::Rigid;
         let refusal = robot.limits().violations(&solution).next();
-        let margin_of = |(check, value): (Check, f64)| Margin {
+        let to_margin = |(check, value): (Check, f64)| Margin {
             name: check.name(),
             value,
         };
         Ok(Self {
             angles,
-            shafts: shape.shafts.map(Spot::from),
-            tips: shape.crank_tips.map(Spot::from),
-            points: shape.ends.map(Spot::from),
+            shafts: shape.shafts.map(Point::from),
+            tips: shape.crank_tips.map(Point::from),
+            points: shape.ends.map(Point::from),
             sliders: Side::ALL
-                .map(|side| slider_scene(robot, &shape, &solution, side))
+                .map(|side| compute_slider_scene(robot, &shape, &solution, side))
                 .into(),
-            legs: shape.legs.map(|leg| LegScene::of(leg, sprung)).into(),
-            margins: solution.margins.iter().map(margin_of).collect(),
-            smallest: margin_of(solution.margins.min()),
+            legs: shape.legs.map(|leg| LegScene::new(leg, has_spring)).into(),
+            margins: solution.margins.iter().map(to_margin).collect(),
+            smallest: to_margin(solution.margins.min()),
             refusal: refusal.map(|violation| violation.to_string()),
-            map: End::ALL.map(|end| map::map_point(end, &pose)),
+            map: End::ALL.map(|end| map::to_map_point(end, &pose)),
         })
     }
 }
 
 impl LegScene {
-    fn of(leg: LegPlace, sprung: bool) -> Self {
+    fn new(leg: LegPoints, has_spring: bool) -> Self {
         Self {
-            pivots: leg.pivots.map(Spot::from),
-            joints: leg.joints.map(Spot::from),
+            pivots: leg.pivots.map(Point::from),
+            joints: leg.joints.map(Point::from),
             foot: leg.foot.into(),
-            strut: leg.strut_anchors.map(Spot::from),
-            sprung,
+            strut: leg.strut_anchors.map(Point::from),
+            has_spring,
         }
     }
 }
 
-fn slider_scene(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -> SliderScene {
+fn compute_slider_scene(
+    robot: &Robot,
+    shape: &Shape,
+    solution: &Solution,
+    side: Side,
+) -> SliderScene {
     let servos = side.servos();
     let pose = solution.side(side);
     let links = robot.lizard().links;
@@ -146,7 +151,7 @@ fn slider_scene(robot: &Robot, shape: &Shape, solution: &Solution, side: Side) -
     let tips = servos.map(|servo| shape.arm_tips[servo]);
     SliderScene {
         shafts: servos.map(|servo| shape.shafts[servo].into()),
-        tips: tips.map(Spot::from),
+        tips: tips.map(Point::from),
         tube: (tips[1] + pose.span * (rear_half / pose.d)).into(),
         travel: pose.s,
     }
@@ -157,18 +162,18 @@ mod tests {
     use lizard_twin::ServoModel;
 
     use super::*;
-    use crate::paper::{PAPER_TOML, paper_robot};
+    use crate::paper::{PAPER_TOML, load_paper_robot};
 
-    fn scene_at(robot: &Robot, angles: [f64; 4]) -> Scene {
+    fn compute_scene(robot: &Robot, angles: [f64; 4]) -> Scene {
         let mut twin = Twin::new(robot, ServoModel::Ideal);
-        twin.push_angles(angles);
-        Scene::of(&twin).expect("every loop closes")
+        twin.simulate_angles(angles);
+        Scene::compute(&twin).expect("every loop closes")
     }
 
     #[test]
     fn the_neutral_pose_has_the_papers_head_point_and_no_refusal() {
-        let robot = paper_robot();
-        let scene = scene_at(&robot, robot.neutral_pose().into());
+        let robot = load_paper_robot();
+        let scene = compute_scene(&robot, robot.neutral_pose().into());
         assert!(
             (scene.points[0].1 - (67.5 + 57.840)).abs() < 1e-3,
             "{:?}",
@@ -182,19 +187,19 @@ mod tests {
         );
         assert_eq!(scene.refusal, None);
         assert_eq!(scene.margins.len(), 10);
-        assert!(scene.legs.iter().all(|leg| !leg.sprung));
+        assert!(scene.legs.iter().all(|leg| !leg.has_spring));
     }
 
     #[test]
     fn the_refusal_of_a_pose_near_a_singularity_names_its_margin() {
-        let scene = scene_at(&paper_robot(), [75.0, 105.0, 318.59, 221.41]);
+        let scene = compute_scene(&load_paper_robot(), [75.0, 105.0, 318.59, 221.41]);
         let refusal = scene.refusal.expect("the pose is refused");
         assert!(refusal.contains("type2_head"), "{refusal}");
     }
 
     #[test]
     fn the_message_names_the_loop_that_does_not_close() {
-        // Couplers that barely reach each other in the neutral pose.
+        // In the neutral pose, the couplers barely reach each other.
         let short_toml = ["l2", "l3"]
             .iter()
             .fold(PAPER_TOML.to_string(), |text, link| {
@@ -206,8 +211,8 @@ mod tests {
         let loose_toml = short_toml[..gaits_start].replace("type2 = 0.3", "type2 = 0.1");
         let robot = Robot::parse(&loose_toml).expect("the neutral pose is allowed");
         let mut twin = Twin::new(&robot, ServoModel::Ideal);
-        twin.push_angles([170.0, 10.0, 318.59, 221.41]);
-        let fault = Scene::of(&twin).expect_err("the couplers cannot meet");
+        twin.simulate_angles([170.0, 10.0, 318.59, 221.41]);
+        let fault = Scene::compute(&twin).expect_err("the couplers cannot meet");
         assert!(fault.contains("head"), "{fault}");
     }
 }

@@ -1,7 +1,7 @@
-//! The trial of an edited gait on a robot, before the gait is written to any file.
+//! The trial of an edited gait on a robot, before the gait is written to a file.
 //!
-//! Only the edited gait is checked, so that the answer comes while the user still drags the value. A
-//! refusal offers the nearest smaller gait and the nearest longer period that are valid.
+//! Only the edited gait is checked, so that the answer comes while the user still drags the value. A refusal offers the
+//! nearest smaller gait and the nearest longer period that are valid.
 
 use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Bars, Robot, edit};
@@ -13,18 +13,18 @@ use crate::drawn::DrawnGait;
 use crate::prediction::GaitPrediction;
 use crate::refused::Refused;
 
-/// Size of the smallest gait that is offered, in tenths of a degree of amplitude or hundredths of the drawn size.
+/// Size of the smallest offered gait, in tenths of a degree of amplitude or hundredths of the drawn size.
 const MIN_SIZE_STEPS: i64 = 5;
-/// The longest period that is offered, in hundredths of a second.
+/// Longest offered period, in hundredths of a second.
 const MAX_PERIOD_HUNDREDTHS: i64 = 1000;
 
 /// An edited gait.
 #[derive(Clone, Debug, PartialEq, Deserialize, Tsify)]
 #[serde(untagged)]
 pub enum EditedGait {
-    /// A gait along a line that was drawn.
+    /// A gait along a drawn line.
     DrawnGait(DrawnGait),
-    /// A gait whose legs have one waveform, each with its own start and gain.
+    /// A gait whose legs share a waveform, each with its own start and gain.
     Bars(Bars),
 }
 
@@ -40,23 +40,23 @@ pub struct Trial {
     pub margin: &'static str,
     /// Smallest value of that margin, the sine of an angle.
     pub least: f64,
-    /// Limit of that margin, also a sine.
+    /// Limit of that margin, the sine of an angle.
     pub limit: f64,
     /// Name of the servo that turns fastest.
     pub servo: &'static str,
     /// Largest speed of that servo, deg/s.
     pub speed: f64,
-    /// Time of a cycle, s.
+    /// Duration of a cycle, s.
     pub period: f64,
 }
 
 /// A value that makes a refused gait valid.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Alternative {
-    /// Name of the value that changes: `amplitude`, `size` or `period`.
+    /// Name of the changed parameter: `amplitude`, `size` or `period`.
     #[tsify(type = "'amplitude' | 'size' | 'period'")]
-    pub what: &'static str,
-    /// The value: an amplitude in deg, a size as a factor, or a period in s.
+    pub parameter: &'static str,
+    /// Valid value: an amplitude in deg, a size as a factor, or a period in s.
     pub value: f64,
 }
 
@@ -66,34 +66,33 @@ pub struct RefusedTrial {
     /// The refusal.
     #[serde(flatten)]
     pub refused: Refused,
-    /// The nearest valid values; each of them makes the gait valid on its own.
+    /// The nearest valid values; each of them alone makes the gait valid.
     pub alternatives: Vec<Alternative>,
 }
 
 impl EditedGait {
-    fn table(&self, robot: &Robot) -> Option<String> {
+    fn format_table(&self, robot: &Robot) -> Option<String> {
         match self {
-            Self::DrawnGait(drawn_gait) => drawn_gait.table(robot),
+            Self::DrawnGait(drawn_gait) => drawn_gait.format_table(robot),
             Self::Bars(bars) => Some(bars.to_toml()),
         }
     }
 
-    /// Returns the text of a robot.toml with this gait: it replaces the gait of the same name, or else is added at the
-    /// end. `None` if the drawn line has no length.
+    /// Returns the text of a robot.toml with this gait. The gait replaces the gait of the same name, or else is added
+    /// at the end. `None` if the drawn line has no length.
     #[must_use]
     pub fn put_into(&self, text: &str, robot: &Robot) -> Option<String> {
         let (Self::DrawnGait(DrawnGait { name, .. }) | Self::Bars(Bars { name, .. })) = self;
-        Some(edit::with_gait(text, name, &self.table(robot)?))
+        Some(edit::with_gait(text, name, &self.format_table(robot)?))
     }
 
-    /// Tries the gait with the robot, the floor and the servos of a twin; `None` if the drawn line has
-    /// no length.
+    /// Tries the gait with a twin's robot, floor and servos; `None` if the drawn line has no length.
     ///
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
     #[must_use]
     pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, RefusedTrial>> {
-        let table = self.table(twin.robot())?;
+        let table = self.format_table(twin.robot())?;
         Some(try_table(table, twin).map_err(|refused| RefusedTrial {
             refused,
             alternatives: self.find_alternatives(twin.robot()),
@@ -105,51 +104,51 @@ impl EditedGait {
         let is_valid_after = |change: &dyn Fn(&mut Self)| {
             let mut changed_gait = self.clone();
             change(&mut changed_gait);
-            let table = changed_gait.table(robot);
+            let table = changed_gait.format_table(robot);
             table.is_some_and(|table| robot.with_gait(&table).is_ok())
         };
-        let (what, size, steps_per_unit, period) = match self {
+        let (size_parameter, size, steps_per_unit, period) = match self {
             Self::DrawnGait(drawn_gait) => ("size", drawn_gait.size, 100.0, drawn_gait.period),
             Self::Bars(bars) => ("amplitude", bars.amplitude, 10.0, bars.period),
         };
-        let is_size_possible = |step: i64| {
+        let is_size_valid = |step: i64| {
             is_valid_after(&|gait| match gait {
                 Self::DrawnGait(drawn_gait) => drawn_gait.size = step as f64 / steps_per_unit,
                 Self::Bars(bars) => bars.amplitude = step as f64 / steps_per_unit,
             })
         };
-        let is_period_possible = |hundredths: i64| {
+        let is_period_valid = |hundredths: i64| {
             is_valid_after(&|gait| match gait {
                 Self::DrawnGait(DrawnGait { period, .. }) | Self::Bars(Bars { period, .. }) => {
                     *period = hundredths as f64 / 100.0;
                 }
             })
         };
-        let size_steps = find_nearest_possible(
+        let size_steps = find_nearest_valid(
             (size * steps_per_unit).ceil() as i64 - 1,
             MIN_SIZE_STEPS,
-            is_size_possible,
+            is_size_valid,
         );
-        let period_hundredths = find_nearest_possible(
+        let period_hundredths = find_nearest_valid(
             (period * 100.0).floor() as i64 + 1,
             MAX_PERIOD_HUNDREDTHS,
-            is_period_possible,
+            is_period_valid,
         );
-        let alternative_of = |what, value: Option<i64>, steps_per_unit: f64| {
+        let make_alternative = |parameter, value: Option<i64>, steps_per_unit: f64| {
             value.map(|value| Alternative {
-                what,
+                parameter,
                 value: value as f64 / steps_per_unit,
             })
         };
-        let size = alternative_of(what, size_steps, steps_per_unit);
-        let period = alternative_of("period", period_hundredths, 100.0);
+        let size = make_alternative(size_parameter, size_steps, steps_per_unit);
+        let period = make_alternative("period", period_hundredths, 100.0);
         size.into_iter().chain(period).collect()
     }
 }
 
-/// Tries a gait, given as its table in the format of robot.toml.
+/// Tries a gait; `table` has the format of robot.toml.
 fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
-    let robot = twin.robot().with_gait(&table).map_err(Refused::of_gait)?;
+    let robot = twin.robot().with_gait(&table).map_err(Refused::for_gait)?;
     let mut trial_twin = Twin::new(&robot, twin.servo_model());
     trial_twin.set_ground(*twin.ground());
     let gait = &robot.gaits()[1];
@@ -164,7 +163,7 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("there are three margins");
     Ok(Trial {
-        prediction: GaitPrediction::of(&trial_twin, gait),
+        prediction: GaitPrediction::predict(&trial_twin, gait),
         table,
         margin: nearest_margin.check.name(),
         least: nearest_margin.value,
@@ -175,23 +174,23 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
     })
 }
 
-/// Finds the possible number nearest to `from`, by bisection between `from` and `to`; if a number is possible, all
-/// numbers between it and `to` must be. `None` if `to` is not possible, or equals `from`.
-fn find_nearest_possible(from: i64, to: i64, is_possible: impl Fn(i64) -> bool) -> Option<i64> {
+/// Bisects between `from` and `to`, and returns the valid number nearest to `from`. All numbers between a valid number
+/// and `to` must be valid, too. `None` if `to` is invalid or equals `from`.
+fn find_nearest_valid(from: i64, to: i64, is_valid: impl Fn(i64) -> bool) -> Option<i64> {
     let direction = (to - from).signum();
-    if direction == 0 || !is_possible(to) {
+    if direction == 0 || !is_valid(to) {
         return None;
     }
-    let (mut impossible, mut possible) = (from - direction, to);
-    while (possible - impossible).abs() > 1 {
-        let midpoint = i64::midpoint(impossible, possible);
-        if is_possible(midpoint) {
-            possible = midpoint
+    let (mut invalid, mut valid) = (from - direction, to);
+    while (valid - invalid).abs() > 1 {
+        let midpoint = i64::midpoint(invalid, valid);
+        if is_valid(midpoint) {
+            valid = midpoint
         } else {
-            impossible = midpoint
+            invalid = midpoint
         }
     }
-    Some(possible)
+    Some(valid)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! The workspace of head and tail: the part of the plane in which a path of the end point can be drawn.
+//! The workspace of head and tail: the part of the plane in which the user can draw a path of the end point.
 //!
-//! The other end is at neutral. A point is allowed if the inverse kinematics has a solution there
-//! and the limits allow its pose.
+//! The other end is at neutral. A point is allowed if the inverse kinematics has a solution there and the limits allow
+//! the solution's pose.
 
 use lizard_kinematics::{End, Vector, wrap};
 use lizard_robot::Robot;
@@ -10,16 +10,16 @@ use tsify::Tsify;
 
 /// Number of grid steps across the plane, whose width is twice the longest reach.
 const STEPS_ACROSS: i32 = 160;
-/// Width of the rim of points around the allowed points, in grid points.
+/// Width of the rim around the allowed points, in grid points.
 const RIM_WIDTH: i32 = 2;
-/// Largest distance between two points that count as the same, mm.
+/// Largest distance between two points that count as equal, mm.
 const POINT_TOLERANCE_MM: f64 = 1e-6;
 
-/// The workspace of the end point of head or tail, as a grid: mm in the end's own frame, whose origin is the
-/// middle of the end's base and whose y axis points outward.
+/// The workspace of an end point as a grid, mm in the end's own frame. The frame's origin is the middle of the end's
+/// base, and its y axis points outward.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct Workspace {
-    /// The first point of the first row.
+    /// First point of the first row.
     pub first_point: [f64; 2],
     /// Distance between neighbouring points, mm.
     pub spacing: f64,
@@ -27,16 +27,16 @@ pub struct Workspace {
     pub columns: usize,
     /// True at allowed points, row by row.
     pub allowed: Vec<bool>,
-    /// The end point in the neutral pose.
+    /// End point in the neutral pose.
     pub neutral: [f64; 2],
-    /// The shafts of the two cranks.
+    /// Shafts of the two cranks.
     pub shafts: [[f64; 2]; 2],
 }
 
 impl Workspace {
     /// Computes the workspace of the end point of head or tail.
     #[must_use]
-    pub fn of(robot: &Robot, end: End) -> Self {
+    pub fn compute(robot: &Robot, end: End) -> Self {
         let five_bar = robot.lizard().end(end);
         let reach = five_bar.base / 2.0
             + five_bar.left_crank_length.max(five_bar.right_crank_length)
@@ -62,8 +62,8 @@ impl Workspace {
             let column = usize::try_from(column + half_steps).ok();
             row.zip(column).and_then(|(row, column)| row.get(column)) == Some(&true)
         };
-        // The range of columns or rows from the first with allowed points to the last, with the rim on both sides.
-        let range_with_rim = |has_allowed_points: &dyn Fn(i32) -> bool| {
+        // Returns the range of columns or rows with allowed points, with the rim on both sides.
+        let find_range_with_rim = |has_allowed_points: &dyn Fn(i32) -> bool| {
             let smallest = (-half_steps..=half_steps)
                 .find(|index| has_allowed_points(*index))
                 .unwrap_or(0);
@@ -73,10 +73,12 @@ impl Workspace {
                 .unwrap_or(0);
             (smallest - RIM_WIDTH)..=(largest + RIM_WIDTH)
         };
-        let columns =
-            range_with_rim(&|column| (-half_steps..=half_steps).any(|row| is_allowed(column, row)));
-        let rows =
-            range_with_rim(&|row| (-half_steps..=half_steps).any(|column| is_allowed(column, row)));
+        let columns = find_range_with_rim(&|column| {
+            (-half_steps..=half_steps).any(|row| is_allowed(column, row))
+        });
+        let rows = find_range_with_rim(&|row| {
+            (-half_steps..=half_steps).any(|column| is_allowed(column, row))
+        });
         let points_of_row = |row| columns.clone().map(move |column| (column, row));
         let allowed = rows
             .clone()
@@ -88,20 +90,20 @@ impl Workspace {
             spacing,
             columns: columns.clone().count(),
             allowed: allowed.collect(),
-            neutral: neutral_point(robot, end),
+            neutral: find_neutral_point(robot, end),
             shafts: [[-half_base, 0.0], [half_base, 0.0]],
         }
     }
 }
 
 /// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame.
-pub fn neutral_point(robot: &Robot, end: End) -> [f64; 2] {
+pub fn find_neutral_point(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral_pose());
     let point = solution.map(|solution| solution.end(end).end_point);
     point.map_or([0.0; 2], |point| [point.x, point.y])
 }
 
-/// True if the limits allow the pose with the end point here and the other end at neutral.
+/// Returns true if the limits allow the pose with the end point at (`x`, `y`) and the other end at neutral.
 fn is_point_allowed(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     let Ok(crank_angles) = robot.lizard().point_angles(end, Vector::new(x, y)) else {
         return false;
@@ -110,7 +112,7 @@ fn is_point_allowed(robot: &Robot, end: End, [x, y]: [f64; 2]) -> bool {
     for servo in end.servos() {
         angles[servo] += wrap(crank_angles[servo % 2] - angles[servo]);
     }
-    // With these crank angles, the robot's assembly mode may put the end point elsewhere.
+    // In the robot's assembly mode, these crank angles may put the end point elsewhere.
     robot.solve_if_allowed(angles).is_some_and(|solution| {
         let end_point = solution.end(end).end_point;
         (end_point.x - x).hypot(end_point.y - y) < POINT_TOLERANCE_MM
@@ -122,10 +124,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_neutral_point_is_allowed_and_points_out_of_reach_are_not() {
-        let robot = crate::paper::paper_robot();
+    fn the_workspace_contains_the_neutral_point_and_no_points_out_of_reach() {
+        let robot = crate::paper::load_paper_robot();
         for end in End::ALL {
-            let workspace = Workspace::of(&robot, end);
+            let workspace = Workspace::compute(&robot, end);
             let is_allowed_at = |[x, y]: [f64; 2]| {
                 let [column, row] = [
                     (x - workspace.first_point[0]) / workspace.spacing,
@@ -136,7 +138,7 @@ mod tests {
             };
             assert!(is_allowed_at(workspace.neutral), "{end}");
             assert_eq!(workspace.allowed.len() % workspace.columns, 0);
-            // The first row belongs to the rim of points that are not allowed, so that the workspace's edge is visible.
+            // The first row belongs to the rim of forbidden points, which makes the workspace's edge visible.
             assert!(
                 workspace.allowed[..workspace.columns]
                     .iter()

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use crate::lag_energy::{Resistance, StrutTriangle};
 
 const EVEN_LOADS: [f64; 4] = [1.0; 4];
-/// Torque of a stop: more than the largest torque of a pad at the end of a leg of 45 mm.
+/// Torque of a stop, larger than any pad can exert on a 45 mm leg.
 const STOP_TORQUE: f64 = 250.0;
 const PAD_POSITIONS: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
@@ -23,28 +23,32 @@ fn rigid_pads(positions: [Point; 4], swings: [Point; 4]) -> Pads {
     }
 }
 
-/// The sum of the friction's work and the springs' energy.
-fn cost_of(pads: &Pads, displacement: &Displacement) -> f64 {
-    let length_of = |slide: Point| {
+/// Computes the sum of the friction's work and the springs' energy.
+fn compute_cost(pads: &Pads, displacement: &Displacement) -> f64 {
+    let weighted_length = |slide: Point| {
         let weights = pads.slide_weights(slide);
         (weights[0] * slide[0]).hypot(weights[1] * slide[1])
     };
     let slides = pads.slides(displacement).into_iter().zip(pads.loads);
-    let friction: f64 = slides.map(|(slide, load)| load * length_of(slide)).sum();
-    let energy_of = |compliance: Compliance| -> f64 {
+    let friction: f64 = slides
+        .map(|(slide, load)| load * weighted_length(slide))
+        .sum();
+    let spring_energy = |compliance: Compliance| -> f64 {
         let lags = displacement.lags.iter();
         lags.zip(compliance.lag_energies)
-            .map(|(lag, drive)| drive.expand(*lag, 0.0).energy)
+            .map(|(lag, lag_energy)| lag_energy.expand(*lag, 0.0).energy)
             .sum()
     };
-    friction + pads.compliance.map_or(0.0, energy_of)
+    friction + pads.compliance.map_or(0.0, spring_energy)
 }
 
-/// Computes a lower bound of the minimum cost by duality, from the friction forces of a displacement's slides. If
-/// these forces balance each other, no movement of the body costs less than their work `sum f . swing` minus the
-/// largest energy that their torques can release from the springs. Returns the net force and torque, and the duality
-/// gap: the displacement's cost minus this lower bound.
-fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
+/// Computes a lower bound of the minimum cost by duality, from the friction forces of a displacement's slides. The
+/// forces do the work `sum f . swing`, and their torques can release a largest energy from the springs. If the forces
+/// balance each other, every displacement of the body costs at least this work minus this energy. Returns the net
+/// force and torque, and the duality gap: the displacement's cost minus the lower bound.
+fn compute_dual_certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
+    /// Length that converts the net torque to a force, mm.
+    const TORQUE_LEVER_ARM: f64 = 100.0;
     let eps = max_abs_component(&pads.swings) * MIN_SMOOTHING;
     let (mut lower_bound, mut net_force) = (0.0, [0.0; 3]);
     for (i, slide) in pads.slides(displacement).into_iter().enumerate() {
@@ -70,41 +74,42 @@ fn dual_certificate_of(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f
         }
         net_force[0] += force[0];
         net_force[1] += force[1];
-        net_force[2] += (pads.positions[i][0] * force[1] - pads.positions[i][1] * force[0]) / 100.0;
+        let [x, y] = pads.positions[i];
+        net_force[2] += (x * force[1] - y * force[0]) / TORQUE_LEVER_ARM;
     }
-    (net_force, cost_of(pads, displacement) - lower_bound)
+    (net_force, compute_cost(pads, displacement) - lower_bound)
 }
 
 fn assert_minimal(pads: &Pads) {
-    let (net_force, duality_gap) = dual_certificate_of(pads, &pads.minimise_cost());
+    let (net_force, duality_gap) = compute_dual_certificate(pads, &pads.minimise_cost());
     assert!(
         net_force.iter().all(|component| component.abs() < 1e-5),
         "the forces do not balance: {net_force:?}"
     );
     assert!(
         duality_gap.abs() < 1e-5 * max_abs_component(&pads.swings),
-        "gap {duality_gap}"
+        "the duality gap is {duality_gap}"
     );
 }
 
 #[test]
-fn the_minimum_is_found_in_near_ties_of_two_feet_against_two() {
-    // A gait of sine waves: at each instant two legs swing in one direction about as fast as the other two in the
-    // opposite direction, so that only lever arms decide.
+fn the_minimum_is_found_when_two_feet_nearly_balance_the_other_two() {
+    // In a gait of sine waves, two legs always swing in one direction and the other two in the opposite one at nearly
+    // the same speed. Only the lever arms decide.
     for step in 0..1000 {
-        let (from, to) = (f64::from(step), f64::from(step + 1));
+        let (start, end) = (f64::from(step), f64::from(step + 1));
         let foot_position_at = |i: usize, step: f64| {
-            let start = [0.25, 0.75, 0.5, 0.0][i];
-            let psi = 0.35 * ((step / 1000.0 - start) * std::f64::consts::TAU).cos();
-            let side = [1.0, -1.0, -1.0, 1.0][i];
+            let start_phase = [0.25, 0.75, 0.5, 0.0][i];
+            let sweep = 0.35 * ((step / 1000.0 - start_phase) * std::f64::consts::TAU).cos();
+            let left_sign = [1.0, -1.0, -1.0, 1.0][i];
             [
-                [55.0, 55.0, -55.0, -55.0][i] + 45.0 * psi.sin(),
-                side * (35.0 + 45.0 * psi.cos()),
+                [55.0, 55.0, -55.0, -55.0][i] + 45.0 * sweep.sin(),
+                left_sign * (35.0 + 45.0 * sweep.cos()),
             ]
         };
-        let positions = std::array::from_fn(|i| foot_position_at(i, (from + to) / 2.0));
+        let positions = std::array::from_fn(|i| foot_position_at(i, (start + end) / 2.0));
         let swings = std::array::from_fn(|i| {
-            let (a, b) = (foot_position_at(i, from), foot_position_at(i, to));
+            let (a, b) = (foot_position_at(i, start), foot_position_at(i, end));
             [b[0] - a[0], b[1] - a[1]]
         });
         assert_minimal(&rigid_pads(positions, swings));
@@ -119,17 +124,17 @@ fn assert_twist_near(twist: Twist, expected: Twist) {
 }
 
 #[test]
-fn three_pads_that_agree_hold_and_the_fourth_slides() {
-    for odd_pad in 0..4 {
+fn three_pads_that_swing_alike_hold_while_the_fourth_slides() {
+    for sliding_pad in 0..4 {
         let mut swings = [[-1.0, 0.0]; 4];
-        swings[odd_pad] = [3.0, 0.0];
+        swings[sliding_pad] = [3.0, 0.0];
         let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
         assert_twist_near(twist, [1.0, 0.0, 0.0]);
     }
 }
 
 #[test]
-fn a_single_pad_that_swings_does_not_move_the_body() {
+fn a_single_swinging_pad_does_not_move_the_body() {
     let swings = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
     let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert_twist_near(twist, [0.0; 3]);
@@ -137,21 +142,21 @@ fn a_single_pad_that_swings_does_not_move_the_body() {
 
 #[test]
 fn legs_that_swing_against_each_other_turn_the_body() {
-    // The pads turn by -0.01 rad about the body's centre, so the body turns by 0.01 rad and no pad slides.
+    // The pads turn by -0.01 rad about the body's centre, so the body turns by 0.01 rad, and no pad slides.
     let swings = PAD_POSITIONS.map(|[x, y]| [0.01 * y, -0.01 * x]);
     let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert_twist_near(twist, [0.0, 0.0, 0.01]);
 }
 
-fn any_point(size: f64) -> impl Strategy<Value = Point> {
-    [-size..size, -size..size]
+fn any_point_within(max: f64) -> impl Strategy<Value = Point> {
+    [-max..max, -max..max]
 }
 
 proptest! {
     #[test]
     fn with_rigid_legs_the_minimum_cost_equals_the_dual_lower_bound(
-        jitter in prop::array::uniform4(any_point(20.0)),
-        swings in prop::array::uniform4(any_point(5.0)),
+        jitter in prop::array::uniform4(any_point_within(20.0)),
+        swings in prop::array::uniform4(any_point_within(5.0)),
         friction_ratio in 0.5f64..2.0,
         loads in prop::array::uniform4(0.8f64..1.2),
     ) {
@@ -163,7 +168,7 @@ proptest! {
 
     #[test]
     fn no_twist_near_the_minimum_costs_less(
-        swings in prop::array::uniform4(any_point(5.0)),
+        swings in prop::array::uniform4(any_point_within(5.0)),
         nudge in prop::array::uniform3(-1.0f64..1.0),
         exponent in -6i32..1,
         loads in prop::array::uniform4(0.8f64..1.2),
@@ -173,32 +178,32 @@ proptest! {
         let (twist, scale) = (minimum.twist, 10f64.powi(exponent));
         let nudged = [twist[0] + scale * nudge[0], twist[1] + scale * nudge[1], twist[2] + scale * nudge[2] / 80.0];
         let nudged = Displacement { twist: nudged, ..minimum };
-        prop_assert!(cost_of(&pads, &minimum) <= cost_of(&pads, &nudged) + 1e-6);
+        prop_assert!(compute_cost(&pads, &minimum) <= compute_cost(&pads, &nudged) + 1e-6);
     }
 
-    // Every leg has play. At the play's lower end is a stop; at its upper end is another stop or a slotted strut.
+    // Every leg has play, with a stop at its lower end, and with another stop or a slotted strut at its upper end.
     #[test]
     fn with_play_and_slotted_struts_the_minimum_cost_equals_the_dual_lower_bound(
-        swings in prop::array::uniform4(any_point(5.0)),
+        swings in prop::array::uniform4(any_point_within(5.0)),
         loads in prop::array::uniform4(0.5f64..1.5),
         play in 0.0f64..0.03,
-        lag_shares in prop::array::uniform4(-1.0f64..1.0),
-        force in prop::option::of(0.2f64..6.0),
-        arm_deg in 40.0f64..85.0,
+        lag_fractions in prop::array::uniform4(-1.0f64..1.0),
+        preload in prop::option::of(0.2f64..6.0),
+        strut_angle_deg in 40.0f64..85.0,
     ) {
         prop_assume!(swings.iter().flatten().any(|component| component.abs() > 1e-3));
-        let (sin, cos) = arm_deg.to_radians().sin_cos();
+        let (sin, cos) = strut_angle_deg.to_radians().sin_cos();
         let joint = [22.0 * cos - 30.2, 22.0 * sin];
-        let angle = joint[1].atan2(joint[0]) - arm_deg.to_radians();
+        let angle = joint[1].atan2(joint[0]) - strut_angle_deg.to_radians();
         let triangle = StrutTriangle::new(joint[0].hypot(joint[1]), 22.0, angle);
-        // A spring for a robot of the paper's size. Its rate makes the torque rise as the strut grows, although its
-        // lever arm shrinks: the energy must be convex.
-        let upper_resistance = force.map_or(Resistance::Stop, |force| Resistance::strut(triangle, force, 1.5, 5.0));
-        let drive = LagEnergy { play, stop_torque: STOP_TORQUE, lower_resistance: Resistance::Stop, upper_resistance, motor: None };
+        // A spring for a robot of the paper's size. The spring rate makes the torque rise as the strut lengthens,
+        // although the lever arm shrinks, so the energy is convex.
+        let upper_resistance = preload.map_or(Resistance::Stop, |preload| Resistance::strut(triangle, preload, 1.5, 5.0));
+        let lag_energy = LagEnergy { play, stop_torque: STOP_TORQUE, lower_resistance: Resistance::Stop, upper_resistance, motor: None };
         let compliance = Some(Compliance {
             sweep_derivatives: [[45.0, 0.0]; 4],
-            previous_lags: lag_shares.map(|share| share * play),
-            lag_energies: [drive; 4],
+            previous_lags: lag_fractions.map(|fraction| fraction * play),
+            lag_energies: [lag_energy; 4],
         });
         assert_minimal(&Pads { positions: PAD_POSITIONS, swings, friction_ratio: 1.0, loads, compliance, inertia: None });
     }

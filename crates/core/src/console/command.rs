@@ -1,7 +1,7 @@
 //! Parses lines into commands.
 //!
-//! A line is one command: a word of the console, or the name of a gait in `robot.toml`.
-//! This module only parses, and a line is either understood completely or is an error.
+//! A line is one command: a command word with its arguments, or the name of a gait in `robot.toml`. A line that is not
+//! completely valid is an error.
 
 use lizard_avr::flash;
 
@@ -17,7 +17,7 @@ use crate::numbers::units::{Angle, CENTIDEG_PER_TURN, Sweep};
 /// A command whose arguments have passed the checks of syntax and range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Command {
-    /// List the gaits and the words of the other commands.
+    /// List the gaits and the other command words.
     Help,
     /// Print the state of the robot.
     Status,
@@ -25,7 +25,7 @@ pub enum Command {
     Cal,
     /// Print the pose at this interval in frames; 0 stops the reports.
     Watch(u16),
-    /// An order to the robot.
+    /// Give an order to the robot.
     Order(Order),
 }
 
@@ -36,14 +36,13 @@ pub enum LineError {
     Garbled,
     /// The line is too long.
     TooLong,
-    /// The first word is not a command.
+    /// The line begins with neither a command word nor the name of a gait.
     UnknownCommand,
-    /// A command that takes no argument was given one.
+    /// A command that takes no argument has one.
     UnexpectedArgument,
-    /// The line has the first words of a gait's name but not the others.
+    /// The line ends after the first words of a gait's name.
     IncompleteName,
-    /// An argument is missing, malformed or superfluous; the text describes the correct
-    /// arguments.
+    /// An argument is missing, malformed or superfluous; the text describes the correct arguments.
     WrongArguments(Text),
     /// An argument is out of range; the text gives the range.
     OutOfRange(Text),
@@ -51,16 +50,16 @@ pub enum LineError {
     AngleOutOfRange(Servo),
 }
 
-/// The longest interval that `watch` accepts, frames: 200 s.
+/// The longest interval that `watch` accepts, in frames: 200 s.
 pub const MAX_WATCH_FRAMES: u16 = 10_000;
 
-/// The largest number of cycles that the command of a gait accepts.
+/// The largest count of cycles that a gait's command accepts.
 pub const MAX_CYCLES: u16 = 999;
 
-/// The longest time that `deadman` accepts, ms: a minute.
+/// The longest time that `deadman` accepts, in ms: one minute.
 pub const MAX_DEADMAN_MS: u16 = 60_000;
 
-/// The largest magnitude of an angle: one turn. A larger one is taken for a typing error.
+/// The largest magnitude of an angle, one turn, in hundredths of a degree. A larger angle counts as a typing error.
 const MAX_CENTIDEG: u16 = CENTIDEG_PER_TURN as u16;
 
 /// The syntax of an argument.
@@ -82,13 +81,13 @@ enum Syntax {
 struct ArgumentForm {
     /// True if the first argument is a servo's number.
     takes_servo: bool,
-    /// The number of arguments without the servo; all of them are numbers in the same range.
+    /// The number of arguments after the servo; all of them are numbers in the same range.
     number_count: u8,
-    /// The syntax of these arguments.
+    /// The syntax of these numbers.
     syntax: Syntax,
-    /// The smallest magnitude of these arguments; in hundredths, unless they are whole numbers.
+    /// The smallest magnitude of these numbers, in hundredths unless they are whole numbers.
     min: u16,
-    /// The largest magnitude of these arguments; in hundredths, unless they are whole numbers.
+    /// The largest magnitude of these numbers, in hundredths unless they are whole numbers.
     max: u16,
     /// The message for arguments that do not match this form.
     usage_message: Text,
@@ -97,20 +96,21 @@ struct ArgumentForm {
 }
 
 flash! {
-    /// All forms, in the order of [`form_index`].
+    /// All forms, indexed by [`form_index`].
     const FORMS: [ArgumentForm; 8] = [
-        ArgumentForm { takes_servo: false, number_count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::PoseUsage, range_message: Text::Nothing },
+        ArgumentForm { takes_servo: false, number_count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::PoseUsage, range_message: Text::Empty },
         ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 10, max: 100, usage_message: Text::SpeedUsage, range_message: Text::SpeedRange },
         ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 0, max: MAX_WATCH_FRAMES, usage_message: Text::WatchUsage, range_message: Text::WatchRange },
         ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Degrees, min: 0, max: 2000, usage_message: Text::TrimUsage, range_message: Text::TrimRange },
         ArgumentForm { takes_servo: true, number_count: 2, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::LimitUsage, range_message: Text::LimitRange },
-        ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Sign, min: 0, max: 1, usage_message: Text::DirUsage, range_message: Text::Nothing },
+        ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Sign, min: 0, max: 1, usage_message: Text::DirUsage, range_message: Text::Empty },
         ArgumentForm { takes_servo: true, number_count: 1, syntax: Syntax::Hundredths, min: 500, max: 2000, usage_message: Text::ScaleUsage, range_message: Text::ScaleRange },
         ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 0, max: MAX_DEADMAN_MS, usage_message: Text::DeadmanUsage, range_message: Text::DeadmanRange },
     ];
 }
 
-/// The index into `FORMS` of a word; `None` for a word that takes no arguments, and for `boot`, which takes a name.
+/// Returns the index of a word's form in `FORMS`; `None` for a word without arguments, and for `boot`, whose argument
+/// is a name.
 const fn form_index(word: Word) -> Option<usize> {
     match word {
         Word::Pose => Some(0),
@@ -133,8 +133,8 @@ pub fn parse(line: &[u8], robot: &Robot) -> Result<Command, LineError> {
     parse_with_priority::<RESERVED_COUNT>(line, robot)
 }
 
-/// Parses a line. A gait has priority over a word of the same name if the word's index in [`Word::ALL`] is
-/// `FIRST_YIELDING_INDEX` or more.
+/// Parses a line. A gait has priority over a word of the same name if the index of the word in [`Word::ALL`] is at
+/// least `FIRST_YIELDING_INDEX`.
 #[inline(never)]
 fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
     line: &[u8],
@@ -142,7 +142,7 @@ fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
 ) -> Result<Command, LineError> {
     let mut words = Words(line);
     let word = Word::find(words.next()).filter(|word| {
-        // Compiles to nothing as long as no word yields.
+        // Compiles to nothing while no word yields.
         FIRST_YIELDING_INDEX >= Word::ALL.len()
             || (*word as usize) < FIRST_YIELDING_INDEX
             || matches!(
@@ -185,7 +185,7 @@ fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
     }))
 }
 
-/// The effect of a line on the servos: the effect of its word; [`Effect::Moves`] for a gait;
+/// Returns the effect of a line on the servos: that of its command word, [`Effect::Moves`] for a gait, or
 /// [`Effect::None`] for a line that is not a valid command.
 pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
@@ -211,8 +211,8 @@ fn parse_boot(argument: &[u8], robot: &Robot) -> Result<Boot, LineError> {
 struct Arguments {
     /// The servo to which a setting applies.
     servo: Servo,
-    /// The numbers: percentages, frames, milliseconds and hundredths as written; `+` as 1 and
-    /// `-` as 0; degrees as steps of an [`Angle`].
+    /// The other arguments: percentages, frames, milliseconds and hundredths as written, `+` as 1, `-` as 0, degrees as
+    /// steps of an [`Angle`].
     numbers: [u16; 4],
 }
 
@@ -262,12 +262,12 @@ impl Arguments {
     }
 }
 
-/// The rest of a line, split into words one by one.
+/// The rest of a line, from which words are taken one by one.
 #[derive(Clone, Copy)]
 struct Words<'a>(&'a [u8]);
 
 impl<'a> Words<'a> {
-    /// Takes the next word; returns an empty one at the end of the line.
+    /// Takes the next word, which is empty at the end of the line.
     fn next(&mut self) -> &'a [u8] {
         let rest = self.0.trim_ascii_start();
         let length = rest
@@ -285,9 +285,9 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Finds the gait whose name the line begins with, and parses the number of cycles after the name; 0 if there is none.
-/// Words may be separated by any blanks. If a gait's name is that of another gait followed by a number, the longer
-/// name has priority.
+/// Finds the gait with whose name the line begins. Returns the gait and the count of cycles after the name, 0 if there
+/// is none. Any blanks may separate the words. If a gait's name is that of another gait followed by a number, the
+/// longer name has priority.
 #[inline(never)]
 fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), LineError> {
     let line = line.trim_ascii_start();
@@ -303,8 +303,8 @@ fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), LineError> {
     best_result
 }
 
-/// Compares a line with a name, and parses the number of cycles after the name; 0 if there is none.
-/// Stops at the first byte that differs: there may be many names, and a frame may be due.
+/// Compares a line with a gait's name. Returns the count of cycles after the name, 0 if there is none. Stops at the
+/// first byte that differs, because there may be many names and a frame may be due.
 #[inline(never)]
 fn match_gait_name(line: &[u8], name: Name) -> Result<u16, LineError> {
     let mut rest = line;
@@ -331,11 +331,11 @@ fn match_gait_name(line: &[u8], name: Name) -> Result<u16, LineError> {
     }
 }
 
-/// The number of decimals of a number in hundredths.
+/// The number of decimals in hundredths.
 const DECIMAL_COUNT: u8 = 2;
 
-/// Parses a word as a magnitude and a bool that is true for a minus sign. A magnitude of more than
-/// sixteen bits becomes 65535. Returns `None` if the word does not have this syntax.
+/// Parses a word as a number: returns its magnitude and true for a minus sign, or `None` if the word does not have this
+/// syntax. A magnitude of more than sixteen bits becomes 65535.
 #[inline(never)]
 fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
     let (mut sign, mut digits) = (b'+', word);
@@ -376,7 +376,7 @@ fn parse_number(word: &[u8], syntax: Syntax) -> Option<(u16, bool)> {
 /// Appends a decimal digit to a number; saturates at 65535.
 #[inline(never)]
 fn append_digit(number: u16, digit: u8) -> u16 {
-    // 6553 followed by another digit may exceed sixteen bits.
+    // With another digit, 6553 may exceed sixteen bits.
     if number < 6553 {
         number * 10 + u16::from(digit)
     } else {

@@ -1,13 +1,13 @@
-//! The console: one line in, one answer out.
+//! The console's dialogue: one line in, one answer out.
 //!
-//! While the console has nothing to write, the caller passes bytes to it. When the serial
-//! line has room for a whole line of text, the caller lets the console write one. So nothing blocks: a long
-//! list is written line by line between the frames, and a slow listener never delays a frame.
+//! While the console has nothing to write, the caller passes received bytes to it. When the transmit buffer has room
+//! for a whole line, the caller lets the console write a line. Therefore nothing blocks: a long list is written line by
+//! line between the frames, and a slow receiver never delays a frame.
 
 use crate::console::answer::{Answer, Counters};
+use crate::console::autobaud::RateDetector;
 use crate::console::command::{self, Command, LineError};
 use crate::console::digits;
-use crate::console::finder::RateFinder;
 use crate::console::line::{GARBLED_BYTE, Line, LineEnd};
 use crate::console::output::Output;
 use crate::console::print;
@@ -22,34 +22,34 @@ use crate::numbers::gaits::GaitId;
 use crate::numbers::rate::BaudRate;
 use crate::numbers::units::FRAME_MS;
 
-/// The largest length of a line that [`Console::write_line`] writes, with its line end: that of a
-/// `status` line whose numbers all have their largest number of digits.
+/// The largest length of an output line, including its line end: a `status` line in which every number has its largest
+/// number of digits.
 pub const MAX_OUTPUT_LINE_BYTES: u8 = 250;
 
-/// A line that waits to be written. The variants are in order of priority.
+/// A line waiting to be written. The variants are in order of priority.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PendingLine {
     /// The firmware's version and the robot's name, once after power-on.
     Banner,
-    /// The answer to the last line received, or a part of it.
+    /// The answer to the last received line, or a part of the answer.
     Answer(Answer),
     /// An unsolicited notice.
     Notice(Notice),
-    /// The reason why the guard holds the robot.
+    /// The hazard because of which the guard holds the robot.
     HoldReason,
     /// The pose report that `watch` requested.
     PoseReport,
 }
 
-/// The console of a serial line: the line being received, and the answer being written.
+/// The console of a serial port: the line being received, and the answer being written.
 #[derive(Clone, Debug)]
 pub struct Console {
     line: Line,
-    /// Time since the last byte.
+    /// The time since the last received byte.
     silence_ms: u16,
-    rate_finder: RateFinder,
+    rate_detector: RateDetector,
     has_printed_banner: bool,
-    /// The next part of the answer to the last line; `None` if nothing is left to be written.
+    /// The next part of the answer to the last line; `None` once the answer is written.
     answer: Option<Answer>,
     watch: Watch,
 }
@@ -66,50 +66,50 @@ impl Console {
         Self {
             line: Line::new(),
             silence_ms: 0,
-            rate_finder: RateFinder::new(BaudRate::Fastest),
+            rate_detector: RateDetector::new(BaudRate::Fastest),
             has_printed_banner: false,
             answer: None,
             watch: Watch::new(0),
         }
     }
 
-    /// Sets the baud rate at which the serial line starts.
+    /// Sets the initial baud rate.
     pub const fn set_initial_rate(&mut self, rate: BaudRate) {
-        self.rate_finder = RateFinder::new(rate);
+        self.rate_detector = RateDetector::new(rate);
     }
 
-    /// Advances the timer of `watch` and the time since the last byte by a frame. Returns the new
-    /// baud rate of the serial line; `None` if it stays the same.
+    /// Advances the console by a frame: the timer of `watch`, the time since the last byte, and autobaud. Returns the
+    /// new baud rate, or `None` if the rate stays the same.
     pub fn advance_frame(&mut self, control: &Controller) -> Option<BaudRate> {
         self.watch.count_frame();
         self.silence_ms = self.silence_ms.saturating_add(FRAME_MS);
         let deadman_ms = control.deadman_ms();
         if deadman_ms != 0 && self.silence_ms >= deadman_ms {
-            // If the link breaks within `walk 12`, later noise must not complete the line as `walk 1`.
-            self.line.garble_unfinished_line();
+            // If the link breaks within `walk 12`, later noise must not complete the partial line as `walk 1`.
+            self.line.invalidate_partial_line();
         }
         if self.has_output(control) {
-            self.rate_finder.note_unread_bytes();
+            self.rate_detector.record_unread_bytes();
         }
-        let rate = self.rate_finder.end_frame()?;
+        let rate = self.rate_detector.end_frame()?;
         // The next line end may complete a line that began at the previous rate.
         self.line.push(GARBLED_BYTE);
         Some(rate)
     }
 
-    /// True while a line waits to be written. Meanwhile the caller passes no byte to the console, since the answer may
-    /// quote the received line.
+    /// True while a line waits to be written. Meanwhile the caller must not pass bytes to the console, because the
+    /// answer may quote the received line.
     pub const fn has_output(&self, control: &Controller) -> bool {
         self.next_pending_line(control).is_some()
     }
 
-    /// Takes a byte from the serial line; if the byte ends a line of text, executes that line.
-    // Not inlined, like the next function: that saves half a kilobyte of flash.
+    /// Handles a received byte; if the byte ends a line, executes that line.
+    // Not inlined, like the next function, because that saves half a kilobyte of flash.
     #[inline(never)]
     pub fn receive(&mut self, byte: u8, control: &mut Controller) {
-        control.note_byte();
+        control.record_byte();
         self.silence_ms = 0;
-        self.rate_finder.note_byte(byte);
+        self.rate_detector.record_byte(byte);
         let Some(line_end) = self.line.push(byte) else {
             return;
         };
@@ -121,14 +121,14 @@ impl Console {
         self.answer = answer.unwrap_or_else(Some);
     }
 
-    /// Executes the received line. Returns `Ok(None)` if the order has to wait for the EEPROM; the caller then reports
+    /// Executes the received line. Returns `Ok(None)` if the order must wait for the EEPROM; the caller then reports
     /// its outcome with [`Console::finish_order`].
     #[inline(never)]
     fn execute_line(&mut self, control: &mut Controller) -> Result<Option<Answer>, Answer> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
-        if command.is_ok() && !self.rate_finder.note_command(text.len()) {
+        if command.is_ok() && !self.rate_detector.confirm_rate(text.len()) {
             command = Err(LineError::Garbled);
         }
         let needs_no_robot = matches!(
@@ -139,9 +139,9 @@ impl Console {
             return Err(Answer::Refused(Refusal::NoRobot));
         }
         let command = command.map_err(Answer::Invalid)?;
-        // Only a valid command shows that there is somebody at the other end, so noise and incomplete lines do not
-        // restart the time of `deadman`.
-        control.note_command();
+        // Only a valid command proves that a user is connected, so noise and partial lines do not restart the `deadman`
+        // timeout.
+        control.record_command();
         Ok(match command {
             Command::Help => Some(Answer::HelpGaits(GaitId::STAND)),
             Command::Status => Some(Answer::Status),
@@ -157,7 +157,7 @@ impl Console {
         })
     }
 
-    /// Reports the outcome of an order that had to wait for the EEPROM.
+    /// Reports the outcome of an order that has waited for the EEPROM.
     pub fn finish_order(&mut self, outcome: Result<(), Refusal>) {
         self.answer = Some(match outcome {
             Ok(()) => Answer::Done,
@@ -165,9 +165,8 @@ impl Console {
         });
     }
 
-    /// Writes one waiting line, if any, of at most [`MAX_OUTPUT_LINE_BYTES`] bytes: the banner, once after power-on; an
-    /// answer or a part of it; a notice; the reason why the guard holds the robot; or the pose report of
-    /// `watch`. The longest line, `status`, is written in parts, one per call.
+    /// Writes the waiting line of the highest priority, if any; it has at most [`MAX_OUTPUT_LINE_BYTES`] bytes. The
+    /// longest line, `status`, is written in parts, one per call.
     #[inline(never)]
     pub fn write_line(
         &mut self,
@@ -188,7 +187,7 @@ impl Console {
                 }
             }
             Some(PendingLine::Notice(notice)) => {
-                control.note_printed(notice);
+                control.clear_notice(notice);
                 print::print_notice(out, notice, control);
             }
             Some(PendingLine::HoldReason) => {
@@ -208,7 +207,7 @@ impl Console {
         out.write_byte(b'\n');
     }
 
-    /// The line to be written next, by priority; `None` if nothing waits.
+    /// Returns the waiting line of the highest priority; `None` if no line waits.
     const fn next_pending_line(&self, control: &Controller) -> Option<PendingLine> {
         if !self.has_printed_banner {
             Some(PendingLine::Banner)

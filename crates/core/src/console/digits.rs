@@ -1,4 +1,4 @@
-//! Prints numbers without division, which is slow on the chip.
+//! Prints numbers without division, which is slow on an AVR.
 
 use lizard_avr::flash;
 
@@ -22,12 +22,15 @@ pub fn print_angles(out: &mut impl Output, pose: &Pose, robot: &Robot) {
         if servo != Servo::A1 {
             out.write_byte(b',');
         }
-        let angle = robot.neutral_angle_of(servo).swept(*servo.of(&pose.0));
+        let angle = robot
+            .servo_neutral_angle(servo)
+            .offset_by(*servo.pick(&pose.0));
         print_number(out, angle.centideg().into(), 2);
     }
 }
 
-/// Prints a number with a decimal point before its last `decimals` digits; without one if `decimals` is 0.
+/// Prints a number with a decimal point before its last `decimals` digits, or without a decimal point if `decimals` is
+/// 0.
 pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
     let mut remainder = value;
     let mut has_begun = false;
@@ -51,20 +54,20 @@ pub fn print_number(out: &mut impl Output, value: u32, decimals: usize) {
 }
 
 flash! {
-    /// The powers of ten, by their exponent.
+    /// The powers of ten, indexed by their exponent.
     const POWERS_OF_TEN: [u32; 10] = [
         1, 10, 100, 1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000, 1_000_000_000,
     ];
 }
 
-/// Prints a text, then a number of hundredths with two decimals.
+/// Prints a text, followed by a number of hundredths with two decimals.
 #[inline(never)]
 pub fn print_hundredths(out: &mut impl Output, text: Text, hundredths: u16) {
     text.print(out);
     print_number(out, hundredths.into(), 2)
 }
 
-/// Prints a text, then a integer number.
+/// Prints a text, followed by a whole number.
 #[inline(never)]
 pub fn print_count(out: &mut impl Output, text: Text, count: u32) {
     text.print(out);
@@ -101,8 +104,8 @@ mod tests {
         text
     }
 
-    /// Formats a number as the standard library does.
-    fn standard_text(value: u32, decimals: usize) -> String {
+    /// Formats a number with the standard library.
+    fn format_with_std(value: u32, decimals: usize) -> String {
         let digits = format!("{value:0>width$}", width = decimals + 1);
         let (integer, fraction) = digits.split_at(digits.len() - decimals);
         if decimals == 0 {
@@ -113,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_around_every_power_of_ten_are_printed_as_the_standard_library_would() {
+    fn numbers_around_every_power_of_ten_match_the_standard_library() {
         let values = (0..10).flat_map(|n| {
             let power = 10u32.pow(n);
             [power - 1, power, power + 1]
@@ -122,27 +125,27 @@ mod tests {
             for decimals in 0..=3 {
                 assert_eq!(
                     print_to_string(value, decimals),
-                    standard_text(value, decimals)
+                    format_with_std(value, decimals)
                 );
             }
         }
     }
 
     #[test]
-    fn only_a_negative_number_has_a_sign() {
+    fn only_a_negative_number_is_printed_with_a_sign() {
         for value in (-33_000..33_000).chain([i32::MIN, i32::MAX]) {
             let mut text = String::new();
             print_signed(&mut text, value, 3);
             let sign = if value < 0 { "-" } else { "" };
             assert_eq!(
                 text,
-                format!("{sign}{}", standard_text(value.unsigned_abs(), 3))
+                format!("{sign}{}", format_with_std(value.unsigned_abs(), 3))
             );
         }
     }
 
     #[test]
-    fn angles_have_two_decimals_and_commas_between_them() {
+    fn angles_are_printed_with_two_decimals_and_separated_by_commas() {
         let mut text = String::new();
         let centideg = [0, 4_141, 31_860, 35_999];
         let robot = Sample::asymmetric();
@@ -153,8 +156,8 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_number_is_printed_as_the_standard_library_would(value: u32, decimals in 0usize..=3) {
-            prop_assert_eq!(print_to_string(value, decimals), standard_text(value, decimals));
+        fn every_number_matches_the_standard_library(value: u32, decimals in 0usize..=3) {
+            prop_assert_eq!(print_to_string(value, decimals), format_with_std(value, decimals));
         }
     }
 }

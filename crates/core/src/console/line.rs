@@ -1,30 +1,29 @@
 //! Splits received bytes into lines.
 //!
-//! Terminals disagree about line ends: some send CR, some LF, some both. Here each of
-//! them ends a line. An empty line is ignored, so CRLF ends only one.
+//! Some terminals end a line with CR, some with LF, some with both. Here each CR and each LF ends a line. Empty lines
+//! are ignored, so CR LF ends only one line.
 
 use heapless::Vec;
 
-/// The largest length of a received line, in bytes without the line end.
+/// The largest length of a received line without its line end, in bytes.
 pub const MAX_LINE_BYTES: usize = 63;
 
 /// The kind of line that a line end completes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineEnd {
-    /// A usable line; its text is [`Line::text`].
+    /// A valid line; [`Line::text`] is its text.
     Line,
-    /// A line that was longer than [`MAX_LINE_BYTES`]; all of it is dropped.
+    /// A line longer than [`MAX_LINE_BYTES`], which is dropped as a whole.
     TooLong,
-    /// A line with a garbled byte. Its other bytes may form a command, but not the one that
-    /// was sent.
+    /// A line with a garbled byte. Its other bytes may form a command that was not sent.
     Garbled,
 }
 
-/// The byte that a board passes on in place of one that arrived garbled. Like any other byte that is not ASCII,
-/// it makes its line garbled.
+/// The byte that a board passes on in place of a byte that arrived garbled. Like any other byte that is not ASCII, it
+/// makes its line garbled.
 pub const GARBLED_BYTE: u8 = 0xff;
 
-/// The line that is being received.
+/// The line being received.
 #[derive(Clone, Debug, Default)]
 pub struct Line {
     bytes: Vec<u8, MAX_LINE_BYTES>,
@@ -44,20 +43,20 @@ impl Line {
         }
     }
 
-    /// Takes a byte; the byte after a line end begins a new line. Returns the kind of line that the byte completes, or
-    /// `None` if it is not a line end or the line is blank.
+    /// Appends a byte; the byte after a line end begins a new line. Returns the kind of line that the byte completes,
+    /// or `None` if the byte is not a line end or the line is blank.
     pub fn push(&mut self, byte: u8) -> Option<LineEnd> {
         if self.has_ended {
             *self = Self::new();
         }
         match byte {
             b'\r' | b'\n' => self.end(),
-            // Backspace and delete, for those who type by hand.
+            // Backspace and delete, for lines that are typed by hand.
             0x08 | 0x7f => {
                 self.bytes.pop();
                 None
             }
-            // No command has such a byte, but most lines sent at another rate do.
+            // No command has such a byte, but most lines sent at another baud rate have one.
             0x80.. => {
                 self.is_garbled = true;
                 None
@@ -69,12 +68,12 @@ impl Line {
         }
     }
 
-    /// Marks the line as garbled if it is unfinished and not blank.
-    pub fn garble_unfinished_line(&mut self) {
+    /// Marks a partial line as garbled, unless it is blank.
+    pub fn invalidate_partial_line(&mut self) {
         self.is_garbled |= !self.has_ended && !self.text().is_empty();
     }
 
-    /// The line in lower case, without blanks around it.
+    /// The text of the line in lower case, without leading and trailing blanks.
     pub fn text(&self) -> &[u8] {
         self.bytes.trim_ascii()
     }
@@ -103,7 +102,7 @@ mod tests {
     use super::*;
 
     /// Returns the text of every line that the bytes complete; `None` for a line that is too long or garbled.
-    fn completed_lines(bytes: &[u8]) -> Vec<Option<String>> {
+    fn split_lines(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut lines = Vec::new();
         for byte in bytes {
@@ -118,8 +117,8 @@ mod tests {
         lines
     }
 
-    /// Does the same as [`completed_lines`], by a simple reference implementation.
-    fn split_by_reference_implementation(bytes: &[u8]) -> Vec<Option<String>> {
+    /// The reference implementation of [`split_lines`].
+    fn split_lines_by_reference(bytes: &[u8]) -> Vec<Option<String>> {
         let mut lines = Vec::new();
         for line in bytes.split(|byte| matches!(byte, b'\r' | b'\n')) {
             let mut typed_text = String::new();
@@ -144,12 +143,12 @@ mod tests {
     }
 
     #[test]
-    fn cr_lf_and_both_end_a_line_once_and_empty_lines_are_ignored() {
+    fn cr_lf_or_both_end_a_line_and_empty_lines_are_ignored() {
         for line_end in ["\r", "\n", "\r\n", "\n\r", "\r\r\n\n", "\r \t \n"] {
             let bytes = std::format!("{line_end}one{line_end}two{line_end}");
             let expected_lines = ["one", "two"].map(|text| Some(text.to_string()));
             assert_eq!(
-                completed_lines(bytes.as_bytes()),
+                split_lines(bytes.as_bytes()),
                 expected_lines,
                 "{line_end:?}"
             );
@@ -157,44 +156,44 @@ mod tests {
     }
 
     #[test]
-    fn a_line_has_at_most_63_characters_and_a_longer_one_does_not_affect_the_next() {
+    fn a_line_longer_than_63_characters_is_dropped_and_does_not_affect_the_next() {
         for length in [62, 63, 64, 65, 200, 5000] {
             let text = "x".repeat(length);
             let bytes = std::format!("{text}\rstand\r");
             let first_line = (length <= 63).then_some(text);
             assert_eq!(
-                completed_lines(bytes.as_bytes()),
+                split_lines(bytes.as_bytes()),
                 [first_line, Some("stand".to_string())]
             );
         }
         // Leading blanks count towards the 63 characters.
         assert_eq!(
-            completed_lines(std::format!("{:>64}\r", "stand").as_bytes()),
+            split_lines(std::format!("{:>64}\r", "stand").as_bytes()),
             [None]
         );
     }
 
     #[test]
-    fn backspace_deletes_typed_bytes_and_does_nothing_on_an_empty_line() {
+    fn backspace_deletes_the_last_byte_and_does_nothing_on_an_empty_line() {
         for delete_byte in ["\x08", "\x7f"] {
             let five_deletions = delete_byte.repeat(5);
             for line in [
                 std::format!("walt{delete_byte}k\r"),
                 std::format!("{five_deletions}walk\r"),
             ] {
-                assert_eq!(completed_lines(line.as_bytes()), [Some("walk".to_string())]);
+                assert_eq!(split_lines(line.as_bytes()), [Some("walk".to_string())]);
             }
             assert_eq!(
-                completed_lines(std::format!("stand{five_deletions}\r").as_bytes()),
+                split_lines(std::format!("stand{five_deletions}\r").as_bytes()),
                 []
             );
         }
     }
 
     #[test]
-    fn a_line_is_read_in_lower_case_without_the_blanks_around_it() {
+    fn the_text_of_a_line_is_in_lower_case_without_surrounding_blanks() {
         assert_eq!(
-            completed_lines(b"  Arc \t LEFT\t \n"),
+            split_lines(b"  Arc \t LEFT\t \n"),
             [Some("arc \t left".to_string())]
         );
     }
@@ -221,7 +220,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn random_bytes_are_split_as_by_the_reference_implementation(
+        fn random_bytes_are_split_like_the_reference_implementation(
             pieces in prop::collection::vec(
                 prop_oneof![
                     prop::collection::vec(any::<u8>(), 0..40),
@@ -231,7 +230,7 @@ mod tests {
             ),
         ) {
             let bytes = pieces.concat();
-            prop_assert_eq!(completed_lines(&bytes), split_by_reference_implementation(&bytes));
+            prop_assert_eq!(split_lines(&bytes), split_lines_by_reference(&bytes));
         }
     }
 }

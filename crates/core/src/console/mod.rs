@@ -1,14 +1,13 @@
 //! The console: lines in, answers out.
 //!
-//! This module is the highest of the core's six layers: it reads bytes and lines, gives
-//! [orders](crate::control::order) to the robot and prints the answers. A board without a serial line does not
-//! need it.
+//! This module is the highest of the core's six layers: it reads bytes and lines, gives [orders](crate::control::order)
+//! to the robot and prints the answers. A board without a serial port does not need it.
 
 pub mod answer;
+mod autobaud;
 pub mod command;
 mod dialogue;
 pub mod digits;
-mod finder;
 pub mod line;
 pub mod output;
 mod print;

@@ -1,10 +1,10 @@
-//! The destination of printed text: any `ufmt` writer that cannot fail.
+//! The destination of printed text: any infallible `ufmt` writer.
 
 use core::convert::Infallible;
 
 use ufmt::uWrite;
 
-/// A destination of text: a serial line, or a string on a host. Writing cannot fail, since a serial line waits until
+/// A destination of text: a serial port, or a string on a host. Writing cannot fail, because a serial port waits until
 /// its buffer has room.
 pub trait Output {
     /// Writes an ASCII character.

@@ -1,4 +1,4 @@
-//! Prints the lines of the console.
+//! Prints the console's lines.
 
 use crate::console::answer::{Answer, Counters};
 use crate::console::digits;
@@ -21,18 +21,18 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::SectionError;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The largest length of a line of gait names, without the line end. It is limited since a frame
-/// may have to wait until the line is written.
+/// The largest length of a line of gait names without its line end. The limit exists because a frame may have to wait
+/// until the line is written.
 pub(super) const MAX_GAITS_LINE_BYTES: u8 = 125;
 
-/// The index of the line of `cal` for `boot`; lines 0 to 3 are those of the servos.
+/// The index of the `boot` line in the answer to `cal`; lines 0 to 3 belong to the servos.
 const CAL_BOOT_LINE: u8 = 4;
-/// The index of the line of `cal` for `deadman`.
+/// The index of the `deadman` line in the answer to `cal`.
 const CAL_DEADMAN_LINE: u8 = 5;
-/// The index of the line `ok cal`.
+/// The index of the last line of the answer to `cal`, `ok cal`.
 const CAL_LAST_LINE: u8 = 6;
 
-/// Prints a line, or a part of one, of an answer; returns the line or part to be printed next, if any.
+/// Prints a line of an answer or a part of a line. Returns the line or part to print next, if any.
 #[inline(never)]
 pub(super) fn print_answer(
     out: &mut impl Output,
@@ -52,15 +52,15 @@ pub(super) fn print_answer(
         }
         Answer::HelpGaits(first_gait) => {
             let next_gait = print_gaits(out, first_gait, control.motion().robot());
-            return Some(next_gait.map_or(Answer::HelpWords, Answer::HelpGaits));
+            return Some(next_gait.map_or(Answer::HelpCommands, Answer::HelpGaits));
         }
-        Answer::HelpWords => {
-            Text::HelpWords.print(out);
+        Answer::HelpCommands => {
+            Text::HelpCommands.print(out);
             Word::print_all::<RESERVED_COUNT>(out, control.motion().robot());
-            return Some(Answer::HelpHint);
+            return Some(Answer::HelpUsage);
         }
-        Answer::HelpHint => {
-            Text::HelpHint.print(out);
+        Answer::HelpUsage => {
+            Text::HelpUsage.print(out);
             return Some(Answer::HelpDone);
         }
         Answer::HelpDone => Text::OkHelp.print(out),
@@ -86,8 +86,7 @@ pub(super) fn print_answer(
     None
 }
 
-/// Prints `# gaits: stand|walk|...`, with as many names as fit in a line; returns the first
-/// gait that did not fit.
+/// Prints `# gaits: stand|walk|...` with as many names as fit. Returns the first gait that does not fit, if any.
 fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Option<GaitId> {
     Text::HelpGaits.print(out);
     // Without a robot, the flash contains no names.
@@ -118,7 +117,7 @@ fn print_status(out: &mut impl Output, control: &Controller) {
     let robot = motion.robot();
     Text::OkGait.print(out);
     match control.activity() {
-        // A gait's name as a value without a blank: `arc-left`.
+        // The name of a gait is printed without blanks: `arc-left`.
         Activity::Gait(gait) => {
             let name = robot.gait_name(gait);
             digits::print_ascii(out, name.map(|byte| if byte == b' ' { b'-' } else { byte }));
@@ -143,13 +142,16 @@ fn print_margin(out: &mut impl Output, motion: &Motion) {
         return;
     }
     Text::StatusMargin.print(out);
-    digits::print_sine(out, Clearance::of(robot, motion.pose()).smallest_margin());
+    digits::print_sine(
+        out,
+        Clearance::measure(robot, motion.pose()).smallest_margin(),
+    );
     digits::print_count(out, Text::StatusSpeed, motion.speed_percent().into());
     digits::print_count(out, Text::StatusFrames, motion.frame_count())
 }
 
-/// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`;
-/// without voltages before the first reading, and without `rail` if the rail is not measured.
+/// Prints ` late=0 rx_lost=0 guard=clear fault=none reset=power resets=0 vcc=5.02 rail=5.91`. Omits the voltages before
+/// the first reading, and `rail` if the rail is not measured.
 #[inline(never)]
 fn print_health(out: &mut impl Output, control: &Controller, counters: Counters) {
     digits::print_count(out, Text::StatusLate, counters.late_edges.into());
@@ -170,20 +172,20 @@ fn print_health(out: &mut impl Output, control: &Controller, counters: Counters)
     digits::print_count(out, Text::StatusResets, control.reset_count().into());
     let robot = control.motion().robot();
     let reading = control.safety().supply().reading();
-    // Without a robot the reference voltage is unknown, so no voltage can be computed.
+    // Without a robot no voltage can be computed, because the reference voltage is unknown.
     if robot.is_none() || reading.reference == 0 {
         return;
     }
     let supplies = robot.supplies();
-    let board_voltage = Voltage::of_board(reading, &supplies);
+    let board_voltage = Voltage::for_board(reading, &supplies);
     digits::print_hundredths(out, Text::StatusVcc, board_voltage.centivolts());
     if supplies.rail_reference_mv != 0 {
-        let rail_voltage = Voltage::of_rail(reading, &supplies);
+        let rail_voltage = Voltage::for_rail(reading, &supplies);
         digits::print_hundredths(out, Text::StatusRail, rail_voltage.centivolts());
     }
 }
 
-/// Prints the line of `cal` with this index; returns false after the last one, which is `ok cal`.
+/// Prints the line of `cal` with this index. Returns false after the last line, `ok cal`.
 #[inline(never)]
 fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controller) -> bool {
     let settings = control.settings();
@@ -203,8 +205,8 @@ fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controll
         _ => {
             let servo = Servo::at(usize::from(line_index));
             let adjustment = settings.adjustment(servo);
-            let neutral = control.motion().robot().neutral_angle_of(servo);
-            Text::Information.print(out);
+            let neutral = control.motion().robot().servo_neutral_angle(servo);
+            Text::InfoPrefix.print(out);
             out.write_byte(b'A');
             out.write_byte(b'1' + line_index);
             Text::CalTrim.print(out);
@@ -212,12 +214,12 @@ fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controll
             digits::print_hundredths(
                 out,
                 Text::CalLimit,
-                neutral.swept(adjustment.travel_min).centideg(),
+                neutral.offset_by(adjustment.travel_min).centideg(),
             );
             digits::print_hundredths(
                 out,
-                Text::Blank,
-                neutral.swept(adjustment.travel_max).centideg(),
+                Text::Space,
+                neutral.offset_by(adjustment.travel_max).centideg(),
             );
             Text::CalDir.print(out);
             out.write_byte(if adjustment.is_direct() { b'+' } else { b'-' });
@@ -227,7 +229,7 @@ fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controll
     true
 }
 
-/// Prints the value of the setting `boot`.
+/// Prints the value of the `boot` setting.
 fn print_boot(out: &mut impl Output, control: &Controller) {
     let robot = control.motion().robot();
     match control.settings().boot(robot) {
@@ -239,21 +241,23 @@ fn print_boot(out: &mut impl Output, control: &Controller) {
 /// Prints a notice: an unsolicited line.
 pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Controller) {
     match notice {
-        Notice::SavedSettings => match control.saved_state() {
-            SavedState::Latest | SavedState::Blank => Text::MemoryBlank,
-            SavedState::OneCopy => Text::MemoryOneCopy,
-            SavedState::Damaged => Text::MemoryDamaged,
-            SavedState::Foreign => Text::MemoryForeign,
-            SavedState::Unfit => Text::MemoryUnfit,
+        Notice::SavedSettings => match control.saved_settings_state() {
+            SavedState::Latest | SavedState::Blank => Text::CalibrationBlank,
+            SavedState::OneCopy => Text::CalibrationOneCopy,
+            SavedState::Damaged => Text::CalibrationDamaged,
+            SavedState::Foreign => Text::CalibrationForeign,
+            SavedState::Unfit => Text::CalibrationUnfit,
         }
         .print(out),
-        Notice::RestPoseNotKept => Text::MemoryNotKept.print(out),
+        Notice::RestPoseNotSaved => Text::RestPoseNotSaved.print(out),
         Notice::Fault => {
             Text::NoticeFault.print(out);
             let fault = control.safety().fault();
-            match control.damage() {
-                Some(SectionError::OtherFormat) => Text::WhyRobotFormat,
-                Some(SectionError::Damaged | SectionError::Impossible) => Text::WhyRobotDamaged,
+            match control.section_error() {
+                Some(SectionError::OtherFormat) => Text::FaultNoticeRobotFormat,
+                Some(SectionError::Damaged | SectionError::Impossible) => {
+                    Text::FaultNoticeRobotDamaged
+                }
                 _ => fault.map_or(Text::FaultNone, fault_message),
             }
             .print(out)
@@ -288,7 +292,7 @@ pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Cont
     }
 }
 
-/// Prints ` pose=` and the chassis angles of the four servos.
+/// Prints ` pose=`, followed by the chassis angles of the four servos.
 pub(super) fn print_pose(out: &mut impl Output, motion: &Motion) {
     Text::WatchPose.print(out);
     digits::print_angles(out, motion.pose(), motion.robot())
@@ -342,14 +346,14 @@ const fn fault_word(fault: Fault) -> Text {
 /// Returns the message that announces a fault.
 const fn fault_message(fault: Fault) -> Text {
     match fault {
-        Fault::Guard => Text::WhyGuard,
-        Fault::Supply => Text::WhySupply,
-        Fault::Link => Text::WhyLink,
-        Fault::Watchdog => Text::WhyWatchdog,
-        Fault::LateEdge => Text::WhyLate,
-        Fault::Stack => Text::WhyStack,
-        Fault::BrownOut => Text::WhyBrownOut,
-        Fault::Robot => Text::WhyRobot,
+        Fault::Guard => Text::FaultNoticeGuard,
+        Fault::Supply => Text::FaultNoticeSupply,
+        Fault::Link => Text::FaultNoticeLink,
+        Fault::Watchdog => Text::FaultNoticeWatchdog,
+        Fault::LateEdge => Text::FaultNoticeLate,
+        Fault::Stack => Text::FaultNoticeStack,
+        Fault::BrownOut => Text::FaultNoticeBrownOut,
+        Fault::Robot => Text::FaultNoticeRobot,
     }
 }
 

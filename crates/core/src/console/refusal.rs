@@ -1,6 +1,6 @@
-//! Errors and refusals as the user reads them: a code and a reason.
+//! Prints errors and refusals as a code and a reason.
 //!
-//! The codes are part of the protocol and never change their meaning.
+//! The codes are part of the protocol, and their meaning never changes.
 
 use crate::console::command::LineError;
 use crate::console::digits::{print_hundredths, print_number, print_signed, print_sine};
@@ -10,13 +10,13 @@ use crate::control::refusal::Refusal;
 use crate::guard::hazard::{Hazard, Margin};
 use crate::motion::Motion;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::NeededTravel;
+use crate::numbers::calibration::SweepRange;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::robot::Robot;
 use crate::numbers::slider::Slider;
 
 impl LineError {
-    /// Prints the protocol's code of this error, and the reason.
+    /// Prints the protocol's code for this error, and the reason.
     #[inline(never)]
     pub fn print(self, motion: &Motion, out: &mut impl Output) {
         let (code, text) = match self {
@@ -28,7 +28,7 @@ impl LineError {
             Self::OutOfRange(text) => (3, text),
             Self::AngleOutOfRange(servo) => {
                 print_code(3, out);
-                return print_travel(servo, motion, out);
+                return print_travel_limits(servo, motion, out);
             }
             Self::TooLong => (6, Text::TooLong),
         };
@@ -38,7 +38,7 @@ impl LineError {
 }
 
 impl Refusal {
-    /// The protocol's code of this refusal.
+    /// The protocol's code for this refusal.
     const fn code(self) -> u8 {
         match self {
             Self::Unsafe(Hazard::Travel(_))
@@ -47,13 +47,13 @@ impl Refusal {
             Self::Unsafe(Hazard::Margin { .. }) => 4,
             Self::Unsafe(Hazard::Stroke { .. }) => 5,
             Self::Resting => 7,
-            Self::Supply => 8,
-            Self::SettingsNotKept | Self::NothingSaved => 9,
+            Self::SupplyTooLow => 8,
+            Self::WriteFailed | Self::NothingSaved => 9,
             Self::NoRobot => 10,
         }
     }
 
-    /// Prints the protocol's code of this refusal, and the reason.
+    /// Prints the protocol's code for this refusal, and the reason.
     pub fn print(self, motion: &Motion, out: &mut impl Output) {
         print_code(self.code(), out);
         match self {
@@ -69,8 +69,8 @@ impl Refusal {
                 Text::TooNarrowForPose.print(out)
             }
             Self::Resting => Text::Resting.print(out),
-            Self::Supply => Text::LowSupply.print(out),
-            Self::SettingsNotKept => Text::NotKept.print(out),
+            Self::SupplyTooLow => Text::SupplyTooLow.print(out),
+            Self::WriteFailed => Text::WriteFailed.print(out),
             Self::NothingSaved => Text::NothingSaved.print(out),
             Self::NoRobot => Text::NoRobot.print(out),
         }
@@ -83,61 +83,65 @@ fn print_code(code: u8, out: &mut impl Output) {
     out.write_byte(b' ')
 }
 
-/// Prints `A2 reaches 311.41..131.41`.
-fn print_travel(servo: Servo, motion: &Motion, out: &mut impl Output) {
+/// Prints `A2 must be 311.41..131.41`.
+fn print_travel_limits(servo: Servo, motion: &Motion, out: &mut impl Output) {
     print_servo(servo, out);
-    Text::Reaches.print(out);
+    Text::MustBe.print(out);
     let Calibration {
         travel_min: min,
         travel_max: max,
         ..
-    } = *servo.of(motion.calibration());
-    print_range(servo, &NeededTravel { min, max }, motion, out)
+    } = *servo.pick(motion.calibration());
+    print_range(servo, &SweepRange { min, max }, motion, out)
 }
 
-/// Prints a range of sweeps as two chassis angles, such as `311.41..131.41`.
-fn print_range(servo: Servo, range: &NeededTravel, motion: &Motion, out: &mut impl Output) {
-    let neutral = motion.robot().neutral_angle_of(servo);
-    print_hundredths(out, Text::Nothing, neutral.swept(range.min).centideg());
-    print_hundredths(out, Text::Dots, neutral.swept(range.max).centideg())
+/// Prints a servo's range of sweeps as two chassis angles, such as `311.41..131.41`.
+fn print_range(servo: Servo, range: &SweepRange, motion: &Motion, out: &mut impl Output) {
+    let neutral = motion.robot().servo_neutral_angle(servo);
+    print_hundredths(out, Text::Empty, neutral.offset_by(range.min).centideg());
+    print_hundredths(
+        out,
+        Text::RangeSeparator,
+        neutral.offset_by(range.max).centideg(),
+    )
 }
 
-/// Prints the hazard of a pose: the violated travel, margin or stroke, with its limits.
+/// Prints a hazard: the violated travel, margin or stroke, with its limits.
 #[inline(never)]
 pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
     let robot = motion.robot();
     match hazard {
-        Hazard::Travel(servo) => print_travel(servo, motion, out),
+        Hazard::Travel(servo) => print_travel_limits(servo, motion, out),
         Hazard::Margin { margin, value } => {
             let limits = robot.limits();
-            let limit = match margin {
+            let min_value = match margin {
                 Margin::Type2(End::Head) => {
-                    Text::Type2Head.print(out);
+                    Text::Type2MarginHead.print(out);
                     limits.type2
                 }
                 Margin::Type2(End::Tail) => {
-                    Text::Type2Tail.print(out);
+                    Text::Type2MarginTail.print(out);
                     limits.type2
                 }
                 Margin::Type1(servo) => {
-                    Text::Type1.print(out);
+                    Text::Type1Margin.print(out);
                     print_servo(servo, out);
                     limits.type1
                 }
                 Margin::Leg(servo) => {
-                    Text::Leg.print(out);
+                    Text::LegMargin.print(out);
                     print_servo(servo, out);
                     limits.leg
                 }
             };
             if margin.is_known(value) {
-                Text::Is.print(out);
+                Text::MarginIs.print(out);
                 print_sine(out, value);
             } else {
-                Text::IsBelow.print(out);
+                Text::MarginIsBelow.print(out);
             }
-            Text::AtLeast.print(out);
-            print_sine(out, limit)
+            Text::MarginLimit.print(out);
+            print_sine(out, min_value)
         }
         Hazard::Stroke { side, length } => {
             match side {
@@ -152,16 +156,16 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
             } = robot.slider(side);
             print_stroke(Text::SliderPosition, length, side, robot, out);
             print_stroke(Text::StrokeRange, min, side, robot, out);
-            print_stroke(Text::Dots, max, side, robot, out)
+            print_stroke(Text::RangeSeparator, max, side, robot, out)
         }
     }
 }
 
-/// Prints `text`, then the difference of a slider's length from its nominal length, mm.
+/// Prints `text`, followed by a slider's displacement from its nominal length, mm.
 #[inline(never)]
 fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);
-    print_signed(out, robot.slider(side).travel(length), 2)
+    print_signed(out, robot.slider(side).displacement(length), 2)
 }
 
 /// Prints a servo's name, such as `A2`.
@@ -179,14 +183,14 @@ mod tests {
     use crate::numbers::units::Sine;
     use crate::sample::Sample;
 
-    /// Returns the text that a function prints for the asymmetric robot.
+    /// Returns the text that `print` writes for the asymmetric robot.
     fn print_to_string(print: impl FnOnce(&Motion, &mut String)) -> String {
         let mut text = String::new();
         print(&Motion::new(*Sample::asymmetric()), &mut text);
         text
     }
 
-    fn refusal_text(refusal: Refusal) -> String {
+    fn format_refusal(refusal: Refusal) -> String {
         print_to_string(|motion, out| refusal.print(motion, out))
     }
 
@@ -196,32 +200,32 @@ mod tests {
         for (line_error, message) in [
             (
                 LineError::UnknownCommand,
-                "1 unknown command, send help for the list",
+                "1 unknown command; send help for the list",
             ),
-            (LineError::Garbled, "1 the line came garbled, send it again"),
+            (LineError::Garbled, "1 the line was garbled; send it again"),
             (
                 LineError::UnexpectedArgument,
                 "2 this command takes no argument",
             ),
             (
                 LineError::IncompleteName,
-                "2 this command wants one more word",
+                "2 this command needs another word",
             ),
             (
                 WrongArguments(Text::SpeedUsage),
-                "2 speed wants a whole number, 10..100",
+                "2 speed takes a whole number, 10..100",
             ),
             (OutOfRange(Text::SpeedRange), "3 speed must be 10..100"),
             (
                 WrongArguments(Text::WatchUsage),
-                "2 watch wants a whole number, 0..10000",
+                "2 watch takes a whole number, 0..10000",
             ),
             (OutOfRange(Text::WatchRange), "3 watch must be 0..10000"),
             (
                 WrongArguments(Text::PoseUsage),
-                "2 pose wants four angles in degrees, at most two decimals",
+                "2 pose takes four angles in degrees, with at most two decimals",
             ),
-            (AngleOutOfRange(Servo::A1), "3 A1 reaches 61.37..215.36"),
+            (AngleOutOfRange(Servo::A1), "3 A1 must be 61.37..215.36"),
             (LineError::TooLong, "6 a line has at most 63 characters"),
         ] {
             assert_eq!(
@@ -230,18 +234,18 @@ mod tests {
             );
         }
         assert_eq!(
-            refusal_text(Refusal::Resting),
-            "7 servos are resting, send stand first"
+            format_refusal(Refusal::Resting),
+            "7 the servos are resting; send stand first"
         );
-        // The limits of the travel are rounded inwards to whole steps. A2 turns 66 deg clockwise from its neutral angle
-        // of 47.91 deg, and 88 deg counter-clockwise.
+        // The limits of the travel are rounded inwards to whole steps. From its neutral angle of 47.91 deg, A2 turns 66
+        // deg clockwise and 88 deg counter-clockwise.
         for (servo, message) in [
-            (Servo::A2, "3 A2 reaches 341.92..135.91"),
-            (Servo::A3, "3 A3 reaches 235.64..18.64"),
-            (Servo::A4, "3 A4 reaches 134.18..307.18"),
+            (Servo::A2, "3 A2 must be 341.92..135.91"),
+            (Servo::A3, "3 A3 must be 235.64..18.64"),
+            (Servo::A4, "3 A4 must be 134.18..307.18"),
         ] {
             assert_eq!(
-                refusal_text(Refusal::Unsafe(Hazard::Travel(servo))),
+                format_refusal(Refusal::Unsafe(Hazard::Travel(servo))),
                 message
             );
         }
@@ -254,47 +258,47 @@ mod tests {
             (
                 Type2(End::Head),
                 1000,
-                "type-2 margin of the head is 0.031, at least 0.340",
+                "type-2 margin of the head is 0.031, must be at least 0.340",
             ),
             (
                 Type2(End::Tail),
                 -33,
-                "type-2 margin of the tail is -0.001, at least 0.340",
+                "type-2 margin of the tail is -0.001, must be at least 0.340",
             ),
             (
                 Type2(End::Tail),
                 0,
-                "type-2 margin of the tail is below 0.1, at least 0.340",
+                "type-2 margin of the tail is below 0.1, must be at least 0.340",
             ),
             (
                 Type1(Servo::A1),
                 0,
-                "type-1 margin of A1 is 0.000, at least 0.220",
+                "type-1 margin of A1 is 0.000, must be at least 0.220",
             ),
             (
                 Type1(Servo::A3),
                 -9830,
-                "type-1 margin of A3 is -0.300, at least 0.220",
+                "type-1 margin of A3 is -0.300, must be at least 0.220",
             ),
             (
                 Leg(Servo::A2),
                 2000,
-                "leg margin of A2 is 0.061, at least 0.130",
+                "leg margin of A2 is 0.061, must be at least 0.130",
             ),
             (
                 Leg(Servo::A4),
                 -32_767,
-                "leg margin of A4 is -1.000, at least 0.130",
+                "leg margin of A4 is -1.000, must be at least 0.130",
             ),
         ] {
             let value = Sine(value);
             let hazard = Hazard::Margin { margin, value };
             assert_eq!(
-                refusal_text(Refusal::Unsafe(hazard)),
+                format_refusal(Refusal::Unsafe(hazard)),
                 format!("4 {message}")
             );
         }
-        // The nominal lengths are 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
+        // The nominal length is 91 mm on the left and 98 mm on the right; a millimetre has 256 steps.
         assert_eq!(
             Sample::asymmetric()
                 .content
@@ -306,18 +310,18 @@ mod tests {
             (
                 Side::Left,
                 131,
-                "left slider is at 40.00 mm, stroke -21.00..38.00",
+                "left slider is at 40.00 mm, must be -21.00..38.00",
             ),
             (
                 Side::Right,
                 70,
-                "right slider is at -28.00 mm, stroke -21.00..38.00",
+                "right slider is at -28.00 mm, must be -21.00..38.00",
             ),
         ] {
             let length = 256 * mm;
             let hazard = Hazard::Stroke { side, length };
             assert_eq!(
-                refusal_text(Refusal::Unsafe(hazard)),
+                format_refusal(Refusal::Unsafe(hazard)),
                 format!("5 {message}")
             );
         }

@@ -1,22 +1,22 @@
-//! Every message that the robot prints, kept in flash.
+//! The texts that the robot prints, packed in flash.
 //!
-//! An AVR program copies its string literals to its 2 KiB of RAM at start. The messages here stay in flash
-//! and are packed: a frequent character has a four-bit code; any other character, or a phrase that several
-//! messages share, has an eight-bit code. A message is unpacked while it is printed.
+//! An AVR program copies its string literals to its 2 KiB of RAM when it starts. The texts here stay in flash and are
+//! packed: a frequent character has a four-bit code; any other character has an eight-bit code, and so has a phrase
+//! that several texts share. A text is unpacked while it is printed.
 
 use lizard_avr::flash;
 
 use crate::console::output::Output;
 
 macro_rules! texts {
-    ($($name:ident = $message:expr;)*) => {
-        /// A message, or a part of one.
+    ($($name:ident = $text:expr;)*) => {
+        /// A text that the robot prints: a message or a part of one.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
-        #[allow(missing_docs, reason = "each name is followed by its message")]
+        #[allow(missing_docs, reason = "each name is followed by its text")]
         pub enum Text { $($name),* }
 
-        const MESSAGES: &[&str] = &[$($message),*];
+        const TEXTS: &[&str] = &[$($text),*];
     };
 }
 
@@ -30,9 +30,9 @@ texts! {
     WatchTime = "# t=";
     WatchPose = " pose=";
     Held = "# held in the last safe pose: ";
-    Information = "# ";
-    Blank = " ";
-    Nothing = "";
+    InfoPrefix = "# ";
+    Space = " ";
+    Empty = "";
     CalTrim = " trim ";
     CalLimit = " limit ";
     CalDir = " dir ";
@@ -41,12 +41,12 @@ texts! {
     CalDeadman = "# deadman ";
 
     // Notices: unsolicited lines.
-    MemoryBlank = "# calibration: none is saved, robot.toml's is in use";
-    MemoryOneCopy = "# calibration: one of two copies is damaged, the other is in use";
-    MemoryDamaged = "# calibration: damaged, robot.toml's is in use";
-    MemoryForeign = "# calibration: for other servos, robot.toml's is in use";
-    MemoryUnfit = "# calibration: does not suit the gaits, robot.toml's is in use";
-    MemoryNotKept = "# memory: does not keep the pose of this rest";
+    CalibrationBlank = "# calibration: none saved, using robot.toml's";
+    CalibrationOneCopy = "# calibration: one of two copies is damaged, using the other";
+    CalibrationDamaged = "# calibration: damaged, using robot.toml's";
+    CalibrationForeign = "# calibration: for other servos, using robot.toml's";
+    CalibrationUnfit = "# calibration: incompatible with the gaits, using robot.toml's";
+    RestPoseNotSaved = "# memory: could not save the rest pose";
     NoticeFault = "# fault: ";
     NoticeSupply = "# supply: ";
     NoticeBoot = "# boot: ";
@@ -54,25 +54,25 @@ texts! {
     NoticeWaiting = "# waiting for ";
     Button = "button";
     Nose = "nose";
-    WhyGuard = "the next pose is not safe, held";
-    WhySupply = "the supply is too low to move";
-    WhyLink = "no line for as long as deadman says, stopped";
-    WhyWatchdog = "the program hung and began anew";
-    WhyLate = "a pulse came late, stopped";
-    WhyBrownOut = "reset several times in a row by the button or a weak supply, resting";
-    WhyRobot = "no robot in the flash, write one";
-    WhyRobotFormat = "the robot in the flash is for another version, write it again";
-    WhyRobotDamaged = "the robot in the flash is damaged, write it again";
-    WhyStack = "the stack has grown into the data, stopped";
+    FaultNoticeGuard = "the next pose is unsafe, stopped";
+    FaultNoticeSupply = "the supply is too low to move";
+    FaultNoticeLink = "no command within the deadman time, stopped";
+    FaultNoticeWatchdog = "the program hung and was restarted";
+    FaultNoticeLate = "a pulse was late, stopped";
+    FaultNoticeBrownOut = "reset several times in a row by the button or a weak supply, resting";
+    FaultNoticeRobot = "no robot in the flash; write one";
+    FaultNoticeRobotFormat = "the robot in the flash is for another version; write it again";
+    FaultNoticeRobotDamaged = "the robot in the flash is damaged; write it again";
+    FaultNoticeStack = "the stack has grown into the data, stopped";
     LevelGood = ", good";
-    LevelSlow = ", low: no saving, speed up to ";
+    LevelSlow = ", low: no saving, speed at most ";
     LevelStop = ", too low to move: stopped";
-    LevelRest = ", too low to hold: pulses ended";
+    LevelRest = ", too low to hold: pulses off";
 
-    // Help, a line each.
+    // Help, one line each.
     HelpGaits = "# gaits:";
-    HelpWords = "# others: ";
-    HelpHint = "# a word alone tells what it wants, the docs what it does";
+    HelpCommands = "# others: ";
+    HelpUsage = "# send a command alone for its usage; the docs explain it";
 
     // Answers.
     Ok = "ok ";
@@ -112,74 +112,73 @@ texts! {
     Err = "err ";
 
     // Reasons.
-    UnknownCommand = "unknown command, send help for the list";
-    Garbled = "the line came garbled, send it again";
+    UnknownCommand = "unknown command; send help for the list";
+    Garbled = "the line was garbled; send it again";
     UnexpectedArgument = "this command takes no argument";
-    IncompleteName = "this command wants one more word";
+    IncompleteName = "this command needs another word";
     CountUsage = "a gait takes a count, 1..999";
-    SpeedUsage = "speed wants a whole number, 10..100";
+    SpeedUsage = "speed takes a whole number, 10..100";
     SpeedRange = "speed must be 10..100";
-    WatchUsage = "watch wants a whole number, 0..10000";
+    WatchUsage = "watch takes a whole number, 0..10000";
     WatchRange = "watch must be 0..10000";
-    PoseUsage = "pose wants four angles in degrees, at most two decimals";
-    Reaches = " reaches ";
-    Type2Head = "type-2 margin of the head";
-    Type2Tail = "type-2 margin of the tail";
-    Type1 = "type-1 margin of ";
-    Leg = "leg margin of ";
-    Is = " is ";
-    IsBelow = " is below 0.1";
-    AtLeast = ", at least ";
+    PoseUsage = "pose takes four angles in degrees, with at most two decimals";
+    MustBe = " must be ";
+    Type2MarginHead = "type-2 margin of the head";
+    Type2MarginTail = "type-2 margin of the tail";
+    Type1Margin = "type-1 margin of ";
+    LegMargin = "leg margin of ";
+    MarginIs = " is ";
+    MarginIsBelow = " is below 0.1";
+    MarginLimit = ", must be at least ";
     Left = "left";
     Right = "right";
     SliderPosition = " slider is at ";
-    StrokeRange = " mm, stroke ";
-    Dots = "..";
+    StrokeRange = " mm, must be ";
+    RangeSeparator = "..";
     TooLong = "a line has at most 63 characters";
-    Resting = "servos are resting, send stand first";
-    TrimUsage = "trim wants a servo 1..4 and degrees, at most two decimals";
+    Resting = "the servos are resting; send stand first";
+    TrimUsage = "trim takes a servo 1..4 and degrees, with at most two decimals";
     TrimRange = "trim must be -20..20";
-    LimitUsage = "limit wants a servo 1..4 and two angles in degrees, at most two decimals";
-    LimitRange = "limit wants angles of at most one turn";
-    DirUsage = "dir wants a servo 1..4 and + or -";
-    ScaleUsage = "scale wants a servo 1..4 and us per degree, at most two decimals";
+    LimitUsage = "limit takes a servo 1..4 and two angles in degrees, with at most two decimals";
+    LimitRange = "limit angles must be -360..360";
+    DirUsage = "dir takes a servo 1..4 and + or -";
+    ScaleUsage = "scale takes a servo 1..4 and us per degree, with at most two decimals";
     ScaleRange = "scale must be 5..20";
-    BootUsage = "boot wants the name of a gait, or rest";
-    DeadmanUsage = "deadman wants a whole number of milliseconds, 0..60000";
+    BootUsage = "boot takes the name of a gait, or rest";
+    DeadmanUsage = "deadman takes a whole number of milliseconds, 0..60000";
     DeadmanRange = "deadman must be 0..60000";
-    TooNarrowForGaits = " would not reach what the gaits need, ";
-    TooNarrowForPose = " would not reach where it is or goes, send stand first";
-    LowSupply = "the supply is too low";
-    NotKept = "the memory does not keep what is written";
+    TooNarrowForGaits = "'s travel must cover the gaits' range, ";
+    TooNarrowForPose = "'s travel must cover its current and target angles; send stand first";
+    SupplyTooLow = "the supply is too low";
+    WriteFailed = "the memory write failed";
     NoRobot = "no robot in the flash";
-    NothingSaved = "nothing is saved that could be loaded";
+    NothingSaved = "no saved calibration to load";
 }
 
-/// Phrases that occur in several messages, stored once. The longest come first, since the first phrase that
-/// matches is used.
+/// The phrases that occur in several texts, each stored once. The longest come first, because the first match is used.
 const PHRASES: &[&str] = &[
-    " wants a servo 1..4 and ",
-    ", robot.toml's is in use",
-    ", at most two decimals",
-    " wants a whole number",
-    " would not reach wh",
+    ", with at most two decimals",
+    " takes a servo 1..4 and ",
+    "'s travel must cover ",
+    " takes a whole number",
+    ", using robot.toml's",
     " angles in degrees",
     "# calibration: ",
-    " margin of ",
+    "in the flash",
     "stand first",
-    " must be ",
+    " margin of ",
+    ", stopped",
+    "must be ",
+    "; send ",
     "command",
     "deadman",
-    ", send ",
     "0..100",
-    " wants",
+    " takes",
     "supply",
     "watch",
     "speed",
     "type-",
-    "limit",
-    " what",
-    "fault",
+    "robot",
     "gait",
     " is ",
     "the ",
@@ -189,44 +188,44 @@ const PHRASES: &[&str] = &[
     "he",
 ];
 
-/// Every character of the messages, the most frequent first.
-const ALPHABET: &[u8; 45] = b" eotsarnldipmgcw0uh.=fb:vk1y2-,x6#z?_3+54'789";
+/// The characters of all texts, the most frequent first.
+const ALPHABET: &[u8; 45] = b" etoasrnildmgwpu0c.hfb=v:k12y6;-,x3'9#z_+5478";
 
 /// The number of characters with a four-bit code; the remaining four-bit values begin eight-bit codes.
 const SHORT_CODE_COUNT: u8 = 12;
 
-const MESSAGE_COUNT: usize = MESSAGES.len();
+const TEXT_COUNT: usize = TEXTS.len();
 
-/// The number of packed strings: the messages first, then the phrases.
-const STRING_COUNT: usize = MESSAGE_COUNT + PHRASES.len();
+/// The number of packed strings, which are the texts followed by the phrases.
+const STRING_COUNT: usize = TEXT_COUNT + PHRASES.len();
 
-/// The number of strings in a block. Only the start of each block and the length of each string are stored.
+/// The number of strings in a block. For each block its start is stored, for each string its length.
 const STRINGS_PER_BLOCK: usize = 16;
 
 const PACKED_STRINGS: PackedStrings = pack_strings();
 
 flash! {
-    /// The nibbles of all strings, two in each byte.
+    /// The nibbles of all strings, two per byte.
     const NIBBLES: [u8; PACKED_STRINGS.nibble_count.div_ceil(2)] = *PACKED_STRINGS.nibbles.first_chunk().unwrap();
     /// The length of each string, nibbles.
     const STRING_LENGTHS: [u8; STRING_COUNT] = PACKED_STRINGS.lengths;
     /// The index of each block's first nibble.
     const BLOCK_STARTS: [u16; STRING_COUNT.div_ceil(STRINGS_PER_BLOCK)] = PACKED_STRINGS.block_starts;
-    /// The characters, by their code.
+    /// The characters, indexed by their code.
     const CHARACTERS: [u8; ALPHABET.len()] = *ALPHABET;
 }
 
 impl Text {
-    /// Prints the message.
+    /// Prints the text.
     #[inline(never)]
     pub fn print(self, out: &mut impl Output) {
         let mut current_string = PackedString::at(self as u8);
-        // The rest of the message after the phrase that is being printed.
-        let mut message_rest = PackedString::EMPTY;
+        // The part of the text after the phrase that is being printed.
+        let mut text_rest = PackedString::EMPTY;
         loop {
             if current_string.nibbles_left == 0 {
-                current_string = message_rest;
-                message_rest.nibbles_left = 0;
+                current_string = text_rest;
+                text_rest.nibbles_left = 0;
             }
             if current_string.nibbles_left == 0 {
                 return;
@@ -243,16 +242,16 @@ impl Text {
                     out.write_byte(character);
                 }
                 Some(phrase_index) => {
-                    message_rest = current_string;
-                    current_string = PackedString::at(MESSAGE_COUNT as u8 + phrase_index);
+                    text_rest = current_string;
+                    current_string = PackedString::at(TEXT_COUNT as u8 + phrase_index);
                 }
             }
         }
     }
 
-    /// The length of the message in bytes.
+    /// The length of the text in bytes.
     pub const fn length(self) -> u8 {
-        MESSAGES[self as usize].len() as u8
+        TEXTS[self as usize].len() as u8
     }
 }
 
@@ -270,7 +269,7 @@ impl PackedString {
         nibbles_left: 0,
     };
 
-    /// Returns the packed message or phrase with this index; none of its nibbles has been read.
+    /// Returns the packed string with this index; none of its nibbles has been read.
     #[inline(never)]
     fn at(string_index: u8) -> Self {
         let string_index = usize::from(string_index);
@@ -300,7 +299,7 @@ impl PackedString {
     }
 }
 
-/// All strings as nibbles, two in each byte, the first of each pair in the lower half.
+/// All strings as nibbles, two per byte, the first of each pair in the lower half.
 struct PackedStrings {
     nibbles: [u8; BUFFER_BYTES],
     nibble_count: usize,
@@ -310,7 +309,7 @@ struct PackedStrings {
     block_starts: [u16; STRING_COUNT.div_ceil(STRINGS_PER_BLOCK)],
 }
 
-/// The size of the buffer at compile time, which is more than the strings need.
+/// The size of the compile-time buffer, which is larger than all strings together.
 const BUFFER_BYTES: usize = 4096;
 
 impl PackedStrings {
@@ -319,7 +318,7 @@ impl PackedStrings {
         self.nibble_count += 1;
     }
 
-    /// Appends the code of a character or of a phrase. The codes of phrases follow those of all characters.
+    /// Appends the code of a character or a phrase. The codes of the phrases follow those of the characters.
     const fn push_code(&mut self, code: usize) {
         assert!(code < SHORT_CODE_COUNT as usize + (16 - SHORT_CODE_COUNT as usize) * 16);
         let code = code as u8;
@@ -332,8 +331,8 @@ impl PackedStrings {
     }
 }
 
-/// Packs all strings at compile time: messages with codes for their phrases, and phrases character by character.
-#[allow(long_running_const_eval, reason = "it takes a second at most")]
+/// Packs all strings at compile time: texts with codes for their phrases, and phrases character by character.
+#[allow(long_running_const_eval, reason = "packing takes at most a second")]
 const fn pack_strings() -> PackedStrings {
     let mut packed = PackedStrings {
         nibbles: [0; BUFFER_BYTES],
@@ -347,11 +346,11 @@ const fn pack_strings() -> PackedStrings {
         if string_index % STRINGS_PER_BLOCK == 0 {
             packed.block_starts[string_index / STRINGS_PER_BLOCK] = start as u16;
         }
-        let is_phrase = string_index >= MESSAGE_COUNT;
+        let is_phrase = string_index >= TEXT_COUNT;
         let text = if is_phrase {
-            PHRASES[string_index - MESSAGE_COUNT].as_bytes()
+            PHRASES[string_index - TEXT_COUNT].as_bytes()
         } else {
-            MESSAGES[string_index].as_bytes()
+            TEXTS[string_index].as_bytes()
         };
         let mut remaining_text = text;
         while let [first, after_first @ ..] = remaining_text {
@@ -373,8 +372,8 @@ const fn pack_strings() -> PackedStrings {
     packed
 }
 
-/// Finds the first phrase that a text begins with. Returns the phrase's index and the rest of the text; `None` if the
-/// text begins with no phrase.
+/// Finds the first phrase with which a text begins. Returns the index of the phrase and the rest of the text; `None` if
+/// the text begins with no phrase.
 const fn find_phrase(text: &[u8]) -> Option<(usize, &[u8])> {
     let mut phrase_index = 0;
     while phrase_index < PHRASES.len() {
@@ -399,7 +398,10 @@ const fn character_code(character: u8) -> usize {
     let mut code = 0;
     while ALPHABET[code] != character {
         code += 1;
-        assert!(code < ALPHABET.len(), "ALPHABET lacks a character");
+        assert!(
+            code < ALPHABET.len(),
+            "ALPHABET must contain every character"
+        );
     }
     code
 }
@@ -411,15 +413,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_message_is_printed_completely_and_its_length_is_right() {
+    fn a_text_is_printed_completely_and_its_length_matches() {
         for (text, expected) in [
             (Text::Banner, "# lizard "),
             (Text::Version, env!("CARGO_PKG_VERSION")),
             (
                 Text::UnknownCommand,
-                "unknown command, send help for the list",
+                "unknown command; send help for the list",
             ),
-            (Text::Resting, "servos are resting, send stand first"),
+            (Text::Resting, "the servos are resting; send stand first"),
         ] {
             let mut printed_text = String::new();
             text.print(&mut printed_text);
@@ -429,11 +431,10 @@ mod tests {
     }
 
     #[test]
-    fn every_message_is_one_line_without_control_characters() {
-        for message in MESSAGES {
+    fn every_text_is_one_line_without_control_characters() {
+        for text in TEXTS {
             assert!(
-                message
-                    .bytes()
+                text.bytes()
                     .all(|byte| byte == b' ' || byte.is_ascii_graphic())
             );
         }

@@ -1,4 +1,4 @@
-//! The timer of the pose reports that `watch` requests.
+//! The timer of the pose reports requested by `watch`.
 
 /// A timer that makes a pose report due at regular intervals.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    /// Creates a timer that makes a report due once every `interval_frames` frames, or never if that is 0.
+    /// Creates a timer that makes a report due every `interval_frames` frames, or never if that is 0.
     pub(super) const fn new(interval_frames: u16) -> Self {
         Self {
             interval_frames,

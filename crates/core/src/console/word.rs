@@ -9,7 +9,7 @@ use crate::numbers::robot::Robot;
 /// The effect of an accepted command on the servos.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// No pulse changes: the command is a question, or a setting that takes effect later.
+    /// No pulse changes: the command is a query, or a setting that takes effect later.
     None,
     /// A motion begins, and every servo gets pulses.
     Moves,
@@ -19,7 +19,7 @@ pub enum Effect {
     Rests,
     /// The speed of gaits changes.
     Paces,
-    /// A servo's calibration changes: its pulse for an angle, or its travel.
+    /// The calibration of a servo changes: its pulse for an angle, or its travel.
     Calibrates,
 }
 
@@ -33,11 +33,11 @@ macro_rules! words {
             $($yielding = $yielding_word $yielding_arguments, $yielding_effect;)*
         }
 
-        /// The number of reserved words, which no gait's name may begin with. They come first in [`Word::ALL`].
+        /// The number of reserved words, with which no gait's name may begin. They come first in [`Word::ALL`].
         pub(crate) const RESERVED_COUNT: usize = [$(Word::$reserved),*].len();
     };
     (@all $($name:ident = $word:literal $arguments:literal, $effect:ident;)*) => {
-        /// A word of the console.
+        /// A command word of the console.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         #[allow(missing_docs, reason = "each name is followed by its word")]
@@ -47,18 +47,18 @@ macro_rules! words {
             /// All words, in the order in which `help` lists them.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
-            /// The word as it is written.
+            /// The spelling of the word.
             pub const fn text(self) -> &'static str {
                 match self { $(Self::$name => $word),* }
             }
 
-            /// The effect of the word's command on the servos; for that of a whole line, see
+            /// The effect of the word's command on the servos. For the effect of a whole line, see
             /// [`crate::console::command::effect`].
             pub const fn effect(self) -> Effect {
                 match self { $(Self::$name => Effect::$effect),* }
             }
 
-            /// A line that the robot of robots/paper.toml accepts: the word, with any arguments it needs.
+            /// A line that the robot of robots/paper.toml accepts: the word with the arguments that it requires.
             pub const fn example(self) -> &'static str {
                 match self { $(Self::$name => concat!($word, $arguments)),* }
             }
@@ -71,8 +71,8 @@ macro_rules! words {
 
 // Each row: name = word and the arguments of an example, effect.
 words! {
-    // No gait's name may begin with one of these. The list is closed: a robot file that
-    // has been accepted once is accepted by every later version.
+    // No gait's name may begin with one of these words. The list is closed, so that every later version accepts a robot
+    // file that an earlier version has accepted.
     reserved: {
         Help = "help" "", None;
         QuestionMark = "?" "", None;
@@ -134,8 +134,8 @@ impl Word {
         (self as usize) < RESERVED_COUNT
     }
 
-    /// Prints all words, with bars between them. Leaves out a word if its index is `FIRST_YIELDING_INDEX` or more and
-    /// the robot has a gait of the same name.
+    /// Prints all words, separated by bars. Omits a word if its index is at least `FIRST_YIELDING_INDEX` and the robot
+    /// has a gait of the same name.
     pub(crate) fn print_all<const FIRST_YIELDING_INDEX: usize>(
         out: &mut impl Output,
         robot: &Robot,
@@ -157,7 +157,7 @@ impl Word {
     }
 }
 
-/// True if the word that begins at this index of `WORD_LIST` is the name of a gait.
+/// True if the word at this index of `WORD_LIST` is also the name of a gait.
 fn is_gait_name_at(index: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
         let letters = (index..WORD_LIST.len()).map(|index| CHARACTERS.at(index).load());
@@ -175,12 +175,12 @@ mod tests {
     use super::*;
     use crate::sample::Sample;
 
-    /// The reserved words of the first version, which every later version keeps.
+    /// The reserved words of the first version, which later versions must keep.
     const FIRST_VERSION_WORDS: &str = "help|?|stop|rest|status|pose|speed|watch|trim|limit|dir|\
         scale|cal|center|save|load|factory|boot|deadman";
 
     #[test]
-    fn the_reserved_words_are_exactly_those_of_the_first_version() {
+    fn the_reserved_words_match_the_first_version() {
         let reserved = Word::ALL.iter().filter(|word| word.is_reserved());
         let reserved_words: Vec<&str> = reserved.map(|word| word.text()).collect();
         assert_eq!(reserved_words.join("|"), FIRST_VERSION_WORDS);
@@ -201,7 +201,7 @@ mod tests {
         }
     }
 
-    /// Checks that all words are printed except these.
+    /// Checks that all words except these are printed.
     fn assert_lists_all_but<const FIRST_YIELDING_INDEX: usize>(
         robot: &Robot,
         omitted_words: &[Word],
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_yields_is_left_out_if_a_gait_has_the_same_name() {
+    fn a_yielding_word_is_omitted_if_a_gait_has_the_same_name() {
         let robot = Sample::paper();
         assert_lists_all_but::<RESERVED_COUNT>(&robot, &[]);
         assert_lists_all_but::<1>(&robot, &[]);

@@ -1,8 +1,8 @@
-//! The robot as a whole: it carries out orders, computes frames, and reacts to faults.
+//! The controller of the robot: executes orders, computes frames, and reacts to faults.
 //!
-//! A console on a serial line, or another source, gives orders to the robot and learns
-//! which of them are refused. Fifty times a second the robot computes a frame and watches
-//! for faults; in between it reads and writes its EEPROM. Nothing here depends on the text of commands or answers.
+//! A console on a serial port, or another source, gives orders to the controller, which accepts or refuses them. Fifty
+//! times a second the controller checks for faults and computes a frame; between frames it reads and writes the EEPROM.
+//! Nothing here depends on the text of commands or answers.
 
 use lizard_avr::Region;
 
@@ -18,7 +18,7 @@ use crate::control::supply::Voltage;
 use crate::guard::hazard::Hazard;
 use crate::memory::copies::{self, REST_POSE_ADDRESS, SavedState};
 use crate::memory::record::{Memory, RecordWrite};
-use crate::memory::restart::{Cause, Restart, Stance};
+use crate::memory::restart::{Cause, Restart, ServoState};
 use crate::memory::settings::{Boot, Settings};
 use crate::motion::{Activity, Motion};
 use crate::numbers::gaits::GaitId;
@@ -37,40 +37,40 @@ mod routine;
 /// Frames without a reset after which the supply counts as good again: 30 s.
 const GOOD_SUPPLY_FRAMES: u32 = 1500;
 
-/// Frames after the program starts within which all servos wake: 0.6 s.
+/// Frames after the program's start within which all servos wake: 0.6 s.
 const WAKING_FRAMES: u32 = 30;
 
-/// The controller of the robot: its motion, settings, safety, and the EEPROM operation in progress.
+/// The controller of the robot: its motion, its settings, its safety monitor, and the EEPROM operation in progress.
 #[derive(Clone, Debug)]
 pub struct Controller {
     motion: Motion,
     settings: Settings,
-    /// The reason why the flash holds no usable robot.
-    damage: Option<SectionError>,
+    /// The error in the robot's section of flash; `None` if the section is valid.
+    section_error: Option<SectionError>,
     /// The state of the saved settings at power-on.
-    saved_state: SavedState,
+    saved_settings_state: SavedState,
     safety: Safety,
     /// The cause of the last reset.
     reset_cause: Cause,
     /// Resets since power-on, at most 255.
     reset_count: u8,
-    /// True if a weak supply may have caused the last reset. Becomes false once a command shows that a computer opened
+    /// True if a weak supply may have caused the last reset. Becomes false once a command proves that a computer opened
     /// the port.
     is_supply_suspected: bool,
     /// Consecutive resets, including the last one, that a weak supply may have caused.
-    brown_outs: u8,
+    suspected_brown_outs: u8,
     /// True if a command has been received since the program started.
-    has_heard_command: bool,
+    has_received_command: bool,
     routine: Routine,
     /// The contact that may end the current step of a routine.
     contact: Contact,
     /// True if `boot` started the current activity, and no command has been received since.
     is_unattended: bool,
-    /// The EEPROM operation that an order has started.
+    /// The EEPROM operation that an order has started, if any.
     job: Option<Job>,
     /// The write or invalidation of the rest pose's record, if one is in progress.
     rest_pose_write: Option<RecordWrite>,
-    /// The reason why the guard holds the robot, until it is printed.
+    /// The hazard because of which the guard holds the robot, until the hazard is printed.
     hold_reason: Option<Hazard>,
 }
 
@@ -86,14 +86,14 @@ impl Controller {
         Self {
             settings: Settings::NONE,
             motion: Motion::unstarted(Robot::NONE),
-            damage: None,
-            saved_state: SavedState::Latest,
+            section_error: None,
+            saved_settings_state: SavedState::Latest,
             safety: Safety::new(),
             reset_cause: Cause::Power,
             reset_count: 0,
             is_supply_suspected: false,
-            brown_outs: 0,
-            has_heard_command: false,
+            suspected_brown_outs: 0,
+            has_received_command: false,
             routine: Routine::NONE,
             contact: Contact::NONE,
             is_unattended: false,
@@ -104,60 +104,61 @@ impl Controller {
     }
 
     /// Loads the robot's section from `flash`, then restores the settings and the rest pose from the EEPROM, and the
-    /// servos' state from before the reset. If the section is not valid, there is no robot, and the controller never
+    /// state of the servos before the reset. If the section is not valid, there is no robot, and the controller never
     /// sends pulses.
     #[inline(never)]
     pub fn begin<M: Memory>(&mut self, flash: Region<'static>, memory: &M, restart: &Restart) {
         self.reset_cause = restart.cause;
         self.reset_count = restart.reset_count;
-        if let Err(damage) = self.motion.load_robot(flash) {
-            self.damage = Some(damage);
+        if let Err(section_error) = self.motion.load_robot(flash) {
+            self.section_error = Some(section_error);
             self.safety.record_fault(Fault::Robot);
             return;
         }
         self.is_supply_suspected = restart.is_supply_suspected;
-        self.saved_state = copies::load(self.motion.robot(), memory, &mut self.settings);
-        if self.saved_state != SavedState::Latest {
+        self.saved_settings_state = copies::load(self.motion.robot(), memory, &mut self.settings);
+        if self.saved_settings_state != SavedState::Latest {
             self.safety.notify(Notice::SavedSettings);
         }
         self.apply_calibration();
-        let servos_before = match &restart.stance_before {
+        let servos_before = match &restart.servo_state_before {
             None => ServosBefore::Unknown,
-            Some(stance) if stance.is_resting => ServosBefore::Rested,
+            Some(servo_state) if servo_state.is_resting => ServosBefore::Rested,
             Some(_) => ServosBefore::Held,
         };
-        let brown_outs = restart.brown_outs.min(BROWN_OUTS_TO_REST - 1);
-        self.brown_outs = match restart.is_supply_suspected {
-            true => brown_outs + 1,
-            false => restart.brown_outs.min(BROWN_OUTS_TO_REST),
+        let suspected_brown_outs = restart.suspected_brown_outs.min(BROWN_OUTS_TO_REST - 1);
+        self.suspected_brown_outs = match restart.is_supply_suspected {
+            true => suspected_brown_outs + 1,
+            false => restart.suspected_brown_outs.min(BROWN_OUTS_TO_REST),
         };
         let (first_action, fault) =
-            supervisor::first_action(restart.cause, self.brown_outs, servos_before);
+            supervisor::first_action(restart.cause, self.suspected_brown_outs, servos_before);
         if let Some(fault) = fault {
-            self.safety.note_byte();
+            self.safety.record_byte();
             self.safety.record_fault(fault);
         }
-        let rest_pose = copies::last_rest_pose(self.motion.robot(), memory);
-        let stance = restart.stance_before.as_ref();
-        let is_awake = match (first_action, stance) {
+        let rest_pose = copies::read_rest_pose(self.motion.robot(), memory);
+        let servo_state = restart.servo_state_before.as_ref();
+        let is_awake = match (first_action, servo_state) {
             (FirstAction::Wake, _) => {
                 self.motion.wake(rest_pose.as_ref());
                 true
             }
-            (FirstAction::WakeInPlace, Some(stance)) => self.motion.resume(stance, true),
-            (FirstAction::Hold, Some(stance)) => self.motion.resume(stance, false),
+            (FirstAction::WakeInPlace, Some(servo_state)) => self.motion.resume(servo_state, true),
+            (FirstAction::Hold, Some(servo_state)) => self.motion.resume(servo_state, false),
             _ => false,
         };
         if is_awake {
             self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
             return;
         }
-        // A program that was reset before its first frame has not moved the robot since its last rest.
-        let rest_stance = rest_pose.map(|pose| Stance {
+        // If the program was reset before its first frame, the robot has not moved since its last rest.
+        let rest_servo_state = rest_pose.map(|pose| ServoState {
             pose,
-            ..Stance::RESTING
+            ..ServoState::RESTING
         });
-        self.motion.resume_rest(stance.or(rest_stance.as_ref()));
+        self.motion
+            .resume_rest(servo_state.or(rest_servo_state.as_ref()));
         // The reset may have interrupted the write of the pose to the EEPROM.
         let is_saved = servos_before == ServosBefore::Unknown
             || rest_pose.as_ref() == Some(self.motion.pose());
@@ -165,7 +166,7 @@ impl Controller {
     }
 
     /// Computes the pulses of the next frame. Must be called 50 times a second.
-    // Out of line, so that a simulator can time it by its name.
+    // Not inlined, so that a simulator can find the function by its name and time it.
     #[inline(never)]
     pub fn compute_frame(&mut self, health: &Health) -> Pulses {
         self.check_health(health);
@@ -182,14 +183,14 @@ impl Controller {
         }
         let frames = self.motion.frame_count();
         if frames == GOOD_SUPPLY_FRAMES {
-            self.brown_outs = 0;
+            self.suspected_brown_outs = 0;
         }
-        // A computer that opens the port resets the board and then sends a line. By radio, lines arrive at any time, so
-        // a line while the servos wake is no evidence against a weak supply.
+        // A computer that opens the port resets the board and then sends a line. By radio, lines arrive at any time.
+        // Therefore a line while the servos wake does not rule out a weak supply.
         let may_be_port_reset = self.is_supply_suspected && self.reset_cause == Cause::External;
-        if may_be_port_reset && self.has_heard_command && frames > WAKING_FRAMES {
+        if may_be_port_reset && self.has_received_command && frames > WAKING_FRAMES {
             self.is_supply_suspected = false;
-            self.brown_outs = self.brown_outs.saturating_sub(1);
+            self.suspected_brown_outs = self.suspected_brown_outs.saturating_sub(1);
         }
         self.safety.advance_led(hazard.is_some());
         pulses
@@ -205,31 +206,32 @@ impl Controller {
         self.settings.deadman_ms()
     }
 
-    /// Notes that a byte was received, which means that a computer is connected.
-    pub fn note_byte(&mut self) {
-        self.safety.note_byte();
+    /// Records that a byte was received, which means that a computer is connected.
+    pub fn record_byte(&mut self) {
+        self.safety.record_byte();
     }
 
-    /// Notes that a command was received.
-    pub fn note_command(&mut self) {
-        self.safety.note_command();
+    /// Records that a command was received.
+    pub fn record_command(&mut self) {
+        self.safety.record_command();
         self.is_unattended = false;
-        self.has_heard_command = true;
+        self.has_received_command = true;
     }
 
-    /// Takes the reason why the guard holds the robot. Returns `None` if there is none, or if it was taken before.
+    /// Takes the hazard because of which the guard holds the robot. Returns `None` if the guard does not hold the
+    /// robot, or if the hazard was taken before.
     pub fn take_hold_reason(&mut self) -> Option<Hazard> {
         self.hold_reason.take()
     }
 
-    /// True while the reason why the guard holds the robot waits to be printed.
+    /// True while the hazard because of which the guard holds the robot waits to be printed.
     pub const fn has_hold_reason(&self) -> bool {
         self.hold_reason.is_some()
     }
 
-    /// Notes that a notice has been printed.
-    pub fn note_printed(&mut self, notice: Notice) {
-        self.safety.note_printed(notice);
+    /// Removes a notice that has been printed from the pending notices.
+    pub fn clear_notice(&mut self, notice: Notice) {
+        self.safety.clear_notice(notice);
     }
 
     /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
@@ -240,7 +242,7 @@ impl Controller {
             .worst_voltage(&self.motion.robot().supplies())
     }
 
-    /// The current activity: the running routine, unless it rests; otherwise the motion's.
+    /// The current activity: the running routine, unless the routine rests; otherwise the activity of the motion.
     pub fn activity(&self) -> Activity {
         if self.routine.is_under_way() && !self.motion.is_resting() {
             Activity::Gait(self.routine.id)
@@ -249,8 +251,8 @@ impl Controller {
         }
     }
 
-    /// The robot's state, as a column of the supervisor's table. During a routine the robot counts as walking
-    /// even while it stands or rests, since the routine continues by itself.
+    /// The robot's state, which is a column of the supervisor's table. During a routine the robot counts as walking,
+    /// even while it stands or rests, because the routine continues by itself.
     fn state(&self) -> State {
         if self.routine.is_under_way() {
             return State::Walking;
@@ -264,13 +266,13 @@ impl Controller {
 
     /// Checks the board's health and reacts to a fault.
     fn check_health(&mut self, health: &Health) {
-        // Without a robot there is nothing to stop, and no voltage that would be too low.
+        // Without a robot there is no motion to stop and no threshold of the supply.
         if self.motion.robot().is_none() {
             return;
         }
         let state = self.state();
         let supplies = self.motion.robot().supplies();
-        // A routine that `boot` started needs no sender of commands, so silence is not a fault.
+        // A routine that `boot` started requires no commands, so silence is not a fault.
         let deadman_ms = if self.is_unattended && self.routine.is_under_way() {
             0
         } else {
@@ -291,7 +293,7 @@ impl Controller {
         self.motion.set_slow(self.safety.is_slow());
     }
 
-    /// Carries out the `boot` setting, unless the robot is in that state already.
+    /// Executes the `boot` setting, unless the robot is already in the required state.
     fn boot(&mut self, state: State) {
         let boot = self.settings.boot(self.motion.robot());
         let is_resting = state == State::Resting;
@@ -308,7 +310,7 @@ impl Controller {
         self.safety.notify(Notice::Boot);
     }
 
-    /// Carries out an order.
+    /// Executes an order.
     ///
     /// # Errors
     /// Returns the reason for the refusal; nothing has changed.
@@ -351,7 +353,7 @@ impl Controller {
             Order::Boot(boot) => self.settings.set_boot(*boot, self.motion.robot()),
             Order::Deadman(ms) => self.settings.set_deadman_ms(*ms),
             Order::Factory => {
-                let factory_settings = Settings::of(self.motion.robot());
+                let factory_settings = Settings::for_robot(self.motion.robot());
                 self.replace_settings(&factory_settings)?;
             }
             Order::Save => {
@@ -367,7 +369,7 @@ impl Controller {
         Ok(Acceptance::Done)
     }
 
-    /// Looks up an event in the supervisor's table. Returns true if the order must be carried out, false if there is
+    /// Looks up an event in the supervisor's table. Returns true if the order must be executed, false if there is
     /// nothing to do.
     ///
     /// # Errors
@@ -376,12 +378,12 @@ impl Controller {
     fn check_allowed(&self, event: Event) -> Result<bool, Refusal> {
         match self.safety.response(event, self.state()) {
             Response::RefuseResting => Err(Refusal::Resting),
-            Response::RefuseSupply => Err(Refusal::Supply),
+            Response::RefuseSupply => Err(Refusal::SupplyTooLow),
             response => Ok(response == Response::Obey),
         }
     }
 
-    /// Begins a move to a pose.
+    /// Starts a move to a pose.
     ///
     /// # Errors
     /// Returns the reason for the refusal; nothing has changed.
@@ -395,19 +397,19 @@ impl Controller {
         Ok(())
     }
 
-    /// Freezes the pose, and ends the routine.
+    /// Freezes the pose and ends the routine.
     #[inline(never)]
     fn stop(&mut self) {
         self.routine = Routine::NONE;
         self.motion.stop();
     }
 
-    /// Prepares for a motion that an order starts: ends the routine, clears the fault, and invalidates
-    /// the saved rest pose.
+    /// Prepares for a motion that an order starts: ends the routine, clears the fault and the count of suspected
+    /// brown-outs, and invalidates the saved rest pose.
     fn prepare_for_motion(&mut self) {
         self.routine = Routine::NONE;
         self.safety.clear_fault();
-        self.brown_outs = 0;
+        self.suspected_brown_outs = 0;
         self.rest_pose_write = Some(REST_POSE_ADDRESS.start_invalidation());
     }
 

@@ -1,27 +1,27 @@
-//! Faults, and the patterns by which the LED shows them.
+//! Faults, and the patterns with which the LED shows them.
 //!
-//! Without a cable, the LED on D13 is all that a person sees. The LED blinks slowly while there is no fault. After a
-//! fault it flashes as many times as the fault's code says, pauses, and repeats this until a command moves the robot.
+//! Without a cable, the LED on D13 is the only indicator. It blinks slowly while there is no fault. After a fault it
+//! flashes as many times as the fault's code, pauses, and repeats this until a command moves the robot.
 
-/// A fault. Each of them stops the motion.
+/// A fault, which stops the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Fault {
-    /// The next pose would not have been safe.
+    /// The next pose would have been unsafe.
     Guard = 1,
     /// The supply is too low.
     Supply,
-    /// No command has been received for as long as `deadman` allows.
+    /// No command has been received within the `deadman` time.
     Link,
     /// The program hung and was restarted.
     Watchdog,
-    /// A pulse edge was late. A late rising edge is left out, so its pulse is
-    /// missing; a late falling edge makes its pulse longer.
+    /// A pulse edge was late. A late rising edge is omitted, so its pulse is missing; a late falling edge makes its
+    /// pulse longer.
     LateEdge,
     /// The stack has grown into the data.
     Stack,
-    /// Several consecutive resets caused by a weak supply or, if a boot loader hides the cause, by the reset
-    /// button.
+    /// A weak supply has caused several consecutive resets. If a boot loader hides the cause of a reset, the reset
+    /// button may have caused them.
     BrownOut,
     /// The flash holds no usable robot.
     Robot,
@@ -34,26 +34,26 @@ impl Fault {
     }
 }
 
-/// Frames for which the LED is lit in each flash, and again for which it is dark after the flash.
+/// Frames for which the LED is lit in each flash, and dark after each flash.
 const FLASH_FRAMES: u8 = 8;
 
-/// Frames of the additional pause after the last flash.
+/// Additional dark frames after the last flash.
 const PAUSE_FRAMES: u8 = 48;
 
-/// Frames for which the LED is lit, and again for which it is dark, in the heartbeat of a robot without a fault.
+/// Frames for which the LED is lit, and then dark, in the heartbeat of a robot without a fault.
 const HEARTBEAT_FRAMES: u8 = 32;
 
 /// The pattern that the LED shows.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct LedPattern {
-    /// Frames since the pattern began.
+    /// Frames since the start of the pattern.
     frames: u8,
     /// The fault's code; 0 for the heartbeat.
     code: u8,
 }
 
 impl LedPattern {
-    /// The pattern at power-on: the heartbeat, lit first.
+    /// Creates the pattern at power-on, the heartbeat, which begins lit.
     pub const fn new() -> Self {
         Self { frames: 0, code: 0 }
     }
@@ -96,7 +96,8 @@ mod tests {
         Fault::Robot,
     ];
 
-    /// Advances the LED by some frames and returns its runs of equal frames, each as true if lit, and its length.
+    /// Advances the LED by `frames` frames. Returns its runs of equal frames: true for a lit run, and the length of the
+    /// run.
     fn record_runs(
         led: &mut LedPattern,
         fault: Option<Fault>,
@@ -113,7 +114,7 @@ mod tests {
         runs
     }
 
-    /// True if, by docs/faults.md, the LED is lit `frame` frames after a pattern has begun.
+    /// True if, according to docs/faults.md, the LED is lit `frame` frames after the start of a pattern.
     fn must_be_lit(fault: Option<Fault>, frame: usize) -> bool {
         let Some(fault) = fault else {
             return frame % 64 < 32;
@@ -141,7 +142,7 @@ mod tests {
             let mut led = LedPattern::default();
             record_runs(&mut led, None, 13 * (index + 1));
             let runs = record_runs(&mut led, Some(fault), 1000);
-            // The pauses separate the patterns.
+            // Pauses separate the patterns.
             let mut flash_count = 0;
             let mut flash_counts = Vec::new();
             for (is_lit, frames) in &runs[..runs.len() - 1] {

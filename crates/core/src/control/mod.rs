@@ -1,8 +1,7 @@
-//! The control: it carries out orders, computes a frame fifty times a second, and reacts
-//! to faults.
+//! Control: executes orders, computes a frame fifty times a second, and reacts to faults.
 //!
-//! This layer handles no text: it accepts an [`order`] or answers with a [`refusal`]. [`supervisor`] has the tables
-//! of its decisions; [`safety`], [`supply`] and [`contact`] monitor the hardware; [`fault`] shows a fault on the LED.
+//! This layer handles no text: it accepts an [`order`] or returns a [`refusal`]. [`supervisor`] contains the decision
+//! tables; [`safety`], [`supply`] and [`contact`] monitor the hardware; [`fault`] shows a fault on the LED.
 
 mod controller;
 

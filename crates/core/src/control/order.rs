@@ -1,4 +1,4 @@
-//! The orders that the robot carries out.
+//! The orders that the robot executes.
 
 use crate::memory::settings::Boot;
 use crate::numbers::gaits::GaitId;
@@ -8,8 +8,8 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order whose arguments are within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait for this many cycles, 0 for no limit; or start a routine for this many rounds, 0 for the number
-    /// in robot.toml. `stand` also wakes the servos.
+    /// Change to a gait for a number of cycles, or endlessly for 0; or start a routine for a number of rounds, or for
+    /// the number in robot.toml for 0. `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
@@ -25,7 +25,7 @@ pub enum Order {
     Set(Servo, Setting),
     /// Set the action three seconds after power-on.
     Boot(Boot),
-    /// End a gait when no command has been received for this many milliseconds; 0 for never.
+    /// End a gait when no command has been received for this number of milliseconds; 0 for never.
     Deadman(u16),
     /// Save the settings in the EEPROM.
     Save,
@@ -42,7 +42,7 @@ pub enum Setting {
     Trim(Sweep),
     /// True if a longer pulse turns the servo counter-clockwise.
     Direction(bool),
-    /// Hundredths of a microsecond per degree, 500..=2000.
+    /// The change of the pulse width per degree, in hundredths of a microsecond, 500..=2000.
     Scale(u16),
     /// The limits of the travel as chassis angles, the clockwise limit first.
     Limit(Angle, Angle),
@@ -53,6 +53,6 @@ pub enum Setting {
 pub enum Acceptance {
     /// The order is done, or its motion has begun.
     Done,
-    /// The order has to wait for the EEPROM; its outcome follows later.
+    /// The order waits for the EEPROM; its outcome follows later.
     Pending,
 }

@@ -1,25 +1,25 @@
-//! Refusals: the reasons why the robot does not carry out an order.
+//! Refusals: the reasons for which the robot does not execute an order.
 
 use crate::guard::hazard::Hazard;
 use crate::numbers::part::Servo;
 
-/// The reason why an order is not carried out.
+/// The reason for which an order is not executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refusal {
-    /// A servo does not reach the pose, or the pose is not safe.
+    /// The pose exceeds a servo's travel or is unsafe.
     Unsafe(Hazard),
     /// The servos get no pulses.
     Resting,
-    /// With the new settings, this servo would not reach a sweep that the gaits need.
+    /// With the new settings, the travel of this servo would not cover the range that the gaits need.
     TravelTooNarrow(Servo),
-    /// With the new settings, the current pose or the target would be outside the travel of this servo.
+    /// With the new settings, the travel of this servo would not cover the current pose or the target.
     PoseOutsideTravel(Servo),
     /// The supply is too low.
-    Supply,
-    /// The EEPROM has not kept the settings that were written.
-    SettingsNotKept,
-    /// The EEPROM holds no settings that could be loaded.
+    SupplyTooLow,
+    /// The EEPROM does not hold the settings that were written.
+    WriteFailed,
+    /// The EEPROM holds no valid settings.
     NothingSaved,
-    /// The flash holds no usable robot.
+    /// The flash holds no valid robot.
     NoRobot,
 }

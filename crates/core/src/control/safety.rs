@@ -1,9 +1,8 @@
-//! The monitor of the supply, the serial line, the pulses and the stack: checks them for faults in every frame. It also
+//! The safety monitor: checks the supply, the serial port, the pulses and the stack for faults in every frame, and
 //! times the `boot` action after power-on.
 //!
-//! The table of [`supervisor`] gives the response to each event. A fault stops the motion and stays until a
-//! command moves the robot again. Nothing here starts a motion by itself, except the `boot` action three seconds after
-//! power-on.
+//! The table of events in [`supervisor`] gives the response to each event. A fault stops the motion and lasts until a
+//! command moves the robot again. Only the `boot` action, three seconds after power-on, starts a motion by itself.
 
 use crate::control::fault::{Fault, LedPattern};
 use crate::control::supervisor::{self, Event, Response, State};
@@ -16,16 +15,16 @@ use crate::numbers::units::{FRAME_MS, FRAMES_PER_SECOND};
 pub struct Health {
     /// The last reading of the supplies.
     pub supply: Reading,
-    /// Number of late pulse edges so far.
+    /// The number of late pulse edges so far.
     pub late_edges: u16,
-    /// True while the stack has not grown into the data.
+    /// True unless the stack has grown into the data.
     pub is_stack_intact: bool,
     /// True while the contact that the controller waits for is closed.
     pub is_contact_closed: bool,
 }
 
 impl Default for Health {
-    /// A board without a fault, whose supply is not measured yet.
+    /// Returns the health of a board without a fault, whose supply has not been measured yet.
     fn default() -> Self {
         Self {
             supply: Reading::default(),
@@ -36,12 +35,12 @@ impl Default for Health {
     }
 }
 
-/// The reaction to a frame's events; of several reactions, the last one in this list counts.
+/// The reaction to a frame's events. Of several reactions, the last one in this list counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reaction {
     /// Do nothing.
     None,
-    /// Carry out the `boot` setting.
+    /// Execute the `boot` setting.
     Boot,
     /// Freeze the pose.
     Freeze,
@@ -49,20 +48,20 @@ pub enum Reaction {
     EndPulses,
 }
 
-/// The state of the monitor: the supply, the time without a command, the fault, and the notices to print.
+/// The safety monitor: the supply, the time without a command, the fault, and the notices to print.
 #[derive(Clone, Debug)]
 pub struct Safety {
     supply: Supply,
     fault: Option<Fault>,
     led: LedPattern,
     is_lit: bool,
-    /// Number of late edges that have been handled as faults.
+    /// The number of late edges that have been handled as faults.
     handled_late_edges: u16,
-    /// Milliseconds since the last command, up to 65535.
+    /// Milliseconds since the last command, at most 65535.
     silence_ms: u16,
-    /// Frames since the program started. [`FRAMES_TO_BOOT`] means that `boot` has been carried out or cancelled.
+    /// Frames since the program's start. [`FRAMES_TO_BOOT`] means that `boot` has been executed or cancelled.
     boot_timer: u8,
-    /// The notices that wait to be printed, one bit for each [`Notice`].
+    /// The pending notices, one bit for each [`Notice`].
     notices: u8,
 }
 
@@ -72,15 +71,15 @@ pub struct Safety {
 pub enum Notice {
     /// The state of the saved settings at power-on.
     SavedSettings,
-    /// The EEPROM has not kept the rest pose.
-    RestPoseNotKept,
+    /// The rest pose could not be saved in the EEPROM.
+    RestPoseNotSaved,
     /// A fault has occurred.
     Fault,
     /// The supply's level has changed.
     Supply,
-    /// The `boot` action begins.
+    /// The `boot` action starts.
     Boot,
-    /// A gait has completed its count.
+    /// A counted gait or a routine is complete.
     Done,
     /// A step of a routine waits for an input.
     Waiting,
@@ -90,11 +89,11 @@ pub enum Notice {
 const NOTICE_COUNT: u8 = 7;
 
 impl Notice {
-    /// The notice at an index in this list.
+    /// The notice at an index of this list.
     const fn at(index: u8) -> Self {
         match index {
             0 => Self::SavedSettings,
-            1 => Self::RestPoseNotKept,
+            1 => Self::RestPoseNotSaved,
             2 => Self::Fault,
             3 => Self::Supply,
             4 => Self::Boot,
@@ -114,7 +113,7 @@ impl Default for Safety {
 }
 
 impl Safety {
-    /// The state at power-on.
+    /// Creates the monitor at power-on.
     pub const fn new() -> Self {
         Self {
             supply: Supply::new(),
@@ -128,12 +127,12 @@ impl Safety {
         }
     }
 
-    /// The fault that stopped the robot last; `None` if the robot has been ordered to move since.
+    /// The last fault; `None` if an order has moved the robot since.
     pub const fn fault(&self) -> Option<Fault> {
         self.fault
     }
 
-    /// The supply's current level and reading.
+    /// The supply, with its current level and reading.
     pub const fn supply(&self) -> &Supply {
         &self.supply
     }
@@ -148,24 +147,24 @@ impl Safety {
         self.supply.level() > Level::Good
     }
 
-    /// True if the supply is good enough to write the EEPROM; false until it is measured.
+    /// True if the supply is good enough for writing the EEPROM; false until the supply is measured.
     pub fn allows_writing(&self) -> bool {
         self.supply.measured_level() == Some(Level::Good)
     }
 
-    /// True if the EEPROM may be written at this moment: the supply is good enough, and there is no dip.
+    /// True if the EEPROM may be written now: the supply is good enough, and there is no dip.
     pub fn allows_writing_now(&self) -> bool {
         self.allows_writing() && self.supply.is_steady()
     }
 
-    /// The supervisor's response to an event.
+    /// Looks up the supervisor's response to an event.
     #[inline(never)]
     pub fn response(&self, event: Event, state: State) -> Response {
         supervisor::response(event, self.supply.measured_level(), state)
     }
 
-    /// Checks a frame's health and returns the reaction. A gait ends once `deadman_ms` milliseconds have passed without
-    /// a command, and no sooner; 0 means never.
+    /// Checks a frame's health and returns the reaction. A gait ends after `deadman_ms` milliseconds without a command,
+    /// and no sooner; 0 means never.
     pub fn check_frame(
         &mut self,
         health: &Health,
@@ -185,7 +184,7 @@ impl Safety {
                 reaction = Reaction::Boot;
             }
         }
-        // The last command may have arrived at the end of the first counted frame, so that frame is subtracted.
+        // The last command may have arrived at the end of the first counted frame, so one frame is subtracted.
         if deadman_ms != 0 && self.silence_ms.saturating_sub(FRAME_MS) >= deadman_ms {
             reaction = reaction.max(self.handle_event(Event::Silence, state));
         }
@@ -207,7 +206,7 @@ impl Safety {
         reaction
     }
 
-    /// Records the fault that the table assigns to an event, and returns the reaction.
+    /// Records the fault that the table of events gives for `event`, if any, and returns the reaction.
     #[inline(never)]
     fn handle_event(&mut self, event: Event, state: State) -> Reaction {
         match self.response(event, state) {
@@ -233,25 +232,25 @@ impl Safety {
         self.is_lit = self.led.advance(fault);
     }
 
-    /// Records a fault, and requests that it be printed.
+    /// Records a fault and requests its notice.
     #[inline(never)]
     pub fn record_fault(&mut self, fault: Fault) {
         self.fault = Some(fault);
         self.notify(Notice::Fault);
     }
 
-    /// Clears the fault. Called when an order moves the robot.
+    /// Clears the fault; called when an order moves the robot.
     pub fn clear_fault(&mut self) {
         self.fault = None;
     }
 
-    /// Notes that a byte was received. A computer is connected, so `boot` is cancelled.
-    pub fn note_byte(&mut self) {
+    /// Records that a byte was received. Cancels `boot`, because a computer is connected.
+    pub fn record_byte(&mut self) {
         self.boot_timer = FRAMES_TO_BOOT;
     }
 
-    /// Notes that a command was received.
-    pub fn note_command(&mut self) {
+    /// Records that a command was received.
+    pub fn record_command(&mut self) {
         self.silence_ms = 0;
     }
 
@@ -272,8 +271,8 @@ impl Safety {
         None
     }
 
-    /// Notes that a notice has been printed.
-    pub fn note_printed(&mut self, notice: Notice) {
+    /// Removes a notice that has been printed from the pending notices.
+    pub fn clear_notice(&mut self, notice: Notice) {
         self.notices &= !(1 << notice as u8);
     }
 }

@@ -1,26 +1,26 @@
-//! The supervisor: a table with the response to every event in every state, and a table with the first action after
-//! every reset.
+//! The supervisor: a table of the responses to every event in every state, and a table of the first actions after every
+//! reset.
 //!
-//! A person sends a command, the supply falls, the link breaks, the program hangs: any two of these may happen in the
-//! same frame. So all responses are in one table, and all other code looks them up there. docs/faults.md shows both
-//! tables.
+//! A user sends a command, the supply falls, the link breaks, the program hangs: any two of these events may occur in
+//! the same frame. Therefore one table contains all responses, and all other code looks them up there. docs/faults.md
+//! shows both tables.
 
 use crate::control::fault::Fault;
 use crate::control::supply::Level;
 use crate::memory::restart::Cause;
 
-/// The robot's state, as far as responses depend on it.
+/// The state of the robot on which the responses depend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     /// The servos get no pulses.
     Resting,
-    /// The robot stands, holds a pose or moves to one.
+    /// The robot stands, holds a pose or moves to a pose.
     Posing,
-    /// A gait other than `stand` is running, or the robot is changing to one.
+    /// The robot is in a gait other than `stand`, or changes to such a gait.
     Walking,
 }
 
-/// An event that the supervisor responds to.
+/// An event to which the supervisor responds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     /// The command `stand`.
@@ -33,10 +33,9 @@ pub enum Event {
     Rest,
     /// The command `save`.
     Save,
-    /// The `boot` action is due: three seconds have passed since the program started, without a received byte or a
-    /// fault.
+    /// The `boot` action is due: the program has run for three seconds without a received byte or a fault.
     BootDue,
-    /// No command has been received for the time that `deadman` sets.
+    /// No command has been received within the `deadman` time.
     Silence,
     /// The supply has become too low to move.
     SupplyTooLowToMove,
@@ -46,7 +45,7 @@ pub enum Event {
     LateEdge,
     /// The stack has grown into the data.
     StackOverflow,
-    /// The next pose would not be safe.
+    /// The next pose would be unsafe.
     UnsafePose,
 }
 
@@ -55,13 +54,13 @@ pub enum Event {
 pub enum Response {
     /// Do nothing.
     Nothing,
-    /// Carry out the command.
+    /// Execute the command.
     Obey,
     /// Refuse the command, because the servos rest.
     RefuseResting,
     /// Refuse the command, because the supply is too low.
     RefuseSupply,
-    /// Freeze the pose, if there are pulses, and show the fault until the next motion command.
+    /// Freeze the pose if there are pulses, and show the fault until the next motion command.
     Freeze(Fault),
     /// End the pulses, and show the fault until the next motion command.
     EndPulses(Fault),
@@ -90,15 +89,15 @@ impl Event {
     ];
 }
 
-/// The table of events: the response to an event in a state of the robot. `supply` is the supply's level, or `None`
-/// before it has been measured.
+/// The table of events: the response to an event in a state of the robot. `supply` is the level of the supply, or
+/// `None` before the supply has been measured.
 #[rustfmt::skip]
 pub const fn response(event: Event, supply: Option<Level>, state: State) -> Response {
     use Event::{BootDue, LateEdge, Move, Rest, Save, Silence, StackOverflow, Stand, Stop, UnsafePose};
     use Event::{SupplyTooLowToHold, SupplyTooLowToMove};
     use Response::{EndPulses, Freeze, Nothing, Obey, RefuseResting, RefuseSupply};
     let can_move = matches!(supply, None | Some(Level::Good | Level::Slow));
-    // Before the first measurement an order to write is accepted; the write waits for the measurement.
+    // Before the first measurement `save` is accepted, but the write waits for the measurement.
     let can_write = matches!(supply, None | Some(Level::Good));
     let [resting, posing, walking] = match event {
         // event                     resting                  posing                   walking
@@ -126,11 +125,11 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
     }
 }
 
-/// Number of consecutive resets, possibly caused by a weak supply, after which the robot rests: waking servos would
-/// pull the supply down again.
+/// The number of consecutive suspected brown-outs after which the robot rests, because waking servos would pull the
+/// supply down again.
 pub const BROWN_OUTS_TO_REST: u8 = 3;
 
-/// The servos' state before the reset.
+/// The state of the servos before the reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ServosBefore {
     /// The state is unknown.
@@ -144,12 +143,12 @@ pub enum ServosBefore {
 /// The robot's first action after a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstAction {
-    /// The servos wake one after the other, in the pose of the last `rest` if the EEPROM
-    /// holds one, otherwise in the neutral pose; then the robot stands.
+    /// The servos wake one after another, in the rest pose if the EEPROM holds one, otherwise in the neutral pose; then
+    /// the robot stands.
     Wake,
-    /// The servos wake one after the other with their pulses from before the reset; then the robot stands.
+    /// The servos wake one after another with their pulses from before the reset; then the robot stands.
     WakeInPlace,
-    /// All servos are held at once, with their pulses from before the reset.
+    /// All servos are held immediately with their pulses from before the reset.
     Hold,
     /// The servos get no pulses.
     Rest,
@@ -160,12 +159,14 @@ impl ServosBefore {
     pub const ALL: [Self; 3] = [Self::Unknown, Self::Rested, Self::Held];
 }
 
-/// The table of resets: the first action after a reset, and the fault to show. `brown_outs` is the number of
+/// The table of resets: the first action after a reset, and the fault to show. `suspected_brown_outs` is the number of
 /// consecutive resets that a weak supply may have caused.
 #[rustfmt::skip]
-pub const fn first_action(cause: Cause, brown_outs: u8, servos_before: ServosBefore) -> (FirstAction, Option<Fault>) {
+pub const fn first_action(
+    cause: Cause, suspected_brown_outs: u8, servos_before: ServosBefore,
+) -> (FirstAction, Option<Fault>) {
     use FirstAction::{Hold, Rest, WakeInPlace, Wake};
-    let must_rest = brown_outs >= BROWN_OUTS_TO_REST;
+    let must_rest = suspected_brown_outs >= BROWN_OUTS_TO_REST;
     let ([unknown, rested, held], fault) = match cause {
         // cause                                   unknown  rested  held
         Cause::Power                           => ([Wake,   Wake,   Wake],     None),

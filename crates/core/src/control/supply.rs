@@ -1,20 +1,19 @@
-//! The supply's voltage: measured in every frame, and turned into a level that limits the robot.
+//! The supply's voltage, which is measured in every frame and converted to a level that limits the robot.
 //!
-//! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets. Well above 2.7 V, a servo
-//! already loses its position, and a write to the EEPROM may store a wrong byte. The chip
-//! can measure its own supply without any external part: it compares the supply with a
-//! reference of about 1.1 V on the chip. The servos' own rail can be measured if a voltage
-//! divider connects it to an analogue pin.
+//! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets; even well above 2.7 V, a servo
+//! may lose its position, and a write to the EEPROM may store a wrong byte. The chip measures its own supply without an
+//! external part, by comparing the supply with a reference of about 1.1 V on the chip. The servos' rail can be
+//! measured, too, if a voltage divider connects it to an analogue pin.
 //!
-//! The reference differs by up to a tenth from chip to chip. robot.toml has its measured
-//! value, and the voltages below which the robot reacts.
+//! The reference differs by up to a tenth from chip to chip. robot.toml has its measured value, and the voltages below
+//! which the robot reacts.
 
 use lizard_avr::mul_unsigned;
 
 use crate::numbers::root::quotient;
 use crate::numbers::supplies::{Supplies, Thresholds};
 
-/// Number of steps of the analogue-to-digital converter.
+/// The number of steps of the analogue-to-digital converter.
 const FULL_SCALE: u16 = 1024;
 
 /// Readings of the analogue-to-digital converter, each 0..=1023; 0 before the first measurement.
@@ -22,11 +21,11 @@ const FULL_SCALE: u16 = 1024;
 pub struct Reading {
     /// The chip's reference voltage, in 1/1024 of the supply.
     pub reference: u16,
-    /// The voltage of the servos' rail after its divider, in 1/1024 of the supply.
+    /// The voltage of the servos' rail after the voltage divider, in 1/1024 of the supply.
     pub rail: u16,
 }
 
-/// The level of a supply, by the actions that it allows.
+/// The level of a supply, which determines the allowed actions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// Everything is allowed.
@@ -40,7 +39,7 @@ pub enum Level {
     Rest,
 }
 
-/// A voltage as a quotient of two integers, so that a comparison takes no division.
+/// A voltage as a quotient of two integers, so that a comparison requires no division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
     /// The voltage in mV, times `counts`.
@@ -54,36 +53,37 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// Consecutive frames whose readings are at a worse level, or at a better one, than the current level.
+    /// The number of consecutive frames whose readings are at a worse level, or at a better level, than the current
+    /// one.
     frames_at_other_level: u8,
-    /// The level of these frames that is nearest to the current one.
+    /// The level nearest to the current one in these frames.
     nearest_other_level: Level,
-    /// The number of valid readings so far, up to [`FRAMES_TO_WORSEN`].
+    /// The number of valid readings so far, at most [`FRAMES_TO_WORSEN`].
     reading_count: u8,
 }
 
-/// Frames for which a worse level must last before it counts: a servo's start pulls the
-/// supply down for a few milliseconds. If the rail is measured too, up to four frames share
-/// a reading, so a single dip changes nothing.
+/// Frames for which a worse level must last before it counts: a servo's start pulls the supply down for a few
+/// milliseconds. If the rail is measured, too, up to four frames have the same reading, so a single dip changes
+/// nothing.
 const FRAMES_TO_WORSEN: u8 = 6;
 
-/// Frames for which a better level must last before it counts: one second.
+/// Frames for which a better level must last before it counts: 1 s.
 const FRAMES_TO_IMPROVE: u8 = 50;
 
-/// Voltage by which a better level's threshold must be exceeded before that level counts, mV.
+/// The hysteresis: the voltage by which a better level's threshold must be exceeded before that level counts, mV.
 const HYSTERESIS_MV: u16 = 150;
 
 impl Voltage {
-    /// The voltage of the chip's supply.
-    pub fn of_board(reading: Reading, supplies: &Supplies) -> Self {
+    /// Returns the voltage of the chip's supply.
+    pub fn for_board(reading: Reading, supplies: &Supplies) -> Self {
         Self {
             product: mul_unsigned(FULL_SCALE, supplies.reference_mv),
             counts: reading.reference,
         }
     }
 
-    /// The voltage of the servos' rail.
-    pub fn of_rail(reading: Reading, supplies: &Supplies) -> Self {
+    /// Returns the voltage of the servos' rail.
+    pub fn for_rail(reading: Reading, supplies: &Supplies) -> Self {
         Self {
             product: mul_unsigned(reading.rail, supplies.rail_reference_mv),
             counts: reading.reference,
@@ -109,7 +109,7 @@ impl Voltage {
 const MAX_CENTIVOLTS: u16 = (1 << 13) - 1;
 
 impl Thresholds {
-    /// The level of a voltage, with the thresholds raised by `raise_mv`, mV.
+    /// Returns the level of a voltage, with all thresholds raised by `raise_mv`.
     fn level(&self, voltage: Voltage, raise_mv: u16) -> Level {
         if !voltage.is_below(self.slow_mv.wrapping_add(raise_mv)) {
             Level::Good
@@ -124,19 +124,21 @@ impl Thresholds {
 }
 
 impl Supplies {
-    /// The level of the chip's supply or of the rail, whichever is worse.
+    /// Returns the worse of the levels of the chip's supply and of the rail, with all thresholds raised by `raise_mv`.
     fn level(&self, reading: Reading, raise_mv: u16) -> Level {
-        let board_level = self.board.level(Voltage::of_board(reading, self), raise_mv);
+        let board_level = self
+            .board
+            .level(Voltage::for_board(reading, self), raise_mv);
         if self.rail_reference_mv == 0 {
             return board_level;
         }
-        let rail_voltage = Voltage::of_rail(reading, self);
+        let rail_voltage = Voltage::for_rail(reading, self);
         board_level.max(self.rail.level(rail_voltage, raise_mv))
     }
 }
 
 impl Supply {
-    /// Creates a supply that is not measured yet.
+    /// Creates a supply that has not been measured yet.
     pub const fn new() -> Self {
         Self {
             reading: Reading {
@@ -160,12 +162,12 @@ impl Supply {
         self.level
     }
 
-    /// True if the last reading confirms the current level; false in a dip, and before the level changes.
+    /// True if the last reading is at the current level; false in a dip, and before the level changes.
     pub const fn is_steady(&self) -> bool {
         self.frames_at_other_level == 0
     }
 
-    /// The current level; `None` until enough frames have measured it.
+    /// The current level; `None` until enough frames have measured the supply.
     pub const fn measured_level(&self) -> Option<Level> {
         if self.reading_count < FRAMES_TO_WORSEN {
             None
@@ -176,8 +178,8 @@ impl Supply {
 
     /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
     pub fn worst_voltage(&self, supplies: &Supplies) -> Voltage {
-        let board_voltage = Voltage::of_board(self.reading, supplies);
-        let rail_voltage = Voltage::of_rail(self.reading, supplies);
+        let board_voltage = Voltage::for_board(self.reading, supplies);
+        let rail_voltage = Voltage::for_rail(self.reading, supplies);
         let is_worse =
             supplies.rail.level(rail_voltage, 0) > supplies.board.level(board_voltage, 0);
         if supplies.rail_reference_mv != 0 && is_worse {
@@ -187,8 +189,7 @@ impl Supply {
         }
     }
 
-    /// Adds a frame's reading. Returns true if the level has changed. A change takes several frames, so a single
-    /// reading does not change the level.
+    /// Adds a frame's reading. Returns true if the level has changed, which takes several frames.
     pub fn add_reading(&mut self, reading: Reading, supplies: &Supplies) -> bool {
         self.reading = reading;
         if reading.reference > 0 && self.reading_count < FRAMES_TO_WORSEN {
@@ -202,7 +203,7 @@ impl Supply {
         } else {
             (self.level, 0)
         };
-        // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
+        // A voltage between a threshold and that threshold raised by the hysteresis changes nothing.
         if new_level == self.level || (frames_needed == FRAMES_TO_IMPROVE && new_level > self.level)
         {
             self.frames_at_other_level = 0;

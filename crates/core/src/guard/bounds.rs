@@ -1,17 +1,17 @@
-//! Bounds of the difference between integer and floating-point results: proved, not measured.
+//! Proved bounds of the difference between integer and floating-point results.
 //!
-//! Each bound adds up the largest effects of all roundings of a number, in the order in which they happen. Only the
-//! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares them at every angle. If a
-//! test finds an error beyond its bound, the code or this derivation is wrong; it cannot be chance.
+//! Each bound is the sum of the largest effects of all roundings of a number, in the order of the roundings. Only the
+//! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares the sines at every angle.
+//! If a test finds an error beyond its bound, the code or this derivation is wrong.
 //!
-//! Lengths of a five-bar (head or tail) are given in `U`, two steps of its bars, the unit in which the code computes
-//! the distance of the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and `c2`
-//! are the cranks, `a` and `b` the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the integer
-//! result for a true value.
+//! Lengths of a five-bar (head or tail) are in `U`, two steps of its bars, the unit in which the code computes the
+//! distance between the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and
+//! `c2` are the cranks, `a` and `b` the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the
+//! integer result for a true value.
 //!
 //! **1. Crank tips.** Base and cranks are rounded to whole steps, which changes each by at most 1/4 U. Halving the base
-//! loses up to 1/2 U, rounding the sum of the products up to 1/2 U, and the sine and cosine of a direction are off by
-//! up to `d`, [`MAX_DIRECTION_ERROR`]. So `k'` is within `e` of `k`:
+//! has an error of at most 1/2 U, rounding the sum of the products of at most 1/2 U, and the sine and cosine of a
+//! direction have an error of at most `d`, [`MAX_DIRECTION_ERROR`]. Therefore `k'` is within `e` of `k`:
 //!
 //! ```text
 //! e_x = 1/4 + 1/2 + 1/2 + (|cos| + |cos|) / 4 + d (c1 + c2)
@@ -19,30 +19,30 @@
 //! ```
 //!
 //! **2. The triangle.** The angle `gamma` between the couplers has the cosine `c = (a^2 + b^2 - s) / 2ab`. If the
-//! couplers are off by `x` and `y`, at most 1/4 U each, and `s` is off by `z`,
+//! couplers have the errors `x` and `y`, at most 1/4 U each, and `s` has the error `z`,
 //!
 //! ```text
 //! c' - c = (2x (a - b c) + 2y (b - a c) + x^2 + y^2 - 2xyc - z) / 2a'b'
 //! ```
 //!
-//! where `a - b c` is the component of `k` along the coupler, so at most `|k|`. As `sin^2 = 1 - cos^2`, a sine
-//! of `m` becomes one between the roots of `m^2 - q` and of `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
+//! where `a - b c` is the component of `k` along the coupler, so at most `|k|`. As `sin^2 = 1 - cos^2`, a sine `m`
+//! changes to a sine between the roots of `m^2 - q` and of `m^2 + q`, with `q = |c' - c| (2 |c| + |c' - c|)`.
 //!
 //! The angle at a crank tip changes by at most `(|x| + |y| + e) / (a sin(gamma))`. This follows from the derivative of
-//! the triangle's angle by its sides, taken along a straight path from one triangle to the other; on all of that path
+//! the triangle's angle with respect to its sides, along a straight path from one triangle to the other; on this path
 //! the sine is at least the lower root. The line `k` itself turns by at most `asin(e / |k|)`.
 //!
 //! **3. The tables.** See [`ShapeError`].
 //!
-//! **4. The products** of [`crate::guard::five_bar`]: the rounded square is off by half of its step, each shift
-//! loses at most one unit of its result, and each reciprocal less than one unit of its own.
+//! **4. The products** of [`crate::guard::five_bar`]: the rounded square has an error of half its step, each shift an
+//! error of at most one unit of its result, and each reciprocal an error of less than one of its units.
 //!
 //! **5. A range.** For a set of many pairs of angles, only the range of the distance `|k|` is known, `[near, far]`;
-//! sines and cosines in `e` are at most 1. Every term above then has its largest value: `z`, `|k|` and terms that grow
-//! with the distance at `far`, terms with the distance in the denominator at `near`. As `|k|` grows, `c` falls. So
-//! `|c|` is largest at an end of the range. There the sine is smallest, and the two roots differ from it most. The
-//! largest sine is at an end of the range, too, unless `c` changes its sign within it. A single pair of angles is a
-//! range of width 0.
+//! sines and cosines in `e` are at most 1. Every term above then has its largest value: `z`, `|k|` and terms that
+//! increase with the distance at `far`, terms with the distance in the denominator at `near`. As `|k|` increases, `c`
+//! decreases, so `|c|` is largest at an end of the range. At that end the sine is smallest, and its difference from the
+//! two roots is largest. The largest sine is at an end of the range, too, unless `c` changes its sign within the range.
+//! A single pair of angles is a range of width 0.
 
 use lizard_kinematics as kinematics;
 use lizard_kinematics::Vector;
@@ -50,7 +50,7 @@ use lizard_kinematics::Vector;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Scale;
 
-/// The largest error of a sine or a cosine; a test of [`crate::guard::trig`] finds it.
+/// The largest error of a sine or a cosine, which a test of [`crate::guard::trig`] determines.
 pub const MAX_DIRECTION_ERROR: f64 = 4.5e-5;
 
 /// The step of a margin, a number in Q15.
@@ -59,61 +59,64 @@ pub const Q15_STEP: f64 = 1.0 / 32768.0;
 /// The step of a value read from a table, a number in Q10.
 const Q10_STEP: f64 = 1.0 / 1024.0;
 
-/// The type-2 margin below which the tables may have no correct value. The lower limit of each table's argument gives
-/// the largest margin, a sine, at which its value is missing:
+/// The type-2 margin below which the tables may have no correct value. The lower limit of a table's argument determines
+/// the largest margin, a sine, at which the value is missing:
 ///
 /// - The table over `R - s` ends at `R / 4096`. The sine there is `sqrt((R - s)(s - N)) / 2ab`, which is below
-///   `sqrt(4ab R / 4096) / 2ab`: at most .05 with couplers of a ratio of 8, the largest that their steps allow.
+///   `sqrt(4ab R / 4096) / 2ab`: at most .05 with couplers of a ratio of 8, the largest possible ratio.
 /// - The table over `s - N` ends at `N / 1024`, where the sine is at most .077.
-/// - The table over `s` ends at `R / 1024`, where the sine is at most .063, because that part is read only if
+/// - The table over `s` ends at `R / 1024`, where the sine is at most .063, because this part is read only if
 ///   `N < R / 2048`.
 ///
-/// Two kinds of values are wrong. A rise above 32, the largest that an entry holds, is cut off, so the value is too
-/// small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most .065. For couplers that differ
-/// by little, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large; the
-/// sine that it gives is at most .045, since the peak is below `2 N`.
+/// Two kinds of values are wrong. A rise above 32, the largest value of an entry, is cut off, so the value is too
+/// small; a step that begins at 32 ends at `17/16 R / 1024`, where the sine is at most .065. For couplers of nearly
+/// equal length, the table over `s` holds the largest rise at all arguments below the peak, so the value is too large;
+/// the resulting sine is at most .045, because the peak is below `2 N`.
 ///
-/// The true margin is then below a tenth. By part 2 of the derivation it is at most the root of `m'^2 + q`. With the
-/// shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched couplers of
-/// equal length, where `m'` is .031, and .0031 for folded ones of a ratio of 8, where `m'` is .077.
+/// The true margin is then below a tenth. According to part 2 of the derivation, it is at most the root of `m'^2 + q`.
+/// With the shortest couplers, of 2048 U, and `e` at most 3.1, `q` is at most `7.3 k / ab`: .0071 for stretched
+/// couplers of equal length, where `m'` is .031, and .0031 for folded couplers of a ratio of 8, where `m'` is .077.
 pub const MIN_KNOWN_MARGIN: f64 = 0.08;
 
 /// The largest errors of the triangle's shape that is read from the tables of a pair of couplers.
 ///
 /// A table has sixteen steps per octave. Over a step of length `d`, a straight line differs from a function `f` by at
-/// most `d^2 / 8` times the largest second derivative of `f`. As `d` is at most a sixteenth of the argument `t`, that
-/// is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `n` is an exponent, `p + q t` a line
-/// and `l = q t / (p + q t)`,
+/// most `d^2 / 8` times the largest second derivative of `f`. As `d` is at most a sixteenth of the argument `t`, the
+/// difference is at most `|t^2 f''| / 2048`. For a product of powers of straight lines, where `n` is an exponent, `p +
+/// q t` a line and `l = q t / (p + q t)`,
 ///
 /// ```text
 /// t^2 f'' = f ((sum of n l)^2 - sum of n l^2)
 /// ```
 ///
-/// `Product::max_bend_and_value` bounds this over a step from the ends of the range of each `l`. Below its peak the
-/// function is constant, so it has no bend. The following roundings add to the error: those of the entries and of the
-/// value read, together 1 unit of Q10 (1.5 for the skew, whose entries are rounded to nearest and whose value down);
-/// that of the position within a step to 16 bits; and that of `R` and `N` down to whole units, by at most 1/4.
+/// `Product::max_bend_and_value` computes a bound of this over a step, from the ends of the range of each `l`. Below
+/// its peak the function is constant, so it has no bend. The following roundings add to the error: the rounding of the
+/// entries and of the value read, together 1 unit of Q10 (1.5 for the skew, whose entries are rounded to nearest and
+/// whose value is rounded down); the rounding of the position within a step to 16 bits; and the rounding of `R` and `N`
+/// down to whole units, by at most 1/4.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ShapeError {
-    /// The largest error of the rise, which has no unit.
+    /// The largest error of the rise, dimensionless.
     pub rise: f64,
-    /// The largest error of the skew, which has no unit.
+    /// The largest error of the skew, dimensionless.
     pub skew: f64,
 }
 
 impl ShapeError {
-    /// Returns the errors for couplers in whole steps, over a range of the squared distance of the crank tips, U^2.
-    pub fn of(left: i16, right: i16, [min_tips_sq, max_tips_sq]: [f64; 2]) -> Self {
+    /// Computes the errors for couplers in whole steps, over a range of the squared distance between the crank tips,
+    /// U^2.
+    pub fn compute(left: i16, right: i16, [min_tips_sq, max_tips_sq]: [f64; 2]) -> Self {
         let (a, b) = (f64::from(left) / 2.0, f64::from(right) / 2.0);
         let reach_sq = (a + b).powi(2).floor();
         let folded_sq = (a - b).powi(2).floor();
-        let root_of = |p: f64, q: f64| Factor { power: 0.5, p, q };
-        let inverse_of = |p: f64, q: f64| Factor { power: -1.0, p, q };
-        // A table begins with the octave that contains 1/1024 of the largest argument, so at 1/2048 of it or above.
+        let root = |p: f64, q: f64| Factor { power: 0.5, p, q };
+        let inverse = |p: f64, q: f64| Factor { power: -1.0, p, q };
+        // A table begins with the octave that contains 1/1024 of the largest argument, so at 1/2048 of that argument or
+        // above.
         let table_span = 2048.0;
         let mut rise_error = 0.0f64;
-        // `argument_range` is the range of the table's argument for the given distances, `table_range` the range over
-        // which the table is read, `first_argument` the argument at which its function begins.
+        // `argument_range` is the range of the table's argument for the given distances, `table_range` the range in
+        // which the table is read, and `first_argument` the argument at which the function begins.
         let mut include_reading_error =
             |product: Product,
              argument_range: [f64; 2],
@@ -141,9 +144,9 @@ impl ShapeError {
         let peak_sq = 2.0 * reach_sq * folded_sq / (reach_sq + folded_sq);
         include_reading_error(
             Product([
-                root_of(reach_sq, -1.0),
-                root_of(-folded_sq, 1.0),
-                inverse_of(0.0, 1.0),
+                root(reach_sq, -1.0),
+                root(-folded_sq, 1.0),
+                inverse(0.0, 1.0),
             ]),
             [min_tips_sq, max_tips_sq],
             [
@@ -154,9 +157,9 @@ impl ShapeError {
         );
         include_reading_error(
             Product([
-                root_of(0.0, 1.0),
-                root_of(reach_sq - folded_sq, -1.0),
-                inverse_of(reach_sq, -1.0),
+                root(0.0, 1.0),
+                root(reach_sq - folded_sq, -1.0),
+                inverse(reach_sq, -1.0),
             ]),
             [reach_sq - max_tips_sq, reach_sq - min_tips_sq],
             [reach_sq / 4.0 / table_span, reach_sq / 4.0],
@@ -164,9 +167,9 @@ impl ShapeError {
         );
         include_reading_error(
             Product([
-                root_of(0.0, 1.0),
-                root_of(reach_sq - folded_sq, -1.0),
-                inverse_of(folded_sq, 1.0),
+                root(0.0, 1.0),
+                root(reach_sq - folded_sq, -1.0),
+                inverse(folded_sq, 1.0),
             ]),
             [min_tips_sq - folded_sq, max_tips_sq - folded_sq],
             [folded_sq / table_span, folded_sq],
@@ -174,7 +177,7 @@ impl ShapeError {
         );
         let min_argument = min_tips_sq.max(reach_sq / table_span);
         let skew = (reach_sq * folded_sq).sqrt() / min_argument;
-        // For f = 1 / t, |t^2 f''| is 2 f; the step begins at most a sixteenth below the argument.
+        // For f = 1 / t, |t^2 f''| is 2 f; a step begins at most a sixteenth below the argument.
         let reading_error = 2.0 * skew * (17.0 / 16.0) / 2048.0 + skew / 65536.0;
         let skew_error = if left == right {
             0.0
@@ -200,13 +203,13 @@ struct Factor {
 struct Product([Factor; 3]);
 
 impl Product {
-    /// Returns upper bounds of `|t^2 f''|` and of the value, over a range of `t` that is extended by a step at either
-    /// end, but not below `first_argument`.
+    /// Computes upper bounds of `|t^2 f''|` and of the value over a range of `t`. The range is extended by a step at
+    /// either end, but not below `first_argument`.
     fn max_bend_and_value(&self, [low, high]: [f64; 2], first_argument: f64) -> [f64; 2] {
         let t_ends = [(low * 16.0 / 17.0).max(first_argument), high * 17.0 / 16.0];
         let (mut sum_range, mut square_sum_range, mut max_value) = ([0.0; 2], [0.0; 2], 1.0f64);
         for Factor { power, p, q } in self.0 {
-            // At a limit of the range, rounding could make the line zero or negative.
+            // At an end of the range, rounding might make the line zero or negative.
             let line_ends = t_ends.map(|t| (p + q * t).max(1e-9));
             let mut l_range = [q * t_ends[0] / line_ends[0], q * t_ends[1] / line_ends[1]];
             l_range.sort_by(f64::total_cmp);
@@ -241,7 +244,7 @@ impl Product {
     }
 }
 
-/// The rounded numbers of a five-bar. The errors of its margins depend on them and on the true bars.
+/// The rounded lengths of a five-bar, on which the errors of its margins depend.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundedBars {
     /// The scale of the five-bar's lengths.
@@ -250,8 +253,7 @@ pub struct RoundedBars {
     pub couplers: [i16; 2],
 }
 
-/// The largest errors of the margins of a five-bar (head or tail), at one pair of crank angles or over a range of
-/// them.
+/// The largest errors of a five-bar's margins, at one pair of crank angles or over a range of pairs.
 #[derive(Clone, Copy, Debug)]
 pub struct EndErrors {
     /// The error of the type-2 margin's magnitude, a sine.
@@ -260,28 +262,28 @@ pub struct EndErrors {
     pub type1_left: f64,
     /// The error of the right crank's type-1 margin, a sine.
     pub type1_right: f64,
-    /// The error of the distance of the crank tips along the base, mm.
+    /// The error of the distance between the crank tips along the base, mm.
     pub gap_x: f64,
-    /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close everywhere in it.
+    /// The smallest true type-2 margin in the range, a sine; 0 if the loop does not close in all of the range.
     pub min_type2: f64,
-    /// True if the tables have a value everywhere in the range. If not, the computed margins may be too small by more
+    /// True if the tables have a value in all of the range. Otherwise the computed margins may be too small by more
     /// than these errors.
     pub are_margins_known: bool,
 }
 
 impl EndErrors {
-    /// Returns the errors for a true five-bar, in mm, its bars rounded to steps, and crank angles in its own frame,
+    /// Computes the errors for a true five-bar, in mm, its bars rounded to steps, and crank angles in its own frame,
     /// deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may return.
-    pub fn of(
+    pub fn at_angles(
         five_bar: &kinematics::FiveBar,
         rounded_bars: impl Into<RoundedBars>,
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::direction);
-        let tip_of = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
+        let tip = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
         let (left_tip, right_tip) = (
-            tip_of(five_bar.left_crank_length, left),
-            tip_of(five_bar.right_crank_length, right),
+            tip(five_bar.left_crank_length, left),
+            tip(five_bar.right_crank_length, right),
         );
         let distance_mm =
             (five_bar.base + right_tip[0] - left_tip[0]).hypot(right_tip[1] - left_tip[1]);
@@ -294,9 +296,9 @@ impl EndErrors {
         )
     }
 
-    /// Returns the largest errors over all crank angles at which the distance of the crank tips is from `near` to
+    /// Computes the largest errors over all crank angles at which the distance between the crank tips is `near` to
     /// `far`, mm.
-    pub fn between(
+    pub fn over_range(
         five_bar: &kinematics::FiveBar,
         rounded_bars: impl Into<RoundedBars>,
         [near, far]: [f64; 2],
@@ -304,8 +306,8 @@ impl EndErrors {
         Self::compute(five_bar, rounded_bars.into(), [2.0; 2], [near, far])
     }
 
-    /// Computes the errors from the sums of the two crank directions' `|cos|` and `|sin|`, and the range of the
-    /// distance of the crank tips. Single letters are those of the module's derivation.
+    /// Computes the errors from the sums of `|cos|` and `|sin|` of the two crank directions, and from the range of the
+    /// distance between the crank tips. Single letters have their meaning in the module's derivation.
     fn compute(
         five_bar: &kinematics::FiveBar,
         rounded_bars: RoundedBars,
@@ -329,27 +331,27 @@ impl EndErrors {
         let min_area = 2.0 * (a - 0.25) * (b - 0.25);
         let c_error = (far + 0.25 + z) / min_area;
         let can_close = c <= 1.0;
-        let sine_sq_of = |c: f64| (1.0 - c * c).max(0.0);
+        let sine_sq = |c: f64| (1.0 - c * c).max(0.0);
         let contains_right_angle = near_cosine > 0.0 && far_cosine < 0.0;
         let max_sine_sq = if contains_right_angle {
             1.0
         } else {
-            sine_sq_of(near_cosine.abs().min(far_cosine.abs()))
+            sine_sq(near_cosine.abs().min(far_cosine.abs()))
         };
-        let m_sq = sine_sq_of(c);
+        let m_sq = sine_sq(c);
         let m = m_sq.sqrt();
         let q = if can_close {
             c_error * (2.0 * c + c_error)
         } else {
             2.0 * c_error
         };
-        let root_of = |square: f64| square.max(0.0).sqrt().min(1.0);
-        let low_root = root_of(m_sq - q);
-        let sine_error = (m - low_root).max(root_of(m_sq + q) - m);
-        let high_root = root_of(max_sine_sq + q);
+        let root = |square: f64| square.max(0.0).sqrt().min(1.0);
+        let low_root = root(m_sq - q);
+        let sine_error = (m - low_root).max(root(m_sq + q) - m);
+        let high_root = root(max_sine_sq + q);
 
         let [left, right] = rounded_bars.couplers;
-        let shape_error = ShapeError::of(left, right, tips_sq_range);
+        let shape_error = ShapeError::compute(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
         let mean_coupler = (left + right) / 2.0;
         let square_step = 2f64.powi((mean_coupler * mean_coupler).log2().floor() as i32 - 14);
@@ -362,7 +364,7 @@ impl EndErrors {
         let type2_error = sine_error + product_error + 2.0 * Q15_STEP + area_error + Q15_STEP;
 
         let line_turn = (e / near.max(e)).asin();
-        let type1_error_of = |coupler: f64| {
+        let type1_error = |coupler: f64| {
             let a = coupler / 2.0;
             let tip_turn = (0.5 + e) / ((a - 0.25) * low_root.max(1e-9)) + line_turn;
             let (near, far) = (tips_sq_range[0].sqrt().max(1.0), far + e);
@@ -375,8 +377,8 @@ impl EndErrors {
         };
         Self {
             type2: type2_error,
-            type1_left: type1_error_of(left),
-            type1_right: type1_error_of(right),
+            type1_left: type1_error(left),
+            type1_right: type1_error(right),
             gap_x: e_x / u_per_mm,
             min_type2: m,
             are_margins_known: can_close && low_root >= MIN_KNOWN_MARGIN,
@@ -389,9 +391,9 @@ impl EndErrors {
     }
 }
 
-/// Returns the largest error of a slider's length, mm. In each coordinate, four roundings change the length by up to
-/// half a step each: that of the offset or the base, those of the two arms, and that of the sum of the products. The
-/// sines and cosines of the arms' directions are off by up to [`MAX_DIRECTION_ERROR`].
+/// Computes the largest error of a slider's length, mm. In each coordinate, four roundings change the length by at most
+/// half a step each: the rounding of the offset or the base, of each of the two arms, and of the sum of the products.
+/// The sines and cosines of the arms' directions have an error of at most [`MAX_DIRECTION_ERROR`].
 pub fn slider_error(slider: &kinematics::Slider, rounded_slider: &Slider) -> f64 {
     let steps_per_mm = steps_per_mm(rounded_slider.scale);
     let arm_sum =
@@ -416,15 +418,15 @@ mod tests {
 
         // Tests in `guard::clearance` and `guard::five_bar` check the bound at a single pair of angles.
         #[test]
-        fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_it(
+        fn a_bound_over_a_range_holds_at_every_pair_of_angles_in_the_range(
             (robot, pose) in Sample::random().prop_flat_map(|robot| {
                 let pose = robot.any_pose();
                 (Just(robot), pose)
             }),
-            share_below in 0.0..1.0f64,
-            share_above in 0.0..1.0f64,
-            // The decimal logarithm of the range's width in mm. The widest range exceeds the change of the crank
-            // tips' distance within a certified cell.
+            fraction_below in 0.0..1.0f64,
+            fraction_above in 0.0..1.0f64,
+            // The decimal logarithm of the range's width in mm. The largest width exceeds the change of the crank tips'
+            // distance within a certified cell.
             log_width in -4.0..0.7f64,
         ) {
             let [a1, a2, ..] = robot.degrees(&pose);
@@ -433,9 +435,9 @@ mod tests {
                 return Ok(());
             };
             let (distance_mm, width_mm) = (exact_pose.gap.length(), 10f64.powf(log_width));
-            let range = [(distance_mm - share_below * width_mm).max(0.0), distance_mm + share_above * width_mm];
-            let errors_at_angles = EndErrors::of(&five_bar, &robot.ends[0], [a1, a2]);
-            let errors_over_range = EndErrors::between(&five_bar, &robot.ends[0], range);
+            let range = [(distance_mm - fraction_below * width_mm).max(0.0), distance_mm + fraction_above * width_mm];
+            let errors_at_angles = EndErrors::at_angles(&five_bar, &robot.ends[0], [a1, a2]);
+            let errors_over_range = EndErrors::over_range(&five_bar, &robot.ends[0], range);
             prop_assert!(errors_over_range.min_type2 <= exact_pose.type2 + 1e-12);
             if !errors_over_range.are_margins_known {
                 return Ok(());
@@ -447,7 +449,7 @@ mod tests {
                 ("type-1 right", errors_at_angles.type1_right, errors_over_range.type1_right),
                 ("gap", errors_at_angles.gap_x, errors_over_range.gap_x),
             ] {
-                prop_assert!(error <= bound + 1e-12, "{name}: {error} of {bound}");
+                prop_assert!(error <= bound + 1e-12, "{name}: {error}, at most {bound} allowed");
             }
         }
     }

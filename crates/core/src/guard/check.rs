@@ -1,10 +1,10 @@
-//! The checks of a robot's section beyond its CRC: no number in it may harm a servo or the board.
+//! The checks of a robot's section beyond its CRC: no number may damage a servo or the board.
 //!
-//! A section with a correct CRC was sealed by a host, which has checked every number and every sample of every gait. So
-//! the device trusts the numbers, except those that could damage hardware: a pin that the serial line or the LED uses,
-//! a pulse that a servo does not tolerate, and a neutral pose in which the linkage would jam as soon as the servos
-//! wake. Any other wrong number can only make the robot walk badly: every address of flash can be read, every index is
-//! checked where it is used, and each pulse stays within its servo's travel.
+//! A section with a correct CRC was made by a host that has checked every number and every sample of every gait. The
+//! device therefore checks only the numbers that could damage hardware: a pin of the serial port or the LED, a pulse
+//! that a servo does not tolerate, and a neutral pose in which the linkage would jam as soon as the servos wake. Any
+//! other wrong number can only make the robot walk badly: every address of flash is readable, every index is checked
+//! where it is used, and each pulse stays within its servo's travel.
 
 use core::mem::offset_of;
 
@@ -19,16 +19,16 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::{self, NUMBERS_OFFSET, Numbers, SectionError};
 use crate::numbers::units::{CYCLES_PER_US, Sweep};
 
-/// The shortest and the longest pulse that a hobby servo tolerates, CPU cycles; one cycle is allowed for
+/// The shortest and the longest pulse that a hobby servo tolerates, CPU cycles, with an allowance of one cycle for
 /// rounding.
 const PULSE_LIMITS_CYCLES: [u16; 2] = [500 * CYCLES_PER_US - 1, 2500 * CYCLES_PER_US + 1];
 
-/// True for D2 to D12 and A0 to A5: any pin other than those of the serial line and the LED.
+/// True for D2 to D12 and A0 to A5, the pins that neither the serial port nor the LED uses.
 const fn is_usable_pin(pin: u8) -> bool {
     pin.wrapping_sub(2) < 18 && pin != 13
 }
 
-/// The offset of a field of the numbers, bytes from the section's beginning.
+/// The offset of a field of the numbers from the section's beginning, bytes.
 macro_rules! offset {
     ($($field:tt)*) => {
         NUMBERS_OFFSET + offset_of!(Numbers, $($field)*) as u16
@@ -39,7 +39,7 @@ impl<'a> Robot<'a> {
     /// Checks the section at the beginning of `flash` and returns its robot.
     ///
     /// # Errors
-    /// Returns the reason why the section is not a usable robot.
+    /// Fails if the section is not a valid robot.
     #[inline(never)]
     pub fn open(flash: Region<'a>) -> Result<Self, SectionError> {
         let length = section::check(flash)?;
@@ -54,17 +54,20 @@ impl<'a> Robot<'a> {
     fn is_harmless(&self) -> bool {
         self.has_valid_pins() && self.has_valid_servos() && {
             let neutral = Pose::NEUTRAL;
-            Clearance::of(self, &neutral).first_hazard(self).is_none()
+            Clearance::measure(self, &neutral)
+                .first_hazard(self)
+                .is_none()
         }
     }
 
-    /// Reads the 16-bit number at an offset, in bytes from the section's beginning.
+    /// Reads the 16-bit number at an offset from the section's beginning, in bytes.
     #[inline(never)]
     fn read_word(&self, offset: u16) -> u16 {
         self.section().read(offset)
     }
 
-    /// True if each servo has a usable pin to itself, and the pin that measures the rail, if any, is an analogue input.
+    /// True if each servo has a usable pin of its own, and the pin that measures the rail, if any, is an analogue
+    /// input.
     #[inline(always)]
     fn has_valid_pins(&self) -> bool {
         let rail_pin = self.read_word(offset!(rail_pin)) as u8;
@@ -79,7 +82,7 @@ impl<'a> Robot<'a> {
         rail_pin == 0 || rail_pin.wrapping_sub(14) < 6
     }
 
-    /// Counts the servos that use a pin, plus one if the rail is measured at it.
+    /// Counts the users of a pin: the servos at the pin, and the rail if it is measured there.
     #[inline(never)]
     fn count_users(&self, pin: u8) -> u8 {
         let mut user_count = u8::from(self.read_word(offset!(rail_pin)) as u8 == pin);
@@ -91,24 +94,24 @@ impl<'a> Robot<'a> {
         user_count
     }
 
-    /// Returns the input of a record of the kind [`Step::UNTIL`]; [`Input::NONE`] if its pin is not usable, or if a
-    /// servo or the rail uses that pin, since the input's pull-up would disturb them.
+    /// Returns the input of a record of the kind [`Step::UNTIL`]. Returns [`Input::NONE`] if its pin is not usable, or
+    /// is used by a servo or the rail, which the input's pull-up would disturb.
     pub(crate) fn input(&self, step: &Step) -> Input {
-        let input = Input::of_step(step);
+        let input = Input::from_step(step);
         match is_usable_pin(input.pin()) && self.count_users(input.pin()) == 0 {
             true => input,
             false => Input::NONE,
         }
     }
 
-    /// True if every servo's travel includes the neutral angle and the range that the gaits need, and all its pulses
-    /// are tolerable.
+    /// True if every servo's travel covers the neutral angle and the range that the gaits need, and the servo tolerates
+    /// all pulses of its travel.
     #[inline(always)]
     fn has_valid_servos(&self) -> bool {
         let mut index = 0;
         while index < 4 {
             let servo = Servo::at(index);
-            let calibration: Calibration = self.calibration_of(servo);
+            let calibration: Calibration = self.servo_calibration(servo);
             let [min, max] = PULSE_LIMITS_CYCLES;
             let is_in_pulse_range = |pulse: u16| pulse.wrapping_sub(min) <= max - min;
             if !calibration.reaches(Sweep(0))

@@ -1,12 +1,12 @@
-//! The singularity guard: measures the distance of a pose from every hazard.
+//! The singularity guard: measures the distance between a pose and every hazard.
 //!
-//! Every frame passes the guard before it reaches a servo, whether it comes from a gait, a point-to-point move
-//! or a typed pose. The guard tests the pose itself, for any pose within the servos' travel; it does not
-//! approximate the safe poses by a box. Head and tail share its code, because in its own frame the tail is
-//! built like the head.
+//! Every frame passes the guard before it is sent to the servos, whether it comes from a gait, a point-to-point move or
+//! the command `pose`. The guard tests the pose itself, for any pose within the servos' travel, and does not
+//! approximate the safe poses by a box. The head and the tail share this code, because the tail, in its own frame, has
+//! the head's geometry.
 //!
-//! Every condition depends on one servo or on two, so `make prove` can check the guard at every pose against
-//! floating-point arithmetic, by trying every pair of angles.
+//! Every condition depends on one or two servos. Therefore `make prove` can compare the guard at every pose with
+//! floating-point arithmetic, by testing every pair of angles.
 
 use lizard_avr::flash;
 
@@ -42,31 +42,31 @@ flash! {
     ];
 }
 
-/// Returns the first limit that a pose violates, if any. A pose in certified cells is not measured,
-/// because all poses in them were proved safe when the section was made.
+/// Returns the first limit that a pose violates, if any. Skips poses in certified cells, which were proved safe when
+/// the section was made.
 #[inline(never)]
 pub fn find_hazard(robot: &Robot, pose: &Pose) -> Option<Hazard> {
     if robot.is_certified(pose) {
         return None;
     }
-    Clearance::of(robot, pose).first_hazard(robot)
+    Clearance::measure(robot, pose).first_hazard(robot)
 }
 
-/// Every margin of one pose.
+/// The margins and slider lengths of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clearance {
     /// The type-2 margins of head and tail, the type-1 margins of A1 to A4, and the leg margins of A1 to A4. A leg
-    /// margin is sin theta_lg in the frame of the leg's five-bar; it is negative beyond a change point (0, 180 deg),
+    /// margin is sin theta_lg in the frame of the leg's five-bar. It is negative beyond a change point (0, 180 deg),
     /// where the parallelogram may have flipped to its crossed form.
     pub margins: [Sine; MARGIN_COUNT],
-    /// The squared lengths of the left and the right slider, each in squared steps of its own scale.
+    /// The squared lengths of the left and the right slider, each in squared steps of the slider's scale.
     pub slider_lengths_sq: [u32; 2],
 }
 
 impl Clearance {
-    /// Measures a pose.
+    /// Computes every margin and slider length of a pose.
     #[inline(never)]
-    pub fn of(robot: &Robot, pose: &Pose) -> Self {
+    pub fn measure(robot: &Robot, pose: &Pose) -> Self {
         let mut cranks = [Direction { sin: 0, cos: 0 }; 4];
         let mut clearance = Self {
             margins: [Sine(0); MARGIN_COUNT],
@@ -78,7 +78,8 @@ impl Clearance {
         )]
         for index in 0..cranks.len() {
             let servo = Servo::at(index);
-            let mut crank = Direction::of(robot.neutral_angle_of(servo).swept(pose.0[index]));
+            let mut crank =
+                Direction::from_angle(robot.servo_neutral_angle(servo).offset_by(pose.0[index]));
             // In the tail's own frame, see `Direction::in_tail_frame`.
             if servo.is_rear() {
                 crank.sin = -crank.sin;
@@ -95,20 +96,20 @@ impl Clearance {
         clearance
     }
 
-    /// Measures the margins of the five-bar of head or tail.
-    // Not inlined, like `slider_length_sq`: otherwise the compiler unrolls the loop over both ends, which costs flash.
+    /// Computes the margins of an end's five-bar.
+    // Not inlined, like `slider_length_sq`. Otherwise the compiler unrolls the loop over both ends, which costs flash.
     #[inline(never)]
     fn measure_end(&mut self, robot: &Robot, end: End, cranks: &[Direction; 4]) {
         let [left, right] = end.servos();
         let margins = robot
             .five_bar(end)
-            .margins(left.of(cranks), right.of(cranks));
+            .margins(left.pick(cranks), right.pick(cranks));
         self.margins[end as usize] = margins.type2;
         self.margins[FIRST_TYPE1_INDEX + left.index()] = margins.type1_left;
         self.margins[FIRST_TYPE1_INDEX + right.index()] = margins.type1_right;
     }
 
-    /// The smallest of the ten margins.
+    /// Returns the smallest of the ten margins.
     pub fn smallest_margin(&self) -> Sine {
         let mut min_margin = Sine(i16::MAX);
         for margin in &self.margins {
@@ -117,8 +118,7 @@ impl Clearance {
         min_margin
     }
 
-    /// Returns the first limit that this pose violates, if any. The margins come before the strokes, which are
-    /// checked left before right.
+    /// Returns the first limit that this pose violates, if any. Checks the margins, then the left and the right stroke.
     #[inline(never)]
     pub fn first_hazard(&self, robot: &Robot) -> Option<Hazard> {
         let limits = robot.limits();
@@ -146,10 +146,10 @@ impl Clearance {
     }
 }
 
-/// Returns the squared length of a side's slider, in squared steps of its own scale.
+/// Computes the squared length of a side's slider, in squared steps of the slider's scale.
 #[inline(never)]
 fn slider_length_sq(robot: &Robot, side: Side, cranks: &[Direction; 4]) -> u32 {
-    let [mut front, mut rear] = side.servos().map(|servo| *servo.of(cranks));
+    let [mut front, mut rear] = side.servos().map(|servo| *servo.pick(cranks));
     let mut slider = robot.slider(side);
     if matches!(side, Side::Right) {
         slider = slider.mirrored();

@@ -2,12 +2,12 @@
 //!
 //! Two cranks carry two couplers, whose common joint is the end point, the head or the tail. If the couplers line up,
 //! the end point can move although both servos hold: a type-2 singularity. If a crank lines up with its coupler, the
-//! elbow between them can change to its other working mode: a type-1 singularity. The margins are the sines of the
-//! angles between the bars, so 0 is singular and 1 is a right angle.
+//! elbow between them can change to its other working mode: a type-1 singularity. Each margin is the sine of the angle
+//! between two bars, so 0 is singular and 1 is a right angle.
 //!
-//! As in the paper, theta1 and theta4 are the directions of the left and the right crank, theta2 and theta3 those of
-//! their couplers. `k` is the vector from the left crank tip to the right one; `a` is the left coupler, `b` the right
-//! one; rise and skew are those of [`crate::numbers::couplers`] at `s = |k|^2`. For a crank of direction `u`,
+//! As in the paper, theta1 and theta4 are the directions of the left and the right crank, theta2 and theta3 the
+//! directions of their couplers. `k` is the vector from the left crank tip to the right one; `a` is the left coupler,
+//! `b` the right one; [`crate::numbers::couplers`] defines rise and skew at `s = |k|^2`. For a crank of direction `u`,
 //! `cross = k_x u_y - k_y u_x` and `dot = k . u`. Then
 //!
 //! ```text
@@ -16,8 +16,8 @@
 //! type-1, right  2 b sin(theta3 - theta4) = (1 - skew) cross + rise dot
 //! ```
 //!
-//! The conditions that the paper prints, sin(theta2 + theta3) = 0 and sin(2 theta11) = 0, are not used: both hold in
-//! the neutral pose, in which the robot stands safely, and both miss the real singularity.
+//! The paper's printed conditions, sin(theta2 + theta3) = 0 and sin(2 theta11) = 0, are not used: both hold in the
+//! neutral pose, in which the robot stands safely, and neither holds at the real singularity.
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -35,11 +35,11 @@ pub struct FiveBar<'a> {
     tables: Tables<'a>,
 }
 
-/// The margins of the five-bar of head or tail.
+/// The margins of an end's five-bar.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EndMargins {
-    /// sin(theta3 - theta2). It is negative if the crank tips have crossed, which no robot can reach without passing
-    /// the singularity.
+    /// sin(theta3 - theta2). Negative if the crank tips have crossed, which no robot can reach without passing the
+    /// singularity.
     pub type2: Sine,
     /// sin(theta1 - theta2); negative if the left elbow is bent inwards.
     pub type1_left: Sine,
@@ -51,7 +51,7 @@ impl<'a> FiveBar<'a> {
     /// A linkage without bars, which never closes.
     pub const NONE: Self = Self::new(Bars::NONE, Tables::NONE);
 
-    /// Creates a linkage with these bars and the tables of its couplers.
+    /// Creates a linkage from its bars and the tables of its couplers.
     pub const fn new(bars: Bars, tables: Tables<'a>) -> Self {
         Self { bars, tables }
     }
@@ -61,13 +61,13 @@ impl<'a> FiveBar<'a> {
         &self.bars
     }
 
-    /// Computes the margins for these directions of the cranks, in the end's own frame. All are zero if the loop cannot
-    /// close, or if the tables have no value; the type-2 margin is then below a tenth.
+    /// Computes the margins for these directions of the cranks, in the end's own frame. All margins are zero if the
+    /// loop cannot close or the tables have no value; the true type-2 margin is then below a tenth.
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
         let bars = &self.bars;
-        // One unit is two steps of the bars, so that the vector fits into 16 bits and each product is shifted by a
-        // whole number of bytes.
+        // One unit is two steps of the bars, so that the vector fits into 16 bits and each product is shifted by whole
+        // bytes.
         let tips = TipVector {
             x: (bars.base >> 1).wrapping_add(rounded_upper_half(
                 mul(bars.right_crank, right.cos) - mul(bars.left_crank, left.cos),
@@ -82,7 +82,7 @@ impl<'a> FiveBar<'a> {
         else {
             return EndMargins::default();
         };
-        // Rounded to nearest, since a small margin leaves few bits.
+        // Rounded to nearest, because a small margin has few bits.
         let square = (tips_sq + (1 << (bars.square_shift - 1))) >> bars.square_shift;
         let square = square.min(0x7fff) as i16;
         let area = (mul(rise, square) >> bars.area_shift) as u16;
@@ -96,7 +96,7 @@ impl<'a> FiveBar<'a> {
 }
 
 impl<'a> Robot<'a> {
-    /// The five-bar of head or tail, in its own frame.
+    /// Returns an end's five-bar, in the frame of that end.
     pub fn five_bar(&self, end: End) -> FiveBar<'a> {
         FiveBar::new(self.bars(end), self.tables(end))
     }
@@ -110,7 +110,8 @@ struct TipVector {
 }
 
 impl TipVector {
-    /// The type-1 margin of a crank: `(1 + skew) cross + rise dot`, divided by twice the length of its coupler.
+    /// Computes the type-1 margin of a crank: `(1 + skew) cross + rise dot`, divided by twice the length of the
+    /// coupler.
     #[inline(never)]
     fn type1_margin(
         self,
@@ -121,7 +122,7 @@ impl TipVector {
     ) -> Sine {
         let cross = rounded_upper_half((mul(self.x, crank.sin) - mul(self.y, crank.cos)) << 1);
         let dot = rounded_upper_half((mul(self.x, crank.cos) + mul(self.y, crank.sin)) << 1);
-        // The sum is at most twice the coupler; an overflow of its parts beyond 16 bits cancels.
+        // The sum is at most twice the coupler, so overflows of its terms beyond 16 bits cancel.
         let mut scaled_sine = cross.wrapping_add((mul(rise, dot) >> 10) as i16);
         if skew != 0 {
             scaled_sine = scaled_sine.wrapping_add((mul(skew, cross) >> 10) as i16);
@@ -130,12 +131,12 @@ impl TipVector {
     }
 }
 
-/// Limits a sine that exceeds 1 because of rounding.
+/// Limits a sine whose magnitude exceeds 1 because of rounding.
 fn saturate(margin: i32) -> i16 {
     margin.clamp(-0x7fff, 0x7fff) as i16
 }
 
-/// The upper 16 bits of a product, rounded to nearest.
+/// Returns the upper 16 bits of a product, rounded to nearest.
 pub(crate) fn rounded_upper_half(product: i32) -> i16 {
     (product.wrapping_add(0x8000) >> 16) as i16
 }

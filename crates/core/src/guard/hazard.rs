@@ -8,17 +8,17 @@ use crate::numbers::units::Sine;
 // Discriminants start at 3, so that the absence of a hazard is stored as zero: see `Main::new`.
 #[repr(u8)]
 pub enum Margin {
-    /// The margin between the two couplers of head or tail.
+    /// The margin between the two couplers of an end.
     Type2(End) = 3,
-    /// The margin between the crank on a servo and its coupler, negative if the elbow is bent inwards.
+    /// The margin between a servo's crank and its coupler, negative if the elbow is bent inwards.
     Type1(Servo),
-    /// The margin of the parallelogram leg of a servo, negative beyond a change point.
+    /// The margin of a servo's parallelogram leg, negative beyond a change point.
     Leg(Servo),
 }
 
 impl Margin {
-    /// True if `value` is a measured value. If two couplers are nearly in line, or cannot meet, the guard knows only
-    /// that their type-2 margin is below a tenth, and the value is 0; see [`crate::guard::five_bar::FiveBar::margins`].
+    /// True if `value` is exact. If two couplers are nearly in line or cannot meet, the value is 0, which means only
+    /// that their type-2 margin is below a tenth; see [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)
     }

@@ -1,4 +1,4 @@
-//! The guard: the geometry that distinguishes safe poses from those that could break a linkage.
+//! The guard: the geometry that distinguishes safe poses from poses that could break a linkage.
 //!
 //! [`clearance`] measures a pose: the singularity margins of each [five-bar](five_bar) and the lengths of the
 //! [sliders](slider). [`hazard`] describes the first limit that a pose violates.

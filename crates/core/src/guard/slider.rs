@@ -1,8 +1,8 @@
 //! The length of the slider, the prismatic joint on each side of the body.
 //!
 //! The slider has two halves and connects an arm of the front crank to an arm of the rear crank on the same side (an
-//! RRPRR five-bar). The slider has no singularity of its own, since its block of the passive Jacobian is just its
-//! length. But its halves can be pulled apart or collide.
+//! RRPRR five-bar). The slider has no singularity, because its block of the passive Jacobian is its length. But its
+//! halves can be pulled apart or collide.
 
 use lizard_avr::{mul, mul_unsigned};
 
@@ -11,7 +11,7 @@ use crate::guard::trig::Direction;
 use crate::numbers::slider::Slider;
 
 impl Slider {
-    /// Returns the slider mirrored in the y axis of the chassis, which turns a right slider into a left one.
+    /// Returns the slider mirrored in the y axis of the chassis, which converts a right slider to a left slider.
     pub const fn mirrored(self) -> Self {
         Self {
             offset: self.offset.wrapping_neg(),
@@ -19,11 +19,11 @@ impl Slider {
         }
     }
 
-    /// Returns the slider's squared length, in squared steps, for these directions of the front crank and of the rear
-    /// crank; the latter in the tail's own frame.
+    /// Computes the slider's squared length, in squared steps, for these directions of the front and the rear crank.
+    /// The direction of the rear crank is in the tail's own frame.
     ///
-    /// Valid only for the left side, whose front arm is a right angle counter-clockwise of its crank; a right side has
-    /// to be mirrored first.
+    /// Valid only for the left side, whose front arm is 90 degrees counter-clockwise from its crank; a right slider
+    /// must be mirrored first.
     #[inline(never)]
     pub fn length_sq(&self, front: &Direction, rear: &Direction) -> u32 {
         let arm_sum_x = rounded_upper_half(
@@ -77,12 +77,12 @@ mod tests {
         ) {
             let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
-            // Each crank is in the frame of its end, so the rear one is in the tail's.
+            // Each crank is in the frame of its end, so the rear crank is in the tail's frame.
             let length = if is_mirrored {
-                let [front, rear] = [front, rear].map(|angle| Direction::of(angle).mirrored());
+                let [front, rear] = [front, rear].map(|angle| Direction::from_angle(angle).mirrored());
                 rounded_slider.mirrored().length_sq(&front, &rear)
             } else {
-                rounded_slider.length_sq(&Direction::of(front), &Direction::of(rear))
+                rounded_slider.length_sq(&Direction::from_angle(front), &Direction::from_angle(rear))
             };
             let (expected_side, turn_deg) = if is_mirrored {
                 (kinematics::Side::Right, -90.0)
@@ -93,17 +93,17 @@ mod tests {
             let pose = slider.forward(-degrees(rear) - turn_deg, degrees(front) + turn_deg).expect("the slider has a length");
             let length_mm = f64::from(length).sqrt() / steps_per_mm(rounded_slider.scale);
             let max_error = bounds::slider_error(&slider, &rounded_slider);
-            prop_assert!((length_mm - pose.d).abs() <= max_error, "{length_mm} for {} mm", pose.d);
+            prop_assert!((length_mm - pose.d).abs() <= max_error, "{length_mm} mm for {} mm", pose.d);
         }
 
         #[test]
-        fn the_travel_counts_hundredths_of_a_millimetre_from_the_nominal_length(
+        fn the_displacement_from_the_nominal_length_is_in_hundredths_of_a_millimetre(
             slider in any_slider(),
             length: u16,
         ) {
             let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
             let exact = (f64::from(length) - f64::from(rounded_slider.nominal_length)) * 100.0 / steps_per_mm(rounded_slider.scale);
-            prop_assert!((f64::from(rounded_slider.travel(length)) - exact).abs() <= 0.5);
+            prop_assert!((f64::from(rounded_slider.displacement(length)) - exact).abs() <= 0.5);
         }
 
         #[test]
@@ -113,9 +113,9 @@ mod tests {
         ) {
             let max = min + stroke_length;
             let slider = Slider { stroke_min: min, stroke_max: max, ..slider_in_steps(&sample_slider(), -10.0, 10.0) };
-            let square_of = |length: u16| u32::from(length) * u32::from(length);
-            prop_assert!(slider.allows(square_of(min)) && slider.allows(square_of(max)));
-            prop_assert!(!slider.allows(square_of(min) - 1) && !slider.allows(square_of(max) + 1));
+            let square = |length: u16| u32::from(length) * u32::from(length);
+            prop_assert!(slider.allows(square(min)) && slider.allows(square(max)));
+            prop_assert!(!slider.allows(square(min) - 1) && !slider.allows(square(max) + 1));
         }
     }
 

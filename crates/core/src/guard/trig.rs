@@ -1,8 +1,8 @@
 //! Sine and cosine of an angle, from a quarter wave in flash.
 //!
-//! The guard needs the directions of four cranks in every frame. A table of 129 points with linear interpolation is
-//! within 4.5e-5 of the sine (one step of Q15 is 3.1e-5). An error that matters to the margins would be a hundred times
-//! larger.
+//! The guard requires the directions of four cranks in every frame. A table of 129 points with linear interpolation has
+//! an error of at most 4.5e-5 (one step of Q15 is 3.1e-5). Only an error a hundred times as large would affect the
+//! margins.
 
 use lizard_avr::flash;
 
@@ -19,7 +19,7 @@ pub struct Direction {
 
 impl Direction {
     /// Returns the direction of an angle, read from the table.
-    pub fn of(angle: Angle) -> Self {
+    pub fn from_angle(angle: Angle) -> Self {
         let angle = angle.0;
         let quarter_angle = angle & 0x3fff;
         let rising_sine = first_quadrant_sine(quarter_angle);
@@ -33,8 +33,8 @@ impl Direction {
         Self { sin, cos }
     }
 
-    /// Returns the direction mirrored in the y axis of the chassis, which turns a crank of the right side into one of
-    /// the left.
+    /// Returns the direction mirrored in the y axis of the chassis, which converts a crank of the right side to a crank
+    /// of the left side.
     pub const fn mirrored(self) -> Self {
         Self {
             sin: self.sin,
@@ -42,8 +42,8 @@ impl Direction {
         }
     }
 
-    /// Returns the direction mirrored in the x axis of the chassis: that of a tail crank in the tail's own frame, in
-    /// which the tail is built like the head.
+    /// Returns the direction mirrored in the x axis of the chassis: the direction of a tail crank in the tail's own
+    /// frame, in which the tail has the head's geometry.
     pub const fn in_tail_frame(self) -> Self {
         Self {
             sin: -self.sin,
@@ -61,7 +61,7 @@ fn first_quadrant_sine(quarter_angle: u16) -> i16 {
     let entry = QUARTER_WAVE_SINES.at(index).load();
     // At 0x4000, `at` returns the last entry.
     let next_entry = QUARTER_WAVE_SINES.at(index + 1).load();
-    // A step rises by at most 402, more than a byte holds, so its two bytes are multiplied separately.
+    // A step is at most 402, which does not fit into a byte, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
     let fraction = (quarter_angle << 1) & 0xff;
     let rise = (step >> 8) * fraction + (((step & 0xff) * fraction + 0x80) >> 8);
@@ -78,7 +78,7 @@ const fn quarter_wave() -> [i16; STEP_COUNT + 1] {
     let mut k = 0;
     while k < STEP_COUNT {
         let x = core::f64::consts::FRAC_PI_2 * k as f64 / STEP_COUNT as f64;
-        // Taylor series; the first term left out is below 1e-11 on this interval.
+        // Taylor series; the first omitted term is below 1e-11 on this interval.
         let mut term = x;
         let mut sum = x;
         let mut n = 1.0;
@@ -101,10 +101,10 @@ mod tests {
     use crate::sample::{degrees, sine};
 
     #[test]
-    fn sine_and_cosine_are_within_4_5e_5_at_every_angle() {
+    fn sine_and_cosine_have_errors_of_at_most_4_5e_5_at_every_angle() {
         let (mut max_error, mut max_length_error) = (0.0f64, 0.0f64);
         for angle in (0..=u16::MAX).map(Angle) {
-            let direction = Direction::of(angle);
+            let direction = Direction::from_angle(angle);
             let components = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
             let (sin, cos) = degrees(angle).to_radians().sin_cos();
             max_error = max_error
@@ -126,19 +126,19 @@ mod tests {
             (0x8000, 0, -unit),
             (0xc000, -unit, 0),
         ] {
-            assert_eq!(Direction::of(Angle(angle)), Direction { sin, cos });
+            assert_eq!(Direction::from_angle(Angle(angle)), Direction { sin, cos });
         }
     }
 
     #[test]
     fn quadrants_and_mirror_images_agree_to_the_bit() {
         for angle in 0..=u16::MAX {
-            let direction = Direction::of(Angle(angle));
-            let rotated = Direction::of(Angle(angle.wrapping_add(0x4000)));
+            let direction = Direction::from_angle(Angle(angle));
+            let rotated = Direction::from_angle(Angle(angle.wrapping_add(0x4000)));
             assert_eq!((rotated.cos, rotated.sin), (-direction.sin, direction.cos));
-            let mirrored = Direction::of(Angle(0x8000u16.wrapping_sub(angle)));
+            let mirrored = Direction::from_angle(Angle(0x8000u16.wrapping_sub(angle)));
             assert_eq!(direction.mirrored(), mirrored);
-            let tail_direction = Direction::of(Angle(angle.wrapping_neg()));
+            let tail_direction = Direction::from_angle(Angle(angle.wrapping_neg()));
             assert_eq!(direction.in_tail_frame(), tail_direction);
         }
     }

@@ -1,8 +1,8 @@
-//! The settings of a servo that a person may change while the robot runs.
+//! The settings of a servo that the user may change while the robot runs.
 //!
-//! A horn fits on its spline only every 14 degrees, servos of one type differ in their gain, and some are
-//! mounted upside down. So a person finds the four numbers of an adjustment by looking at the robot, and the robot
-//! keeps them in its EEPROM.
+//! A horn fits on its spline only every 14 degrees, servos of one type differ in their gain, and some servos are
+//! mounted upside down. Therefore the user determines the four numbers of an adjustment on the assembled robot, which
+//! stores them in its EEPROM.
 
 use lizard_avr::mul_unsigned;
 
@@ -10,13 +10,13 @@ use crate::numbers::calibration::Calibration;
 use crate::numbers::root::quotient;
 use crate::numbers::units::{ONE_Q14, PulseWidth, Sweep};
 
-/// The numbers of one servo that a person may set.
+/// The numbers of a servo that the user may set.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Adjustment {
-    /// The angle by which the horn sits too far clockwise: at the neutral pose, the servo turns counter-clockwise by
-    /// this angle.
+    /// The angle by which the horn is mounted too far clockwise. In the neutral pose the servo turns counter-clockwise
+    /// by this angle.
     pub trim: Sweep,
-    /// The servo's gain, as [`Calibration::gain`].
+    /// The gain of the servo, see [`Calibration::gain`].
     pub gain: i16,
     /// The clockwise limit of the travel.
     pub travel_min: Sweep,
@@ -25,8 +25,8 @@ pub struct Adjustment {
 }
 
 impl Adjustment {
-    /// Returns the adjustment that leaves a servo as robot.toml defines it.
-    pub const fn of(factory: &Calibration) -> Self {
+    /// Returns the adjustment that leaves the calibration in robot.toml unchanged.
+    pub const fn from_calibration(factory: &Calibration) -> Self {
         Self {
             trim: Sweep(0),
             gain: factory.gain,
@@ -35,8 +35,8 @@ impl Adjustment {
         }
     }
 
-    /// Returns the calibration of a servo with this adjustment. `factory` is the servo's calibration in robot.toml; the
-    /// travel is limited to the pulses that it allows.
+    /// Applies this adjustment to `factory`, the calibration in robot.toml. Limits the travel to the pulses that
+    /// `factory` allows.
     pub fn apply(&self, factory: &Calibration) -> Calibration {
         let end_widths = [
             factory.clamped_width(factory.travel_min),
@@ -49,7 +49,7 @@ impl Adjustment {
         let mut servo = Calibration {
             neutral_width: factory.neutral_width,
             gain: self.gain,
-            // An empty travel, for a trim that puts even the neutral angle outside the allowed pulses.
+            // An empty travel, for a trim with which even the neutral angle's pulse is not allowed.
             travel_min: Sweep(1),
             travel_max: Sweep(-1),
         };
@@ -68,8 +68,7 @@ impl Adjustment {
         ((mul_unsigned(self.gain.unsigned_abs(), 4551) + 0x8000) >> 16) as u16
     }
 
-    /// Sets the scale, in hundredths of a microsecond per degree, at most 2000. The
-    /// direction of rotation stays.
+    /// Sets the scale, in hundredths of a microsecond per degree, at most 2000. Keeps the direction of rotation.
     pub fn set_scale(&mut self, scale: u16) {
         // The gain is 16 cycles * 360 deg / 65536 * 2^14 / 100 = 14.4 times the scale, and 14.4 * 2^12 is 58 982.
         let gain = ((mul_unsigned(scale, 58_982) + 0x800) >> 12) as i16;
@@ -93,13 +92,13 @@ impl Adjustment {
     }
 }
 
-/// Returns the sweep if its pulse is allowed; otherwise the farthest sweep in its direction whose pulse is allowed. The
-/// neutral pulse must be allowed.
+/// Returns `sweep` if its pulse is allowed, otherwise the largest sweep in the same direction whose pulse is allowed.
+/// The neutral pulse must be allowed.
 #[inline(never)]
 fn limit_to_pulses(servo: &Calibration, sweep: Sweep, [min_width, max_width]: [u16; 2]) -> Sweep {
     let neutral_width = servo.neutral_width.0;
-    // The pulse width of a sweep of n steps is the neutral width plus n times the gain, rounded to a cycle. As long as
-    // n times the gain is at most `max_gain_multiple`, the width is within both limits.
+    // The pulse width of a sweep of n steps is the neutral width plus n times the gain, rounded to a cycle. If n times
+    // the gain is at most `max_gain_multiple`, the width is within both limits.
     let max_gain_multiple = if (servo.gain < 0) == (sweep.0 < 0) {
         mul_unsigned(max_width - neutral_width, ONE_Q14 as u16) + HALF_Q14 - 1
     } else {
@@ -151,14 +150,14 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(500))]
 
         #[test]
-        fn an_unadjusted_servo_equals_that_of_robot_toml(robot in Sample::random()) {
+        fn an_unadjusted_servo_has_the_calibration_of_robot_toml(robot in Sample::random()) {
             for servo in &robot.calibration() {
-                prop_assert_eq!(&Adjustment::of(servo).apply(servo), servo);
+                prop_assert_eq!(&Adjustment::from_calibration(servo).apply(servo), servo);
             }
         }
 
         #[test]
-        fn no_sweep_within_the_travel_leaves_the_pulses_of_robot_toml(
+        fn every_sweep_within_the_travel_has_a_pulse_that_robot_toml_allows(
             robot in Sample::random(),
             adjustment in any_adjustment(),
         ) {
@@ -166,7 +165,7 @@ mod tests {
                 let servo = adjustment.apply(factory);
                 for sweep in servo.travel_min.0..=servo.travel_max.0 {
                     let us = f64::from(servo.width(Sweep(sweep)).0) / 16.0;
-                    // A cycle of rounding each for the end of the travel and for this width.
+                    // One cycle of rounding for the end of the travel, and one for this width.
                     let slack_us = 2.0 / 16.0;
                     prop_assert!(us >= exact_servo.min_us - slack_us && us <= exact_servo.max_us + slack_us);
                 }
@@ -174,7 +173,7 @@ mod tests {
         }
 
         #[test]
-        fn a_travel_ends_at_its_limit_or_where_the_next_step_would_leave_the_pulses(
+        fn a_travel_ends_at_its_limit_or_where_the_next_pulse_is_not_allowed(
             robot in Sample::random(),
             adjustment in any_adjustment(),
         ) {
@@ -197,7 +196,7 @@ mod tests {
         }
 
         #[test]
-        fn a_pulse_follows_from_the_trim_and_the_scale(
+        fn a_pulse_matches_the_trim_and_the_scale(
             robot in Sample::random(),
             adjustment in any_adjustment(),
             scale in 500u16..=2000,
@@ -211,8 +210,8 @@ mod tests {
                 let sign = if adjustment.is_direct() { 1.0 } else { -1.0 };
                 let us = exact_servo.neutral_us + sign * f64::from(scale) / 100.0 * degrees;
                 let error_cycles = f64::from(servo.clamped_width(Sweep(sweep))) - 16.0 * us;
-                // Half a cycle of rounding each for the neutral width, the trim and the sweep; and the
-                // rounding of the gain over a sixth of a turn.
+                // Half a cycle of rounding for each of the neutral width, the trim and the sweep, and the rounding of
+                // the gain over a sixth of a turn.
                 prop_assert!(error_cycles.abs() <= 2.5, "{error_cycles}");
             }
         }
@@ -233,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn every_scale_is_read_back_as_set_and_keeps_the_direction() {
+    fn every_scale_reads_back_unchanged_and_keeps_the_direction() {
         for gain in [1, -1] {
             for scale in 500..=2000 {
                 let mut adjustment = Adjustment {

@@ -1,7 +1,7 @@
 //! The contents of the EEPROM: two copies of the settings, and the last rest pose.
 //!
-//! The two copies are written alternately, so that one is valid while the other is being written. The newer valid copy
-//! counts. If neither copy can be used, robot.toml's numbers apply.
+//! The two copies are written alternately, so that one copy is valid while the other is being written. The newer valid
+//! copy is used. If neither copy is usable, the numbers in robot.toml are used.
 //!
 //! | address | content |
 //! |---|---|
@@ -28,17 +28,17 @@ pub const REST_POSE_ADDRESS: Address = Address(128);
 /// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SavedState {
-    /// The settings saved last are valid.
+    /// The last saved settings are valid.
     Latest,
-    /// No settings were ever saved.
+    /// No settings have ever been saved.
     Blank,
-    /// One copy is valid, the other is damaged and may have been the newer one.
+    /// One copy is valid; the other is damaged and may have been the newer copy.
     OneCopy,
     /// No copy is valid.
     Damaged,
     /// The settings are for other servos, or in the format of another firmware.
     Foreign,
-    /// With the saved settings some gait would leave a servo's travel.
+    /// With the saved settings, a gait would exceed a servo's travel.
     Unfit,
 }
 
@@ -46,7 +46,7 @@ pub enum SavedState {
 struct Copies {
     /// The result of checking each copy.
     states: [RecordState; 2],
-    /// The index of the valid copy that was saved last; meaningless if no copy is valid.
+    /// The index of the newest valid copy; meaningless if no copy is valid.
     latest_index: usize,
 }
 
@@ -54,11 +54,11 @@ impl Copies {
     #[inline(never)]
     fn check<M: Memory>(memory: &M) -> Self {
         let states = [copy_address(0).check(memory), copy_address(1).check(memory)];
-        let save_number_of =
+        let read_save_number =
             |copy: usize| self::copy_address(copy).read_byte(memory, SAVE_NUMBER_OFFSET as u16);
         let latest_index = match states {
             [RecordState::Valid, RecordState::Valid] => {
-                usize::from(save_number_of(1).wrapping_sub(save_number_of(0)) < 0x80)
+                usize::from(read_save_number(1).wrapping_sub(read_save_number(0)) < 0x80)
             }
             [RecordState::Valid, _] => 0,
             _ => 1,
@@ -78,8 +78,8 @@ impl Copies {
     }
 }
 
-/// Reads the settings saved last into `settings`, and returns their state. Without a valid copy, `settings` stay
-/// as they are.
+/// Reads the last saved settings into `settings`, and returns their state. Without a valid copy, `settings` do not
+/// change.
 #[inline(never)]
 pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let copies = Copies::check(memory);
@@ -92,7 +92,7 @@ pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings
     copies
         .latest_address()
         .read_content(memory, settings.bytes_mut());
-    if !settings.is_for(robot) {
+    if !settings.are_for(robot) {
         SavedState::Foreign
     } else if copies.states.contains(&RecordState::Damaged) {
         SavedState::OneCopy
@@ -101,8 +101,8 @@ pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings
     }
 }
 
-/// Loads the settings to use into `settings`, and returns the state of the saved ones. The settings to use are those
-/// saved last if all gaits work with them, otherwise robot.toml's.
+/// Loads the settings to use into `settings`: the last saved settings if all gaits are within their travel, otherwise
+/// the settings of robot.toml. Returns the state of the saved settings.
 #[inline(never)]
 pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
     let mut state = read_latest(robot, memory, settings);
@@ -112,12 +112,12 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Sa
         }
         state = SavedState::Unfit;
     }
-    *settings = Settings::of(robot);
+    *settings = Settings::for_robot(robot);
     state
 }
 
-/// Starts to write the settings over the older of the two copies. Returns `None` if the newer copy holds
-/// the same settings.
+/// Starts writing the settings over the older of the two copies. Returns `None` if the newer copy already holds these
+/// settings.
 pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrite> {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
@@ -136,13 +136,13 @@ pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrit
     Some(copy_address(copies.latest_index ^ 1).start_write())
 }
 
-/// Returns the pose of the last rest; `None` if the robot has moved since, or if the record is damaged or belongs to
-/// other servos.
-pub fn last_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
+/// Reads the pose of the last rest. Returns `None` if the robot has moved since, or if the record is damaged or belongs
+/// to other servos.
+pub fn read_rest_pose<M: Memory>(robot: &Robot, memory: &M) -> Option<Pose> {
     let mut bytes = [0; CONTENT_BYTES];
     REST_POSE_ADDRESS.read_content(memory, &mut bytes);
     let saved_settings = Settings::from_bytes(bytes);
-    (REST_POSE_ADDRESS.check(memory) == RecordState::Valid && saved_settings.is_for(robot))
+    (REST_POSE_ADDRESS.check(memory) == RecordState::Valid && saved_settings.are_for(robot))
         .then(|| saved_settings.pose())
 }
 

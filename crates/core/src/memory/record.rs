@@ -1,13 +1,12 @@
-//! Records in a memory that keeps its bytes without power, and may lose power at any time.
+//! Records in a non-volatile memory that may lose power at any time.
 //!
-//! An EEPROM writes one byte in 3.4 ms. If power fails meanwhile, that byte may hold
-//! any value. So a record has a mark that is removed before its first byte changes and
-//! written again after its last byte; without the mark the record does not count. A CRC
-//! detects other damage, such as bits that flip over the years.
+//! An EEPROM writes a byte in 3.4 ms. If power fails during the write, the byte may have any value. Therefore a record
+//! has a mark, which is removed before the first byte changes and written again after the last byte. Without the mark
+//! the record is invalid. A CRC detects other damage, such as bits that flip over the years.
 
 use crate::numbers::checksum::Checksum;
 
-/// A memory that keeps its bytes without power.
+/// A non-volatile memory.
 pub trait Memory {
     /// True once the last write has ended; only then may the memory be read or written.
     fn is_ready(&self) -> bool;
@@ -15,11 +14,11 @@ pub trait Memory {
     /// Reads the byte at an address below 1024.
     fn read(&self, address: u16) -> u8;
 
-    /// Begins to write a byte.
+    /// Starts writing a byte.
     fn write(&mut self, address: u16, byte: u8);
 }
 
-/// The number of bytes of a memory.
+/// The number of bytes in a memory.
 pub const MEMORY_BYTES: usize = 1024;
 
 /// The number of bytes in a record's content.
@@ -37,7 +36,7 @@ pub const RECORD_BYTES: u16 = CONTENT_BYTES as u16 + 3;
 /// The first byte of a valid record.
 pub const VALID_MARK: u8 = 0xa5;
 
-/// The first byte of an invalid record; also the value of an erased byte.
+/// The first byte of an invalid record, which is the value of an erased byte.
 pub const ERASED: u8 = 0xff;
 
 /// The address of a record.
@@ -47,9 +46,9 @@ pub struct Address(pub u16);
 /// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordState {
-    /// The bytes of the record were never written.
+    /// The record has never been written.
     Blank,
-    /// The record was invalidated, was not written to its end, or has changed since.
+    /// The record was invalidated, is incomplete, or has changed since it was written.
     Damaged,
     /// The record's mark and CRC are correct.
     Valid,
@@ -58,31 +57,31 @@ pub enum RecordState {
 /// The result of a step of writing a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// There is more to write, or the memory is not ready.
+    /// The write is not complete, or the memory is not ready.
     InProgress,
     /// All bytes have been written and read back.
     Done,
-    /// The memory does not keep what was written.
+    /// A byte has another value than the one that was written.
     Failed,
 }
 
-/// The progress of the current step's byte.
+/// The state of the current step's byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Discriminants start at 1, so that `None::<RecordWrite>` is all zeros: see `Main::new`.
 #[repr(u8)]
 enum ByteState {
-    /// The byte is to be written, unless the memory holds its value already.
+    /// The byte must be written, unless the memory already has its value.
     ToWrite = 1,
-    /// The byte has been written and is to be read back.
+    /// The byte has been written and must be read back.
     Written,
 }
 
-/// A write or an invalidation of a record that is in progress, a byte at a time.
+/// A write or an invalidation of a record in progress, one byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordWrite {
     address: Address,
-    /// The current step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes
-    /// the mark again.
+    /// The current step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes the
+    /// mark.
     step: u8,
     /// The last step.
     last_step: u8,
@@ -97,7 +96,7 @@ impl Address {
         self.read_content(memory, &mut content);
         let crc = [1, 2].map(|n| memory.read(self.0 + CONTENT_BYTES as u16 + n));
         let mark = memory.read(self.0);
-        if mark == VALID_MARK && crc == Checksum::of(&content).0.to_le_bytes() {
+        if mark == VALID_MARK && crc == Checksum::compute(&content).0.to_le_bytes() {
             RecordState::Valid
         } else if mark == ERASED && content.iter().chain(&crc).all(|byte| *byte == ERASED) {
             RecordState::Blank
@@ -106,7 +105,7 @@ impl Address {
         }
     }
 
-    /// Reads the content without checking mark and CRC.
+    /// Reads the content without checking the mark and the CRC.
     #[inline(never)]
     pub fn read_content<M: Memory>(self, memory: &M, content: &mut Content) {
         let mut address = self.0;
@@ -121,7 +120,7 @@ impl Address {
         memory.read(self.0 + 1 + index)
     }
 
-    /// Begins to write a record.
+    /// Starts writing a record.
     pub const fn start_write(self) -> RecordWrite {
         RecordWrite {
             address: self,
@@ -131,7 +130,7 @@ impl Address {
         }
     }
 
-    /// Begins to invalidate a record.
+    /// Starts invalidating a record.
     pub const fn start_invalidation(self) -> RecordWrite {
         RecordWrite {
             last_step: 0,
@@ -141,8 +140,8 @@ impl Address {
 }
 
 impl RecordWrite {
-    /// Advances by at most one byte; a byte that the memory already holds is not written.
-    /// `content` must be the same in every call.
+    /// Advances by at most one byte. Does not write a byte that the memory already has. `content` must be the same in
+    /// every call.
     #[inline(never)]
     pub fn advance<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
         if !memory.is_ready() {
@@ -154,7 +153,8 @@ impl RecordWrite {
         } else if step == RECORD_BYTES {
             (0, VALID_MARK)
         } else {
-            let crc_byte = || Checksum::of(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
+            let crc_byte =
+                || Checksum::compute(content).0.to_le_bytes()[usize::from(self.step & 1 ^ 1)];
             let byte = content.get(usize::from(self.step - 1));
             (step, byte.copied().unwrap_or_else(crc_byte))
         };
@@ -198,7 +198,7 @@ mod tests {
         })
     }
 
-    /// Writes a record to its end.
+    /// Writes a complete record.
     fn write_record(eeprom: &mut Eeprom, content: &Content) -> Progress {
         let mut record_write = ADDRESS.start_write();
         for _ in 0..10_000 {
@@ -210,7 +210,7 @@ mod tests {
         panic!("the write never ends");
     }
 
-    /// Returns the record's state, and its content even if the record is not valid.
+    /// Reads a record's state, and its content even if the record is not valid.
     fn read_record(eeprom: &Eeprom) -> (RecordState, Content) {
         let mut content = [0; CONTENT_BYTES];
         ADDRESS.read_content(eeprom, &mut content);
@@ -221,7 +221,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn a_record_reads_back_as_written_and_no_other_byte_changes(
+        fn a_record_reads_back_unchanged_and_no_other_byte_changes(
             first_content in any_content(),
             second_content in any_content(),
             write_delay in 0u16..4,
@@ -275,12 +275,12 @@ mod tests {
         assert_eq!(addresses.last(), Some(&64));
         assert!(
             (4..=5).contains(&addresses.len()),
-            "byte 5, the CRC, the mark twice"
+            "only byte 5, the CRC and twice the mark are written"
         );
     }
 
     #[test]
-    fn a_memory_that_keeps_nothing_is_detected() {
+    fn a_worn_memory_is_detected() {
         let mut eeprom = Eeprom::blank();
         eeprom.is_worn = true;
         assert_eq!(

@@ -1,7 +1,7 @@
-//! The cause of a reset, and the servos' state from before it.
+//! The cause of a reset, and the state of the servos before the reset.
 //!
-//! A robot that is reset in the middle of a step need not fall over: the servos are where they were, and a few bytes of
-//! RAM that survive a reset hold their positions ([`crate::memory::retained_ram`]).
+//! A robot that is reset in the middle of a step need not fall over: the servos are still in their positions, which a
+//! few bytes of RAM preserve across the reset ([`crate::memory::retained_ram`]).
 
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::rate::BaudRate;
@@ -13,11 +13,11 @@ pub enum Cause {
     /// Power was switched on.
     #[default]
     Power,
-    /// The reset button, or a computer that opened the port.
+    /// The reset button was pressed, or a computer opened the port.
     External,
-    /// The supply of the chip was too low for a moment.
+    /// The chip's supply was too low for a moment.
     BrownOut,
-    /// The watchdog, because the program, its clock or its pulses hung.
+    /// The watchdog reset the chip, because the program, its clock or its pulses hung.
     Watchdog,
 }
 
@@ -26,18 +26,18 @@ impl Cause {
     pub const ALL: [Self; 4] = [Self::Power, Self::External, Self::BrownOut, Self::Watchdog];
 }
 
-/// The state of the servos that has to survive a reset, so that the next run can take the servos over without a jump.
+/// The state of the servos, which must survive a reset so that the next run can resume the pulses without a jump.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Stance {
+pub struct ServoState {
     /// True while the servos get no pulses.
     pub is_resting: bool,
-    /// Frames since the pulses began, up to [`crate::motion::AWAKE_FRAMES`], when all servos have been woken one after
-    /// the other.
+    /// Frames since the servos began to wake, at most [`crate::motion::AWAKE_FRAMES`], after which all servos are
+    /// awake.
     pub frames_awake: u8,
-    /// The pose that the servos hold or last held.
+    /// The current pose of the servos, or their last pose.
     pub pose: Pose,
-    /// The pulses of the last frame, including those of servos that have not been woken yet. They may come from a
-    /// calibration that was never saved.
+    /// The pulses of the last frame, including servos that are not awake yet. The calibration of these pulses may never
+    /// have been saved.
     pub sent_pulses: Pulses,
 }
 
@@ -48,21 +48,19 @@ pub struct Restart {
     pub cause: Cause,
     /// Resets since power-on, at most 255.
     pub reset_count: u8,
-    /// True if a weak supply may be the cause: a brown-out, or a reset whose cause a boot
-    /// loader hides.
+    /// True if a weak supply may be the cause: after a brown-out, or after a reset whose cause a boot loader hides.
     pub is_supply_suspected: bool,
     /// Consecutive resets before this one that a weak supply may have caused.
-    pub brown_outs: u8,
-    /// The rate of the serial line: after a brown-out or a hang, the rate before it; otherwise the fastest rate,
+    pub suspected_brown_outs: u8,
+    /// The baud rate of the serial port: after a brown-out or a hang the previous rate, otherwise the fastest rate,
     /// because opening the USB port resets the board, and USB uses the fastest rate.
     pub rate: BaudRate,
-    /// The servos' state before the reset; `None` if it is unknown, and always after
-    /// [`Cause::Power`].
-    pub stance_before: Option<Stance>,
+    /// The state of the servos before the reset; `None` if the state is unknown, and always after [`Cause::Power`].
+    pub servo_state_before: Option<ServoState>,
 }
 
-impl Stance {
-    /// Servos that have never had pulses.
+impl ServoState {
+    /// The state of servos that have never received pulses.
     pub const RESTING: Self = Self {
         is_resting: true,
         frames_awake: 0,
@@ -72,13 +70,13 @@ impl Stance {
 }
 
 impl Restart {
-    /// The state after power-on, when nothing survives.
+    /// The restart after power-on, which no information survives.
     pub const NONE: Self = Self {
         cause: Cause::Power,
         reset_count: 0,
         is_supply_suspected: false,
-        brown_outs: 0,
+        suspected_brown_outs: 0,
         rate: BaudRate::Fastest,
-        stance_before: None,
+        servo_state_before: None,
     };
 }

@@ -1,15 +1,14 @@
-//! All settings that a person may change and the robot keeps: the servos' adjustments, the action after
-//! power-on, and the time for which a gait continues without a command.
+//! The settings that the user may change and the robot stores: the servos' adjustments, the action after power-on, and
+//! the time for which a gait continues without a command.
 //!
-//! In RAM the settings have the same bytes as in the EEPROM, so neither saving nor
-//! loading converts anything.
+//! The settings have the same bytes in RAM as in the EEPROM, so saving and loading require no conversion.
 //!
 //! | byte | content |
 //! |---|---|
 //! | 0 | [`FORMAT_VERSION`] |
-//! | 1 | the save number, increased by every `save` that changes a setting |
-//! | 2 | the hash of the servos that the settings are for, 4 bytes |
-//! | 6 | for each servo the trim, the gain, the clockwise and the counter-clockwise limit, 2 bytes each |
+//! | 1 | the save number, incremented by every `save` of changed settings |
+//! | 2 | the hash of the servos to which the settings belong, 4 bytes |
+//! | 6 | for each servo: trim, gain, clockwise limit and counter-clockwise limit, 2 bytes each |
 //! | 38 | `boot`: 0 for `rest`, otherwise the [`gait_key`] of a gait |
 //! | 40 | `deadman`, ms |
 
@@ -22,10 +21,10 @@ use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sweep;
 
-/// The version of the bytes' format, increased when their meaning changes.
+/// The version of the format, incremented when the meaning of a byte changes.
 pub const FORMAT_VERSION: u8 = 1;
 
-/// The offset of the save number in the bytes; the other offsets are those of the table above.
+/// The offset of the save number. The table above has all offsets.
 pub const SAVE_NUMBER_OFFSET: usize = 1;
 const HASH_OFFSET: usize = 2;
 const ADJUSTMENTS_OFFSET: usize = 6;
@@ -48,24 +47,27 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Settings of no robot.
+    /// The settings without a robot.
     pub const NONE: Self = Self {
         bytes: [0; CONTENT_BYTES],
     };
 
     /// Returns the settings of robot.toml.
     #[inline(never)]
-    pub fn of(robot: &Robot) -> Self {
+    pub fn for_robot(robot: &Robot) -> Self {
         let mut settings = Self::NONE;
         settings.set_header(robot);
         for servo in Servo::all() {
-            settings.set_adjustment(servo, Adjustment::of(&robot.calibration_of(servo)));
+            settings.set_adjustment(
+                servo,
+                Adjustment::from_calibration(&robot.servo_calibration(servo)),
+            );
         }
         settings.set_boot(Boot::Gait(GaitId::STAND), robot);
         settings
     }
 
-    /// Sets the format version, and the servo hash to that of a robot.
+    /// Sets the format version, and the hash of a robot's servos.
     fn set_header(&mut self, robot: &Robot) {
         self.bytes[0] = FORMAT_VERSION;
         let hash = robot.servo_hash();
@@ -73,9 +75,9 @@ impl Settings {
         self.put(HASH_OFFSET + 2, (hash >> 16) as u16);
     }
 
-    /// Returns a record that holds a pose instead of settings: each servo's sweep takes the place of its trim.
+    /// Returns a record that contains a pose instead of settings, with each servo's sweep in place of its trim.
     #[inline(never)]
-    pub fn of_pose(pose: &Pose, robot: &Robot) -> Self {
+    pub fn for_pose(pose: &Pose, robot: &Robot) -> Self {
         let mut record = Self::NONE;
         record.set_header(robot);
         let mut offset = ADJUSTMENTS_OFFSET;
@@ -86,7 +88,8 @@ impl Settings {
         record
     }
 
-    /// The trims as the sweeps of a pose; for a record of [`Settings::of_pose`], the pose that it holds.
+    /// Returns the pose in a record made by [`Settings::for_pose`]; for other settings, the pose whose sweeps are the
+    /// trims.
     #[inline(never)]
     pub fn pose(&self) -> Pose {
         let mut pose = Pose::NEUTRAL;
@@ -98,7 +101,7 @@ impl Settings {
         pose
     }
 
-    /// Settings from the bytes of a record.
+    /// Creates settings from the bytes of a record.
     pub const fn from_bytes(bytes: Content) -> Self {
         Self { bytes }
     }
@@ -108,25 +111,25 @@ impl Settings {
         &self.bytes
     }
 
-    /// The bytes of the record, to be filled.
+    /// The bytes of the record, mutable.
     pub const fn bytes_mut(&mut self) -> &mut Content {
         &mut self.bytes
     }
 
-    /// True if the settings have the format [`FORMAT_VERSION`] and belong to the servos of this robot.
-    pub fn is_for(&self, robot: &Robot) -> bool {
+    /// True if the settings have the format [`FORMAT_VERSION`] and belong to this robot's servos.
+    pub fn are_for(&self, robot: &Robot) -> bool {
         let hash = robot.servo_hash();
         self.bytes[0] == FORMAT_VERSION
             && self.get(HASH_OFFSET) == hash as u16
             && self.get(HASH_OFFSET + 2) == (hash >> 16) as u16
     }
 
-    /// The number of this save, modulo 256.
+    /// The save number, modulo 256.
     pub const fn save_number(&self) -> u8 {
         self.bytes[SAVE_NUMBER_OFFSET]
     }
 
-    /// Sets the number of this save.
+    /// Sets the save number.
     pub const fn set_save_number(&mut self, number: u8) {
         self.bytes[SAVE_NUMBER_OFFSET] = number;
     }
@@ -157,7 +160,7 @@ impl Settings {
         }
     }
 
-    /// The action after power-on; `stand` in place of a gait that no longer exists.
+    /// The action after power-on, which is `stand` if its gait no longer exists.
     pub fn boot(&self, robot: &Robot) -> Boot {
         let saved_key = self.get(BOOT_OFFSET);
         if saved_key == 0 {
@@ -187,14 +190,15 @@ impl Settings {
         self.put(DEADMAN_OFFSET, ms);
     }
 
-    /// The calibration of a servo, with its adjustment applied.
+    /// Returns the calibration of a servo with its adjustment.
     #[inline(never)]
     pub fn calibration(&self, servo: Servo, robot: &Robot) -> Calibration {
-        self.adjustment(servo).apply(&robot.calibration_of(servo))
+        self.adjustment(servo)
+            .apply(&robot.servo_calibration(servo))
     }
 
-    /// The first servo whose travel does not include the neutral angle and all sweeps of the gaits; `None` if there is
-    /// no such servo.
+    /// Returns the first servo whose travel does not cover the range that the gaits need; `None` if there is no such
+    /// servo.
     #[inline(never)]
     pub fn first_unfit_servo(&self, robot: &Robot) -> Option<Servo> {
         Servo::all().find(|servo| {
@@ -203,7 +207,7 @@ impl Settings {
         })
     }
 
-    /// The 16-bit number at an offset.
+    /// Reads the 16-bit number at an offset.
     fn get(&self, offset: usize) -> u16 {
         match self.bytes.get(offset..) {
             Some([low, high, ..]) => u16::from_le_bytes([*low, *high]),
@@ -219,9 +223,9 @@ impl Settings {
     }
 }
 
-/// Returns the number under which a gait is saved: a hash of the gait's name, never 0. With a hash, the gait is found
-/// again even if robot.toml has other gaits by then. The host that makes a robot has checked that no two of its gaits
-/// have the same number.
+/// Computes the key under which a gait is saved: a hash of the gait's name, never 0. With this key the gait is found
+/// even after other gaits in robot.toml have changed. The host that made the robot has checked that no two of its gaits
+/// have the same key.
 pub fn gait_key(name: impl Iterator<Item = u8>) -> u16 {
     let mut hash = 0u16;
     for byte in name {

@@ -1,19 +1,20 @@
-//! The robot's motion: one pose every 20 ms, whatever the commands are.
+//! The robot's motion: one pose every 20 ms, for any sequence of commands.
 //!
-//! A servo that is sent to a distant angle turns as fast as it can. If all four do so, the supply sags. So the pose
-//! never jumps. A change from one motion to another has three parts, each with a continuous speed:
+//! A servo that receives a distant angle turns as fast as it can. If all four servos do so, the supply drops. Therefore
+//! the pose never jumps. A transition from one motion to another has three parts, each with a continuous speed:
 //!
-//! 1. the old motion brakes along its own path (a gait along its cycle, a move along its line), so that it passes only
-//!    poses that have been checked;
-//! 2. a point-to-point move within the slew limit leads to the pose in which the new motion begins; all servos arrive
-//!    together;
-//! 3. the new gait reaches its pace gradually.
+//! 1. The old motion brakes along its own path (a gait along its cycle, a move along its line), so that it passes only
+//!    poses that have been checked.
+//! 2. A point-to-point move within the slew limit leads to the first pose of the new motion; all servos arrive
+//!    together.
+//! 3. The new gait accelerates gradually to its pace.
 //!
-//! `stop` skips the braking and freezes the pose in the next frame; `rest` ends the pulses.
+//! `stop` freezes the pose in the next frame without braking; `rest` ends the pulses.
 //!
 //! # States
-//! The effect of each command and of each frame, by state. A command *queues* its gait or pose: this becomes the next
-//! target, which follows the current motion. At a pace of 0 a motion stands still. "-" means no change.
+//! This table shows the effect of each command and of each frame in each state. A command *queues* its gait or pose,
+//! which becomes the next target and follows the current motion. At a pace of 0 a motion stands still. "-" means no
+//! change.
 //!
 //! | state | command | frame |
 //! |---|---|---|
@@ -23,18 +24,18 @@
 //! | `Cycling` through a gait | another gait or a pose: queued; the same gait: - | with a next target: brakes, then is `Moving` towards that target |
 //! | any but `Resting` | `stop`: `Holding`, no next target; `rest`: `Resting`, no next target | if its pose is unsafe: `Holding` the last pose, no next target, and the hazard is kept |
 //!
-//! A new calibration changes the pulses of a pose. Then the pose stays as it is, in every state, while the pulses move
-//! to their new widths at the slew limit. After that the motion speeds up again from a pace of 0.
+//! A new calibration changes the pulses of a pose. In every state, the pose then stays the same while the pulses
+//! settle, that is, change to their new widths at the slew limit. Then the motion accelerates again from a pace of 0.
 //!
-//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. A pose that has not passed is never sent;
-//! the last safe pose is held instead, and the hazard is kept for the console. The 50 Hz call of [`Motion::tick`] is
-//! the only clock, so the pace cannot depend on the load of the processor.
+//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. An unsafe pose is never sent; instead the
+//! last safe pose is held, and the hazard is stored for the console. The 50 Hz call of [`Motion::tick`] is the only
+//! clock, so the pace does not depend on the processor's load.
 
 use lizard_avr::Region;
 
 use crate::guard::clearance;
 use crate::guard::hazard::Hazard;
-use crate::memory::restart::Stance;
+use crate::memory::restart::ServoState;
 use crate::motion::pace;
 use crate::motion::point_to_point::PointToPointMove;
 use crate::motion::state::{Activity, State, Target};
@@ -51,13 +52,13 @@ mod count;
 mod report;
 mod resume;
 
-/// Frames from the wake-up of one servo to that of the next: 0.1 s, so that the supply does not sag.
+/// Frames from the wake-up of one servo to the wake-up of the next: 0.1 s, so that the supply does not drop.
 const WAKE_INTERVAL_FRAMES: u8 = 5;
 
 /// The speed setting at which a gait runs at the pace in robot.toml, percent.
 const FULL_SPEED_PERCENT: u8 = 100;
 
-/// Frames from the command that wakes the servos until all four are awake and motion may begin.
+/// Frames from the command that wakes the servos until all four servos are awake and may move.
 pub const AWAKE_FRAMES: u8 = 4 * WAKE_INTERVAL_FRAMES;
 
 /// The motion of a robot: its state, its next target and the pulses of the last frame.
@@ -66,41 +67,41 @@ pub struct Motion {
     robot: Robot<'static>,
     calibration: [Calibration; 4],
     state: State,
-    /// The target that follows once the current motion stands still; always `None` while the robot rests.
+    /// The target that follows when the current motion stands still; always `None` while the robot rests.
     next_target: Option<Target>,
-    /// The count of the cycles of the gait that is under way or comes next.
+    /// The cycle count of the current or the next gait.
     cycle_count: CycleCount,
-    /// True in the frame in which the robot has come to a standstill, see [`Target::Standstill`].
+    /// True in the frame in which the robot comes to a standstill, see [`Target::Standstill`].
     has_come_to_standstill: bool,
     /// The pace of gaits, in percent of the pace in robot.toml.
     speed_percent: u8,
     /// True while the supply limits the pace to [`Robot::slow_pace`].
     is_slow: bool,
-    /// True while the pulses move to a new calibration's widths.
+    /// True while the pulses change to the widths of a new calibration.
     is_settling: bool,
-    /// The servos' state; `is_resting` is true in [`State::Resting`] only.
-    stance: Stance,
-    /// The hazard for which the guard stopped the robot; `None` once another motion has begun.
+    /// The state of the servos; `is_resting` is true only in [`State::Resting`].
+    servo_state: ServoState,
+    /// The hazard because of which the guard stopped the robot; `None` once another motion has begun.
     hazard: Option<Hazard>,
     /// Frames since power-on.
     frame_count: u32,
 }
 
 impl Motion {
-    /// Creates the motion of a robot at power-on: its servos wake, then it stands.
+    /// Creates the motion of a robot at power-on: its servos wake, then the robot stands.
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
         motion.speed_percent = FULL_SPEED_PERCENT;
         motion.begin();
         for servo in Servo::all() {
-            motion.calibrate(servo, motion.robot.calibration_of(servo));
+            motion.calibrate(servo, motion.robot.servo_calibration(servo));
         }
         motion
     }
 
-    /// Creates a motion that has not begun. With [`Robot::NONE`] all its bits are zero, so it needs no initial value in
-    /// flash.
-    /// [`Motion::load_robot`] or [`Motion::begin`] has to follow, then [`Motion::calibrate`] for every servo.
+    /// Creates a motion that has not begun. [`Motion::load_robot`] or [`Motion::begin`] must follow, then
+    /// [`Motion::calibrate`] for every servo. With [`Robot::NONE`] all bits of the motion are zero, so it requires no
+    /// initial value in flash.
     pub const fn unstarted(robot: Robot<'static>) -> Self {
         Self {
             calibration: [Calibration::NONE; 4],
@@ -112,33 +113,33 @@ impl Motion {
             speed_percent: 0,
             is_slow: false,
             is_settling: false,
-            stance: Stance {
+            servo_state: ServoState {
                 is_resting: false,
-                ..Stance::RESTING
+                ..ServoState::RESTING
             },
             hazard: None,
             frame_count: 0,
         }
     }
 
-    /// Loads the robot at the beginning of `flash`; [`Motion::calibrate`] has to follow for every servo.
+    /// Loads the robot at the beginning of `flash`; [`Motion::calibrate`] must follow for every servo.
     ///
     /// # Errors
-    /// Returns the reason why the flash holds no usable robot.
+    /// Fails if the flash holds no valid robot.
     pub fn load_robot(&mut self, flash: Region<'static>) -> Result<(), SectionError> {
         self.speed_percent = FULL_SPEED_PERCENT;
-        self.stance.is_resting = true;
+        self.servo_state.is_resting = true;
         self.robot = Robot::open(flash)?;
         Ok(())
     }
 
     /// Wakes the servos; then the robot stands.
     pub fn begin(&mut self) {
-        self.stance.is_resting = false;
+        self.servo_state.is_resting = false;
         self.state = State::cycling(&self.robot, GaitId::STAND);
     }
 
-    /// The description of the robot that moves.
+    /// The robot that moves.
     pub const fn robot(&self) -> &Robot<'static> {
         &self.robot
     }
@@ -148,17 +149,18 @@ impl Motion {
         &self.calibration
     }
 
-    /// Replaces the calibration of a servo; [`Motion::settle`] has to follow.
+    /// Replaces the calibration of a servo; [`Motion::settle`] must follow.
     pub fn calibrate(&mut self, servo: Servo, calibration: Calibration) {
-        *servo.of_mut(&mut self.calibration) = calibration;
+        *servo.pick_mut(&mut self.calibration) = calibration;
     }
 
-    /// Replaces the calibration of all servos; [`Motion::settle`] has to follow.
+    /// Replaces the calibration of all servos; [`Motion::settle`] must follow.
     pub fn calibrate_all(&mut self, calibration: &[Calibration; 4]) {
         self.calibration = *calibration;
     }
 
-    /// Moves the pulses to the widths of a new calibration, at the slew limit; the pose stays as it is meanwhile.
+    /// Starts changing the pulses to the widths of a new calibration at the slew limit, during which the pose stays the
+    /// same.
     pub fn settle(&mut self) {
         if let State::Moving { pace, .. } | State::Cycling { pace, .. } = &mut self.state {
             *pace = 0;
@@ -166,10 +168,10 @@ impl Motion {
         self.is_settling = true;
     }
 
-    /// True if the current pose, the end of the current move or the next target is beyond the travel that `servo` has
-    /// with `calibration`.
+    /// True if the current pose, the end of the current move or the next target would exceed the travel of `servo` with
+    /// `calibration`.
     pub fn exceeds_travel(&self, servo: Servo, calibration: &Calibration) -> bool {
-        let is_beyond = |pose: &Pose| !calibration.reaches(*servo.of(&pose.0));
+        let is_beyond = |pose: &Pose| !calibration.reaches(*servo.pick(&pose.0));
         let is_target_beyond = match &self.state {
             State::Moving { path, .. } => is_beyond(path.target()),
             _ => false,
@@ -178,15 +180,15 @@ impl Motion {
             Some(Target::Pose(pose)) => is_beyond(pose),
             _ => false,
         };
-        is_beyond(&self.stance.pose) || is_target_beyond || is_next_beyond
+        is_beyond(&self.servo_state.pose) || is_target_beyond || is_next_beyond
     }
 
-    /// The servos' state, which has to survive a reset.
-    pub const fn stance(&self) -> &Stance {
-        &self.stance
+    /// The state of the servos, which must survive a reset.
+    pub const fn servo_state(&self) -> &ServoState {
+        &self.servo_state
     }
 
-    /// Starts a gait with a move to its first pose, or continues it if it is already under way. After `cycles` more
+    /// Starts a gait with a move to its first pose, or continues the gait if it is already running. After `cycles` more
     /// cycles the gait brakes, and the robot holds the pose in which it stops; with 0 the gait does not end.
     #[inline(never)]
     pub fn start_gait(&mut self, id: GaitId, cycles: u16) {
@@ -199,8 +201,8 @@ impl Motion {
         self.cycle_count.phase_covered = 0;
     }
 
-    /// Brakes the gait or move that is under way, cancels the next target, and holds the pose in which the robot stops.
-    /// Returns false if no motion is under way or comes next.
+    /// Brakes the current gait or move, cancels the next target, and then holds the pose in which the robot stops.
+    /// Returns false if there is neither a current nor a next motion.
     #[inline(never)]
     pub fn brake_to_standstill(&mut self) -> bool {
         let is_moving = self.next_target.is_some()
@@ -211,7 +213,7 @@ impl Motion {
         is_moving
     }
 
-    /// True if in the last frame the robot came to a standstill: its gait had run for its count of cycles, or
+    /// True if the robot came to a standstill in the last frame: a counted gait was complete, or
     /// [`Motion::brake_to_standstill`] was called.
     pub const fn has_come_to_standstill(&self) -> bool {
         self.has_come_to_standstill
@@ -220,9 +222,9 @@ impl Motion {
     /// Queues a move to a pose.
     ///
     /// # Errors
-    /// Returns the limit that the pose violates; then nothing has changed.
+    /// Returns the limit that the pose violates; nothing has changed.
     pub fn go_to(&mut self, pose: &Pose) -> Result<(), Hazard> {
-        match self.hazard_of(pose) {
+        match self.first_hazard(pose) {
             Some(hazard) => Err(hazard),
             None => {
                 self.queue_target(Target::Pose(*pose));
@@ -263,26 +265,25 @@ impl Motion {
         if matches!(self.state, State::Resting) {
             return pulses;
         }
-        let frames_awake_before = self.stance.frames_awake;
+        let frames_awake_before = self.servo_state.frames_awake;
         if frames_awake_before < AWAKE_FRAMES {
-            self.stance.frames_awake = frames_awake_before + 1;
+            self.servo_state.frames_awake = frames_awake_before + 1;
         } else if !self.is_settling {
             self.advance_motion();
         }
-        // While the pulses settle, the slew limit bounds their change per frame.
+        // While the pulses settle, the slew limit restricts their change per frame.
         let per_frame = self.robot.slew().per_frame;
         let is_first_frame = self.frame_count == 1;
         let mut is_still_settling = false;
         let mut wake_frame = WAKE_INTERVAL_FRAMES;
         for (index, pulse) in pulses.0.iter_mut().enumerate() {
             let calibration = &self.calibration[index];
-            let sent_width = &mut self.stance.sent_pulses.0[index];
-            let is_asleep = self.stance.frames_awake < wake_frame;
-            let mut width = calibration.width(self.stance.pose.0[index]);
+            let sent_width = &mut self.servo_state.sent_pulses.0[index];
+            let is_asleep = self.servo_state.frames_awake < wake_frame;
+            let mut width = calibration.width(self.servo_state.pose.0[index]);
             if self.is_settling && sent_width.0 != 0 {
-                // A servo's first pulse repeats the last stored width, even one from before a
-                // reset: the reset may have occurred while the pulses were settling, or before a
-                // stored width was sent.
+                // A servo's first pulse repeats the last stored width, even a width from before a reset, which may have
+                // occurred while the pulses were settling, or before a stored width was sent.
                 let is_repeated = is_first_frame || frames_awake_before < wake_frame;
                 let max_change = if is_repeated {
                     0
@@ -305,7 +306,7 @@ impl Motion {
         pulses
     }
 
-    /// The current activity, or the one that the robot is moving to.
+    /// The current activity, or the activity to which the robot is moving.
     pub const fn activity(&self) -> Activity {
         match (self.next_target, self.state) {
             (Some(Target::Gait(id)), _) => Activity::Gait(id),
@@ -327,7 +328,7 @@ impl Motion {
     }
 
     /// Returns the first limit that a pose violates, if any: a servo's travel, or a limit of the guard.
-    fn hazard_of(&self, pose: &Pose) -> Option<Hazard> {
+    fn first_hazard(&self, pose: &Pose) -> Option<Hazard> {
         match pose.first_servo_beyond_travel(&self.calibration) {
             Some(servo) => Some(Hazard::Travel(servo)),
             None => clearance::find_hazard(&self.robot, pose),
@@ -340,23 +341,23 @@ impl Motion {
             self.state = State::Holding {
                 is_commanded: false,
             };
-            self.stance.is_resting = false;
-            self.stance.frames_awake = 0;
-            // The servos are still where their last pulses turned them, if they had any. Settings that have
-            // changed since must not make them jump.
+            self.servo_state.is_resting = false;
+            self.servo_state.frames_awake = 0;
+            // The servos are still at the angles of their last pulses, if any. Settings that have changed since then
+            // must not make them jump.
             self.is_settling = true;
         }
         self.next_target = Some(target);
     }
 
-    /// Ends all motion in the current pose; the robot then holds it or rests, as `state` says.
+    /// Ends all motion in the current pose. The robot then holds the pose or rests, according to `state`.
     fn freeze(&mut self, state: State) {
-        self.stance.is_resting = matches!(state, State::Resting);
+        self.servo_state.is_resting = matches!(state, State::Resting);
         self.state = state;
         self.next_target = None;
     }
 
-    // Not inlined: in `tick` its registers would cost more than the call.
+    // Not inlined, because in `tick` its registers would cost more than the call.
     #[inline(never)]
     fn advance_motion(&mut self) {
         self.count_cycles();
@@ -389,7 +390,7 @@ impl Motion {
                 gait.pose(self.robot.waves(), *phase)
             }
         };
-        let hazard = self.hazard_of(&pose);
+        let hazard = self.first_hazard(&pose);
         if hazard.is_some() {
             self.freeze(State::Holding {
                 is_commanded: false,
@@ -397,7 +398,7 @@ impl Motion {
             self.hazard = hazard;
             return;
         }
-        self.stance.pose = pose;
+        self.servo_state.pose = pose;
         if let State::Moving { path, gait, .. } = &self.state
             && path.has_arrived()
         {
@@ -411,7 +412,7 @@ impl Motion {
         }
     }
 
-    /// Starts the move to the next target once the pace of the old motion is 0.
+    /// Starts the move to the next target if the pace of the old motion is 0.
     #[inline(always)]
     fn start_next_target(&mut self) {
         if let Some(target) = self.next_target
@@ -425,7 +426,7 @@ impl Motion {
         }
     }
 
-    // Out of line: most frames do not need it.
+    // Not inlined, because most frames do not call it.
     #[inline(never)]
     fn move_to(&mut self, target: Target) {
         let (target_pose, gait) = match target {
@@ -439,7 +440,7 @@ impl Motion {
             }
         };
         self.state = State::Moving {
-            path: PointToPointMove::new(&self.stance.pose, &target_pose, self.robot.slew()),
+            path: PointToPointMove::new(&self.servo_state.pose, &target_pose, self.robot.slew()),
             pace: pace::FULL_PACE,
             gait,
         };

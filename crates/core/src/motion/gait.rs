@@ -1,9 +1,9 @@
-//! A gait: four sweeps as a function of one phase.
+//! A gait: four sweeps as functions of one phase.
 //!
 //! Feet are never lifted; each leg swings and drags its pad on the floor. The robot advances because of the shape of
-//! the swings and the order of the legs. So a gait gives each servo a waveform, a phase offset and a gain. A waveform
-//! is a table of 64 samples in flash. Linear interpolation between the samples is within half a degree of the true
-//! curve, less than a hobby servo resolves; the host that makes the tables checks this.
+//! the swings and the order of the legs. Therefore a gait defines a waveform, a phase offset and a gain for each servo.
+//! A waveform is a table of 64 samples in flash. Linear interpolation between the samples has an error of at most half
+//! a degree, less than a hobby servo resolves; the host that makes the tables checks this.
 
 use lizard_avr::{Flash, mul};
 
@@ -12,7 +12,7 @@ use crate::numbers::pose::Pose;
 use crate::numbers::units::{CYCLE, Sweep, phase16};
 
 impl Gait {
-    /// Returns the pose at `phase` (1/2^24 cycle), computed from the waveforms of a robot.
+    /// Computes the pose at `phase` (1/2^24 cycle) from a robot's waveforms.
     pub fn pose(&self, waves: Flash<[Wave]>, phase: u32) -> Pose {
         let mut pose = Pose::NEUTRAL;
         for (sweep, channel) in pose.0.iter_mut().zip(&self.channels) {
@@ -23,7 +23,7 @@ impl Gait {
         pose
     }
 
-    /// Returns the phase one frame later, at `pace` (1024 is full pace).
+    /// Computes the phase one frame later at `pace` (1024 is full pace).
     pub const fn advance(&self, phase: u32, pace: u16) -> u32 {
         let step = self.increment.wrapping_mul(pace as i32) >> 10;
         phase.wrapping_add(step as u32) & (CYCLE - 1)
@@ -31,7 +31,7 @@ impl Gait {
 }
 
 impl Channel {
-    /// Returns the sweep at `phase` (1/65536 cycle).
+    /// Computes the sweep at `phase` (1/65536 cycle).
     pub fn sweep(&self, wave: Flash<Wave>, phase: u16) -> Sweep {
         if self.gain == 0 {
             return Sweep(0);
@@ -85,15 +85,15 @@ mod tests {
             let rise = f64::from(next_sample) - f64::from(sample);
             let factor = f64::from(gain) / 16384.0;
             let exact = factor * (f64::from(sample) + rise * position.fract());
-            // Half a step of rounding before the gain, half a step after it, and the two lowest bits of the phase,
-            // which are dropped.
+            // Half a step of rounding before and after the gain, and the two lowest bits of the phase, which are
+            // dropped.
             let max_error = 0.5 + factor.abs() * (0.5 + 3.0 * rise.abs() / 1024.0);
             prop_assume!(exact.abs() < 32_000.0);
-            prop_assert!((actual - exact).abs() <= max_error, "{actual} for {exact}");
+            prop_assert!((actual - exact).abs() <= max_error, "{actual}, exactly {exact}");
         }
 
         #[test]
-        fn the_phase_advances_by_the_increment_times_the_pace_and_stays_within_the_cycle(
+        fn the_phase_advances_by_the_increment_times_the_pace_within_the_cycle(
             increment in -400_000i32..400_000,
             pace in 0..=FULL_PACE,
             phase in 0..CYCLE,
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn every_sample_is_read_at_its_phase_and_the_first_follows_the_last() {
+    fn every_sample_is_read_at_its_phase_and_the_first_sample_follows_the_last() {
         let wave = make_wave(|n| 100 * n as i16 - 3000);
         for n in 0..SAMPLES_PER_WAVE {
             let sweep = PLAIN_CHANNEL.sweep(Flash::from(&wave), (n << 10) as u16);
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn an_offset_reads_ahead_a_negative_gain_reverses_and_a_zero_gain_holds_still() {
+    fn an_offset_reads_ahead_a_negative_gain_reverses_and_a_zero_gain_stops_a_channel() {
         let robot = Sample::asymmetric();
         let wave = Flash::from(&robot.content.waves[1]);
         for phase in (0..=u16::MAX).step_by(97) {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_reads_each_servos_own_channel_and_waveform() {
+    fn a_pose_uses_each_servos_own_channel_and_waveform() {
         let robot = Sample::asymmetric();
         for gait in &robot.content.gaits {
             for phase in (0..CYCLE).step_by(99_991) {

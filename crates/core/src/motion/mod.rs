@@ -1,4 +1,4 @@
-//! Motion: turns a gait or a target pose into the pose of each frame.
+//! Motion: computes the pose of each frame from a gait or a target pose.
 //!
 //! [`Motion`] connects gaits and moves so that no servo jumps. Every pose passes the [guard](crate::guard) before it is
 //! sent.

@@ -1,20 +1,20 @@
-//! The pace of a motion: its speed as a share of its full speed.
+//! The pace of a motion: its speed as a fraction of its full speed.
 //!
-//! A servo with a load cannot change its speed at once. So a motion gains pace when it begins and loses it before it
-//! ends. The user sets the speed of gaits as a pace in percent.
+//! A servo with a load cannot change its speed at once. Therefore a motion accelerates from a pace of 0 and brakes to a
+//! pace of 0. The user sets the speed of gaits as a pace in percent.
 
 use lizard_avr::mul_unsigned;
 
-/// The full pace, the largest value of a pace.
+/// Full pace, the largest value of a pace.
 pub const FULL_PACE: u16 = 1024;
 
 /// The change of the pace per frame. A motion gains or loses its full pace in seven frames, 0.14 s. Because this number
-/// is odd, a gait meanwhile covers the phase of a whole number of frames at full pace. So later frames fall exactly on
-/// the corners of the waveforms, between the moves of two legs. If they were half a frame off, both legs would move at
-/// once at each corner, and `crawl` would lose 1.2 % of its distance.
+/// is odd, a gait meanwhile covers the phase of a whole number of frames at full pace. Therefore later frames coincide
+/// with the corners of the waveforms, between the swings of two legs. With a difference of half a frame, both legs
+/// would move at the same time at each corner, and `crawl` would lose 1.2 % of its distance.
 const PACE_STEP: u16 = FULL_PACE.div_ceil(7);
 
-/// Returns the pace one frame later, on its way to `target`.
+/// Returns the pace one frame later on the way to `target`.
 pub fn step_toward(pace: u16, target: u16) -> u16 {
     target
         .max(pace.saturating_sub(PACE_STEP))
@@ -32,7 +32,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speeding_up_or_braking_covers_a_whole_number_of_frames_at_full_pace() {
+    fn acceleration_and_braking_cover_a_whole_number_of_frames_at_full_pace() {
         for (from, to) in [(0, FULL_PACE), (FULL_PACE, 0)] {
             let (mut pace, mut pace_sum) = (from, 0);
             while pace != to {
@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn a_speed_in_percent_rounds_to_the_nearest_pace() {
+    fn a_speed_in_percent_is_converted_to_the_nearest_pace() {
         for percent in 10..=100u8 {
             let exact = f64::from(percent) * 1024.0 / 100.0;
             // 2622/256 is 0.02 % more than `exact`; the result is rounded to nearest.

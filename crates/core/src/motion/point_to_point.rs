@@ -1,16 +1,16 @@
-//! A point-to-point move: straight from one pose to another.
+//! A point-to-point move along a straight line between two poses.
 //!
-//! All four servos start together, follow one smoothstep and arrive together. The largest turn of a servo determines
-//! the duration, so that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half times its
-//! mean speed.
+//! All four servos start together, follow the same smoothstep and arrive together. The largest turn of any servo
+//! determines the duration, so that no servo exceeds the slew limit. The top speed of a smoothstep is one and a half
+//! times its mean speed.
 
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::numbers::pose::Pose;
 use crate::numbers::slew::Slew;
 
-/// The shortest duration of a move, in frames, so that even a small correction does not jerk. With eight frames, no
-/// move changes a servo's speed faster than the gaits do.
+/// The shortest duration of a move, in frames, so that even a small correction is smooth. With eight frames, no move
+/// changes a servo's speed faster than the gaits do.
 const MIN_FRAMES: u16 = 8;
 
 /// The full duration of a move, 1.0 in Q15.
@@ -21,10 +21,10 @@ const FULL_DURATION: u16 = 1 << 15;
 pub struct PointToPointMove {
     from: Pose,
     to: Pose,
-    /// The share of the move's duration that a frame at full pace covers, Q15.
-    share_per_frame: u16,
-    /// The share of the move's duration that has elapsed, Q15.
-    elapsed_share: u16,
+    /// The fraction of the move's duration that a frame at full pace covers, Q15.
+    fraction_per_frame: u16,
+    /// The elapsed fraction of the move's duration, Q15.
+    elapsed_fraction: u16,
 }
 
 impl PointToPointMove {
@@ -35,8 +35,8 @@ impl PointToPointMove {
         Self {
             from: *from,
             to: *to,
-            share_per_frame: FULL_DURATION / frames.max(MIN_FRAMES),
-            elapsed_share: 0,
+            fraction_per_frame: FULL_DURATION / frames.max(MIN_FRAMES),
+            elapsed_fraction: 0,
         }
     }
 
@@ -45,36 +45,36 @@ impl PointToPointMove {
         &self.to
     }
 
-    /// Advances the move by a frame, at `pace` (1024 is full pace).
+    /// Advances the move by a frame at `pace` (1024 is full pace).
     pub fn advance(&mut self, pace: u16) {
-        let step = (mul_unsigned(self.share_per_frame, pace) >> 10) as u16;
-        self.elapsed_share = (self.elapsed_share + step).min(FULL_DURATION);
+        let step = (mul_unsigned(self.fraction_per_frame, pace) >> 10) as u16;
+        self.elapsed_fraction = (self.elapsed_fraction + step).min(FULL_DURATION);
     }
 
-    /// True once the move has arrived.
+    /// True once the move has reached its target.
     pub const fn has_arrived(&self) -> bool {
-        self.elapsed_share == FULL_DURATION
+        self.elapsed_fraction == FULL_DURATION
     }
 
-    /// The pose at the current time of the move.
+    /// Computes the current pose of the move.
     pub fn pose(&self) -> Pose {
         if self.has_arrived() {
             return self.to;
         }
-        let share = smoothstep(self.elapsed_share) as i16;
+        let fraction = smoothstep(self.elapsed_fraction) as i16;
         let mut pose = self.from;
         for (sweep, target) in pose.0.iter_mut().zip(&self.to.0) {
             // Half the distance is multiplied and the product doubled, because a distance of more than half a turn
             // would overflow.
             let half_distance = (target.0 >> 1) - (sweep.0 >> 1);
-            let distance = (mul(half_distance, share) + (1 << 13)) >> 14;
+            let distance = (mul(half_distance, fraction) + (1 << 13)) >> 14;
             sweep.0 = sweep.0.wrapping_add(distance as i16);
         }
         pose
     }
 }
 
-/// Returns the smoothstep `3 u^2 - 2 u^3`, Q15; only for `u` below 1.
+/// Computes the smoothstep `3 u^2 - 2 u^3`, Q15; `u` must be below 1.
 fn smoothstep(u: u16) -> u16 {
     let squared = (mul_unsigned(u, u) >> 15) as u16;
     (mul_unsigned(squared, 3 * (FULL_DURATION / 2) - u) >> 14) as u16
@@ -91,12 +91,12 @@ mod tests {
 
     const FULL_PACE: u16 = 1024;
 
-    fn pose_of(sweeps: [i16; 4]) -> Pose {
+    fn to_pose(sweeps: [i16; 4]) -> Pose {
         Pose(sweeps.map(Sweep))
     }
 
-    /// Returns the poses of a move at full pace, from its start on.
-    fn poses_of_move(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
+    /// Computes all poses of a move at full pace, from its start on.
+    fn compute_poses(from: &Pose, to: &Pose, slew: Slew) -> Vec<Pose> {
         let mut path = PointToPointMove::new(from, to, slew);
         let mut poses = Vec::from([*from]);
         while !path.has_arrived() {
@@ -107,10 +107,10 @@ mod tests {
         poses
     }
 
-    /// Returns the sweeps of one servo in a move, frame by frame.
-    fn sweeps_of_move(from: i16, to: i16, slew: Slew) -> Vec<i16> {
-        let [from, to] = [from, to].map(|sweep| pose_of([0, 0, sweep, 0]));
-        let poses = poses_of_move(&from, &to, slew);
+    /// Computes the sweeps of one servo in each frame of a move.
+    fn compute_sweeps(from: i16, to: i16, slew: Slew) -> Vec<i16> {
+        let [from, to] = [from, to].map(|sweep| to_pose([0, 0, sweep, 0]));
+        let poses = compute_poses(&from, &to, slew);
         poses.iter().map(|pose| pose.0[2].0).collect()
     }
 
@@ -123,17 +123,17 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(3000))]
 
         #[test]
-        fn a_move_keeps_the_slew_limit_takes_no_longer_than_needed_and_arrives(
+        fn a_move_arrives_within_the_slew_limit_and_without_delay(
             from: i16,
             to: i16,
             slew in any_slew(),
         ) {
-            let sweeps = sweeps_of_move(from, to, slew);
+            let sweeps = compute_sweeps(from, to, slew);
             prop_assert_eq!(sweeps.last(), Some(&to));
             let max_change = sweeps.windows(2).map(|pair| pair[1].abs_diff(pair[0])).max();
             prop_assert!(max_change <= Some(slew.per_frame), "{max_change:?} of {slew:?}");
             // A smoothstep takes one and a half times as long as a move at constant speed, and each frame covers a
-            // whole number of 1/32768 of that time.
+            // multiple of 1/32768 of its duration.
             let frames = 1.5 * f64::from(from.abs_diff(to)) / f64::from(slew.per_frame - 6);
             let min_frames = frames.ceil().max(8.0) + 1.0;
             let max_frames = 32_768.0 / (32_768.0 / min_frames).floor() + 1.0;
@@ -143,41 +143,41 @@ mod tests {
 
         #[test]
         fn a_move_follows_a_smoothstep_straight_to_its_target(from: i16, to: i16, slew in any_slew()) {
-            let mut path = PointToPointMove::new(&pose_of([from; 4]), &pose_of([to; 4]), slew);
-            let mut elapsed_share = 0.0;
+            let mut path = PointToPointMove::new(&to_pose([from; 4]), &to_pose([to; 4]), slew);
+            let mut elapsed_fraction = 0.0;
             let distance = f64::from(to) - f64::from(from);
             let mut previous_sweep = f64::from(from);
             while !path.has_arrived() {
                 path.advance(FULL_PACE);
-                elapsed_share += f64::from(path.share_per_frame) / 32_768.0;
-                let u = f64::min(elapsed_share, 1.0);
+                elapsed_fraction += f64::from(path.fraction_per_frame) / 32_768.0;
+                let u = f64::min(elapsed_fraction, 1.0);
                 let exact = f64::from(from) + distance * u * u * (3.0 - 2.0 * u);
                 let sweep = f64::from(path.pose().0[0].0);
                 // Two roundings of the distance in Q15, and the halving of odd sweeps.
                 let rounding = 2.0 + distance.abs() / 8000.0;
-                prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, {exact}");
+                prop_assert!((sweep - exact).abs() <= rounding, "{sweep}, exactly {exact}");
                 prop_assert!((sweep - previous_sweep) * distance.signum() >= -rounding, "{sweep} after {previous_sweep}");
                 previous_sweep = sweep;
             }
         }
 
         #[test]
-        fn all_servos_cover_the_same_share_of_their_turns(
+        fn all_servos_cover_the_same_fraction_of_their_turns(
             from: [i16; 4],
             to: [i16; 4],
             slew in any_slew(),
         ) {
             let distances: [f64; 4] = core::array::from_fn(|n| f64::from(to[n]) - f64::from(from[n]));
-            let [from, to] = [from, to].map(pose_of);
+            let [from, to] = [from, to].map(to_pose);
             let mut path = PointToPointMove::new(&from, &to, slew);
             while !path.has_arrived() {
                 path.advance(FULL_PACE);
                 let current_pose = path.pose();
-                let share = f64::from(path.elapsed_share) / 32_768.0;
-                let smooth_share = share * share * (3.0 - 2.0 * share);
+                let fraction = f64::from(path.elapsed_fraction) / 32_768.0;
+                let smooth_fraction = fraction * fraction * (3.0 - 2.0 * fraction);
                 for (n, distance) in distances.iter().enumerate() {
                     let turn = f64::from(current_pose.0[n].0) - f64::from(from.0[n].0);
-                    let error = turn - smooth_share * distance;
+                    let error = turn - smooth_fraction * distance;
                     prop_assert!(error.abs() <= 2.0 + distance.abs() / 8000.0, "A{}: {error}", n + 1);
                 }
             }
@@ -185,13 +185,13 @@ mod tests {
         }
 
         #[test]
-        fn a_move_at_any_pace_keeps_the_limit_and_stays_on_its_line(
+        fn a_move_at_any_pace_stays_on_its_line_and_within_the_slew_limit(
             from: [i16; 4],
             to: [i16; 4],
             slew in any_slew(),
             paces in prop::collection::vec(0..=FULL_PACE, 1..60),
         ) {
-            let (start, end) = (pose_of(from), pose_of(to));
+            let (start, end) = (to_pose(from), to_pose(to));
             let mut path = PointToPointMove::new(&start, &end, slew);
             let mut last_pose = start;
             for pace in paces {
@@ -209,11 +209,11 @@ mod tests {
     }
 
     #[test]
-    fn a_move_of_any_length_keeps_the_slowest_and_the_fastest_slew_limit() {
+    fn a_move_of_any_length_stays_within_every_slew_limit() {
         for slew in [Slew::MIN_PER_FRAME, 100, 1092, 3640].map(Slew::new) {
             for length in (0..=u16::MAX).step_by(251).chain([u16::MAX]) {
                 let to = i16::MIN.wrapping_add(length as i16);
-                let sweeps = sweeps_of_move(i16::MIN, to, slew);
+                let sweeps = compute_sweeps(i16::MIN, to, slew);
                 let max_change = sweeps
                     .windows(2)
                     .map(|pair| pair[1].abs_diff(pair[0]))
@@ -227,20 +227,20 @@ mod tests {
     }
 
     #[test]
-    fn a_move_to_where_the_robot_is_stays_there_for_eight_frames() {
-        let sweeps = sweeps_of_move(77, 77, Slew::new(1000));
+    fn a_move_to_the_current_pose_takes_eight_frames() {
+        let sweeps = compute_sweeps(77, 77, Slew::new(1000));
         assert_eq!(sweeps, [77; 9]);
-        let path = PointToPointMove::new(&pose_of([0; 4]), &pose_of([9; 4]), Slew::new(1000));
+        let path = PointToPointMove::new(&to_pose([0; 4]), &to_pose([9; 4]), Slew::new(1000));
         assert_eq!(
-            path.share_per_frame,
+            path.fraction_per_frame,
             32_768 / 8,
-            "each frame covers an equal share"
+            "each frame covers an equal fraction"
         );
     }
 
     #[test]
-    fn a_pace_of_zero_holds_a_move() {
-        let mut path = PointToPointMove::new(&pose_of([0; 4]), &pose_of([900; 4]), Slew::new(1000));
+    fn a_pace_of_zero_stops_a_move() {
+        let mut path = PointToPointMove::new(&to_pose([0; 4]), &to_pose([900; 4]), Slew::new(1000));
         path.advance(FULL_PACE);
         let held_pose = path.pose();
         path.advance(0);

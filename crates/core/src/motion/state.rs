@@ -1,4 +1,4 @@
-//! The state of the motion, and the target that comes next.
+//! The state of the motion, and its targets.
 
 use crate::motion::point_to_point::PointToPointMove;
 use crate::numbers::gaits::{Gait, GaitId};
@@ -10,9 +10,9 @@ use crate::numbers::robot::Robot;
 pub enum Activity {
     /// Walking with a gait, or standing with the gait `stand`.
     Gait(GaitId),
-    /// Going to a commanded pose and staying there.
+    /// Moving to a commanded pose, or holding it.
     Pose,
-    /// Staying in a pose that was not commanded: after `stop`, after a stop by the guard, or after the last cycle of a
+    /// Holding a pose that was not commanded: after `stop`, after a stop by the guard, or after the last cycle of a
     /// counted gait.
     Stop,
     /// Resting without pulses: the servos are limp.
@@ -24,41 +24,41 @@ pub enum Activity {
 // Discriminants start at 1, so that `Option::None` is all zeros: see `Main::new`.
 #[repr(u8)]
 pub enum Target {
-    /// A pose, to be held.
+    /// A pose, which is then held.
     Pose(Pose) = 1,
     /// A gait, reached by a move to its first pose.
     Gait(GaitId),
-    /// A standstill in whatever pose the robot has once the gait or move under way has braked; also the end of a gait
-    /// that has run for its count of cycles.
+    /// A standstill in the pose that the robot has after braking the current gait or move; also the end of a counted
+    /// gait.
     Standstill,
 }
 
-/// The state of the motion; a table in `frames.rs` describes its changes.
+/// The state of the motion; the table in `frames.rs` describes its changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-// `Resting` is zero, whatever the other variants hold: see `Main::new`.
+// `Resting` is all zeros: see `Main::new`.
 #[repr(u8)]
 pub enum State {
     /// Resting: the servos get no pulses.
     Resting,
     /// Holding the last pose.
     Holding {
-        /// True if the pose was commanded, false if the robot was stopped in it.
+        /// True if the pose was commanded, false if the robot was stopped in this pose.
         is_commanded: bool,
     },
     /// Following a point-to-point move.
     Moving {
-        /// The move that is under way.
+        /// The current move.
         path: PointToPointMove,
         /// The current pace of the move; 1024 is full pace.
         pace: u16,
-        /// The gait that begins at the end of the move; if `None`, the pose is held.
+        /// The gait that starts at the end of the move; `None` if the pose is then held.
         gait: Option<GaitId>,
     },
     /// Cycling through a gait.
     Cycling {
         /// The gait's index.
         id: GaitId,
-        /// The gait, as loaded from the section.
+        /// The gait, loaded from the section.
         gait: Gait,
         /// The phase, 1/2^24 cycle.
         phase: u32,

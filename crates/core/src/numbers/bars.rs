@@ -1,19 +1,19 @@
-//! The bars of a five-bar linkage, and the factors by which the guard computes with them.
+//! The bars of a five-bar linkage, and the factors that the guard uses.
 //!
-//! A host derives the factors from the bars, so that the device needs no division.
+//! A host derives the factors from the bars, so that the device requires no division.
 
 use crate::numbers::couplers::CouplerLengths;
 use crate::numbers::units::Scale;
 
-/// The limit of the sum of base and cranks, l0 + l1 + l4 in the paper, and of each coupler, in steps.
+/// The upper limit, in steps, of the sum of base and cranks (l0 + l1 + l4 in the paper) and of each coupler.
 pub const MAX_LENGTH_STEPS: f64 = 127.0 * 256.0;
 
 /// The length of the shortest coupler, in steps.
 pub const MIN_COUPLER_STEPS: i16 = 4097;
 
-lizard_avr::plain! {
-    /// The bars of one five-bar, and factors that follow from them. Lengths are in steps of `scale`; the margins do not
-    /// depend on it.
+lizard_avr::pod! {
+    /// The bars of a five-bar, and the factors derived from them. Lengths are in steps of `scale`; the margins do not
+    /// depend on the scale.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Bars {
         pub(crate) couplers: CouplerLengths,
@@ -21,18 +21,18 @@ lizard_avr::plain! {
         pub(crate) base: i16,
         pub(crate) left_crank: i16,
         pub(crate) right_crank: i16,
-        /// `1 / (4 a b)` for the couplers `a` and `b`, in the scale that results from the two shifts.
+        /// `1 / (4 a b)` for the couplers `a` and `b`, scaled according to the two shifts.
         pub(crate) area_reciprocal: u16,
         /// 2^27 divided by the left coupler.
         pub(crate) left_reciprocal: i16,
         /// 2^27 divided by the right coupler.
         pub(crate) right_reciprocal: i16,
-        /// The shift that reduces a squared distance of the crank tips to fifteen bits.
+        /// The shift that reduces the squared distance between the crank tips to fifteen bits.
         pub(crate) square_shift: u16,
-        /// The shift that reduces the product of the rise and that reduced distance to sixteen bits.
+        /// The shift that reduces the product of the rise and the reduced squared distance to sixteen bits.
         pub(crate) area_shift: u16,
         pub(crate) scale: Scale,
-        /// Unused: it pads the fields above to a multiple of four bytes.
+        /// Padding of the fields above to a multiple of four bytes.
         pub(crate) padding: u16,
     }
 }
@@ -53,8 +53,8 @@ impl Bars {
         padding: 0,
     };
 
-    /// Creates the bars with these lengths in steps: the distance between the shafts, the left and the right crank,
-    /// whose sum is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
+    /// Creates bars with these lengths in steps: the distance between the shafts, the left and the right crank, whose
+    /// sum is at most [`MAX_LENGTH_STEPS`]; and the left and the right coupler.
     ///
     /// # Panics
     /// Panics if a coupler is shorter than [`MIN_COUPLER_STEPS`].
@@ -87,12 +87,12 @@ impl Bars {
         }
     }
 
-    /// The scale, which gives the length of a step.
+    /// The scale, which determines the length of a step.
     pub const fn scale(&self) -> Scale {
         self.scale
     }
 
-    /// The couplers of the five-bar.
+    /// The lengths of the couplers.
     pub const fn couplers(&self) -> CouplerLengths {
         self.couplers
     }

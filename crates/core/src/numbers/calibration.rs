@@ -1,20 +1,21 @@
-//! A servo's calibration: the relation of its pulses to its angles.
+//! A servo's calibration: the relation between its pulses and its angles.
 //!
-//! Servos of one type differ, and a horn fits its spline only every 14 degrees. So the calibration is not a constant of
-//! the robot: the motion holds it as a value, which is computed from robot.toml and from the user's adjustment
+//! Servos of one type differ, and a horn fits on its spline only every 14 degrees. Therefore the calibration is not a
+//! constant of the robot but a value of the motion, which is computed from robot.toml and the user's adjustment
 //! ([`crate::memory::adjustment`]).
 
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::numbers::units::{PulseWidth, Sweep};
 
-lizard_avr::plain! {
-    /// The pulse widths and the travel of one servo.
+lizard_avr::pod! {
+    /// The pulse widths and the travel of a servo.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Calibration {
         /// The pulse width at the neutral angle.
         pub neutral_width: PulseWidth,
-        /// CPU cycles of pulse width for each 1/65536 turn, Q14; negative if a longer pulse turns the servo clockwise.
+        /// The change of the pulse width for each 1/65536 turn, CPU cycles, Q14; negative if a longer pulse turns the
+        /// servo clockwise.
         pub gain: i16,
         /// The clockwise limit of the travel.
         pub travel_min: Sweep,
@@ -32,7 +33,7 @@ impl Calibration {
         travel_max: Sweep(0),
     };
 
-    /// Returns the pulse width that turns the servo to `sweep`, which has to be within the travel.
+    /// Computes the pulse width that turns the servo to `sweep`, which must be within the travel.
     pub fn width(&self, sweep: Sweep) -> PulseWidth {
         PulseWidth(
             self.neutral_width
@@ -41,20 +42,20 @@ impl Calibration {
         )
     }
 
-    /// Returns the pulse width for any sweep, even one beyond the travel, in CPU cycles, clamped to 0..=65535.
+    /// Computes the pulse width for any sweep, even beyond the travel, CPU cycles, clamped to 0..=65535.
     #[inline(never)]
     pub fn clamped_width(&self, sweep: Sweep) -> u16 {
         let pulse = i32::from(self.neutral_width.0) + self.width_change(sweep);
         pulse.clamp(0, i32::from(u16::MAX)) as u16
     }
 
-    /// Returns the difference of the pulse width at `sweep` from the neutral width, CPU cycles.
+    /// Computes the difference between the pulse width at `sweep` and the neutral width, CPU cycles.
     fn width_change(&self, sweep: Sweep) -> i32 {
         (mul(sweep.0, self.gain) + (1 << 13)) >> 14
     }
 
-    /// Returns the largest change of the pulse width in a frame, in CPU cycles and at least one, if the servo may turn
-    /// by `per_frame`, in 1/65536 turn.
+    /// Computes the largest change of the pulse width in a frame, at least one CPU cycle, if the servo may turn by at
+    /// most `per_frame`, 1/65536 turn.
     pub fn max_width_change(&self, per_frame: u16) -> u16 {
         let cycles = (mul_unsigned(per_frame, self.gain.unsigned_abs()) >> 14) as u16;
         cycles.max(1)
@@ -66,10 +67,10 @@ impl Calibration {
     }
 }
 
-lizard_avr::plain! {
-    /// The range of sweeps that a robot's gaits need of a servo; it includes 0, the neutral angle.
+lizard_avr::pod! {
+    /// A range of a servo's sweeps.
     #[derive(Debug, Default, PartialEq, Eq)]
-    pub struct NeededTravel {
+    pub struct SweepRange {
         /// The clockwise limit of the range.
         pub min: Sweep,
         /// The counter-clockwise limit of the range.
@@ -77,8 +78,8 @@ lizard_avr::plain! {
     }
 }
 
-impl NeededTravel {
-    /// True if a servo's travel covers this range.
+impl SweepRange {
+    /// True if the servo's travel covers this range.
     pub fn is_within(&self, servo: &Calibration) -> bool {
         servo.travel_min <= self.min && self.max <= servo.travel_max
     }
@@ -101,7 +102,7 @@ mod tests {
                     let turn_deg = f64::from(sweep) / STEPS_PER_DEGREE;
                     let us = exact_servo.neutral_us + exact_servo.us_per_degree * turn_deg;
                     let width = f64::from(servo.width(Sweep(sweep)).0);
-                    // Half a cycle each for the rounding of the neutral width and of this width, and the effect of the
+                    // Half a cycle for the rounding of each of the neutral width and this width, and the effect of the
                     // gain's rounding over half a turn.
                     prop_assert!((width - 16.0 * us).abs() <= 2.0, "{exact_servo:?} at {sweep}: {width}");
                 }
@@ -110,7 +111,7 @@ mod tests {
         }
 
         #[test]
-        fn a_servo_reaches_both_ends_of_its_travel_and_no_angle_beyond(robot in Sample::random()) {
+        fn a_servo_reaches_exactly_the_sweeps_within_its_travel(robot in Sample::random()) {
             for servo in &robot.calibration() {
                 for sweep in i16::MIN..=i16::MAX {
                     let is_within = (servo.travel_min.0..=servo.travel_max.0).contains(&sweep);
@@ -128,7 +129,7 @@ mod tests {
             travel_min: Sweep(-9000),
             travel_max: Sweep(9000),
         };
-        // The gains are half a cycle and one and a half cycles per step of a sweep.
+        // The gains are 0.5 cycles and -1.5 cycles per step of a sweep.
         assert_eq!(servo_with(8192).width(Sweep(3)), PulseWidth(20_002));
         assert_eq!(servo_with(8192).width(Sweep(-3)), PulseWidth(19_999));
         assert_eq!(servo_with(-24_576).width(Sweep(1)), PulseWidth(19_999));

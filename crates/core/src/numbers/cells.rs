@@ -1,10 +1,10 @@
-//! Certified cells: ranges of the sweeps of two servos in which the guard is known to accept every pose, so that a pose
-//! in them need not be measured.
+//! Certified cells: ranges of the sweeps of two servos in which the guard accepts every pose, so that the guard need
+//! not measure these poses.
 //!
-//! Measuring all margins of a pose takes most of a frame's time, and far from all limits the result is always "safe".
-//! Every condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these
-//! safe ranges. The host makes the maps from a robot's numbers, and proves that the integer arithmetic of
-//! [`crate::guard::clearance`] accepts every pose of every cell. A pose outside the cells is not necessarily unsafe;
+//! Computing all margins of a pose takes most of a frame, and far from all limits the result is always "safe". Every
+//! condition of the guard depends on one or two servos, so four small maps over pairs of servos can mark these safe
+//! ranges. The host makes the maps from a robot's numbers, and proves that the integer arithmetic of
+//! [`crate::guard::clearance`] accepts every pose in every cell. A pose outside the cells is not necessarily unsafe;
 //! the device measures it.
 
 use lizard_avr::{Flash, flash};
@@ -14,18 +14,18 @@ use crate::numbers::units::Sweep;
 /// The largest number of rows in a map.
 pub const MAX_ROWS: usize = 64;
 
-/// Binary logarithm of a row's width, in steps of a sweep (1/65536 turn): 1.4 deg.
+/// The binary logarithm of a row's width in steps of a sweep (1/65536 turn); the width is 1.4 deg.
 pub const ROW_BITS: u32 = 8;
 
-/// Binary logarithm of a column's width, in steps of a sweep (1/65536 turn): 0.7 deg.
+/// The binary logarithm of a column's width in steps of a sweep (1/65536 turn); the width is 0.7 deg.
 pub const COLUMN_BITS: u32 = 7;
 
 flash! {
     const NO_ROWS: [[i8; 2]; 0] = [];
 }
 
-/// The certified cells of one pair of servos: rows in a table that several maps share. In a cell, every condition of
-/// the guard that depends on these two servos holds.
+/// The map of the certified cells of a pair of servos, with rows in a table that several maps share. In a cell, every
+/// condition of the guard that depends only on these two servos holds.
 #[derive(Clone, Copy)]
 pub struct Cells<'a> {
     /// The row number of the map's first row, see [`Cells::from_rows`].
@@ -39,15 +39,15 @@ pub struct Cells<'a> {
 }
 
 impl Cells<'static> {
-    /// A map without cells: every pose is measured.
+    /// A map without cells, with which the guard measures every pose.
     pub const NONE: Self = Self::from_rows(0, 0, 0, NO_ROWS.as_slice());
 }
 
 impl<'a> Cells<'a> {
     /// Creates the map whose `row_count` rows begin at index `start` of `rows`. The rows have consecutive row numbers
     /// from `first_row` on, which wrap around after a turn. Each row is stored as its first and its last column number,
-    /// both inclusive; if the first is greater than the last, the row is empty. A row number is a sweep divided by
-    /// 2^[`ROW_BITS`], a column number a sweep divided by 2^[`COLUMN_BITS`], both rounded down.
+    /// both inclusive; the row is empty if the first number is greater than the last. A row number is a sweep divided
+    /// by 2^[`ROW_BITS`], a column number is a sweep divided by 2^[`COLUMN_BITS`], both rounded down.
     #[inline(always)]
     pub const fn from_rows(
         first_row: i8,
@@ -63,13 +63,13 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Creates the map that consists of all `rows`, of which there are at most 255.
+    /// Creates the map that consists of all `rows`, at most 255.
     pub const fn new(first_row: i8, rows: Flash<'a, [[i8; 2]]>) -> Self {
         Self::from_rows(first_row, 0, rows.len() as u8, rows)
     }
 
-    /// True if a cell contains this pair of sweeps: the first selects the row, the second the column. A column number
-    /// that does not fit an `i8`, a quarter of a turn or more from neutral, is in no cell.
+    /// True if a cell contains this pair of sweeps: `row` selects the row, `column` the column. A column that is a
+    /// quarter of a turn or more from neutral is in no cell, because its number does not fit into an `i8`.
     #[inline(always)]
     pub fn contains(&self, row: Sweep, column: Sweep) -> bool {
         let row = ((row.0 >> ROW_BITS) as i8).wrapping_sub(self.first_row) as u8;
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// The reference implementation of [`Cells::contains`], by division and without a shortcut.
+    /// The reference implementation of [`Cells::contains`], with divisions and without a shortcut.
     fn contains_by_division(first_row: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows; the first row follows the last.
@@ -111,8 +111,8 @@ mod tests {
             })
     }
 
-    /// Sweeps at and beside every border of the columns in these tests, and a quarter of a turn from neutral, where the
-    /// column numbers end.
+    /// Sweeps at and next to every border of the columns in these tests, and a quarter of a turn from neutral, where
+    /// the column numbers end.
     const COLUMNS: [i16; 17] = [
         i16::MIN,
         -16_385,
@@ -133,16 +133,15 @@ mod tests {
         i16::MAX,
     ];
 
-    /// Checks that [`Cells::contains`] agrees with its reference at every sweep of the row's servo and at all
-    /// [`COLUMNS`].
-    fn assert_agrees_with_reference(first_row: i8, rows: &[[i8; 2]]) {
+    /// Checks that [`Cells::contains`] matches its reference at every sweep of the row's servo and at all [`COLUMNS`].
+    fn assert_matches_reference(first_row: i8, rows: &[[i8; 2]]) {
         let cells = Cells::new(first_row, Flash::from(rows));
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
                 assert_eq!(
                     cells.contains(Sweep(row), Sweep(column)),
                     contains_by_division(first_row, rows, row, column),
-                    "{row} {column} in {rows:?} from {first_row}"
+                    "row {row}, column {column} in {rows:?} from {first_row}"
                 );
             }
         }
@@ -158,12 +157,12 @@ mod tests {
             [-127, -2],
             [127, -128],
         ];
-        // The maps are around neutral, at either end of the turn, and across its end.
+        // The maps are around neutral, at either end of the turn, and across the end of the turn.
         for first_row in [-3, 0, -128, 122, 125] {
-            assert_agrees_with_reference(first_row, &rows);
+            assert_matches_reference(first_row, &rows);
         }
         let max_rows: Vec<[i8; 2]> = (0..MAX_ROWS as i8).map(|n| [n - 40, n]).collect();
-        assert_agrees_with_reference(-32, &max_rows);
+        assert_matches_reference(-32, &max_rows);
     }
 
     #[test]
@@ -173,7 +172,7 @@ mod tests {
                 assert!(!Cells::NONE.contains(Sweep(row), Sweep(column)));
             }
         }
-        assert_agrees_with_reference(-5, &[]);
+        assert_matches_reference(-5, &[]);
     }
 
     proptest! {
@@ -198,7 +197,7 @@ mod tests {
         }
 
         #[test]
-        fn any_map_contains_exactly_the_pairs_that_its_rows_list(
+        fn a_random_map_contains_exactly_the_pairs_in_its_rows(
             first_row: i8,
             rows in prop::collection::vec(any::<[i8; 2]>(), 0..256),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),

@@ -1,37 +1,38 @@
 //! The triangle formed by the two couplers and the line between the crank tips.
 //!
 //! Couplers of lengths `a` (left) and `b` (right) are joined at the end point, the head or the tail. The shape of the
-//! triangle depends only on the squared distance `s` of the crank tips. The margins need only two functions of `s`:
+//! triangle depends only on the squared distance `s` between the crank tips. The margins depend on two functions of
+//! `s`:
 //!
 //! ```text
 //! rise = 2 height / distance    = sqrt((R - s) (s - N)) / s    R = (a + b)^2, N = (a - b)^2
 //! skew = 2 foot / distance - 1  = (a^2 - b^2) / s              0 for equal couplers
 //! ```
 //!
-//! The height is that of the end point over the line between the crank tips, by Heron's formula. The foot is the
-//! distance from the left crank tip to the foot of that height. Both functions are read from a [`Curve`]. At either
-//! limit of the range of `s`, `R` for stretched couplers and `N` for folded ones, the rise falls to zero like a square
-//! root, too steeply for a table over `s`. So near each limit it is read from another table, over the distance from
-//! that limit, `R - s` or `s - N`. A robot that cannot reach a limit does not have the table for it. The rise is
-//! largest at `s = 2 R N / (R + N)`, which is below `2 N`. The table over `s` holds the falling part above that point;
-//! below it, the table holds the largest rise.
+//! The height is the distance of the end point from the line between the crank tips, by Heron's formula. The foot is
+//! the distance from the left crank tip to the foot of the height. Both functions are read from a [`Curve`]. At either
+//! limit of the range of `s`, `R` for stretched couplers and `N` for folded couplers, the rise falls to zero like a
+//! square root, too steeply for a table over `s`. Therefore the rise near each limit is read from another table, over
+//! the distance from the limit, `R - s` or `s - N`. A robot that cannot reach a limit does not have the table for this
+//! limit. The rise is largest at `s = 2 R N / (R + N)`, which is below `2 N`. The table over `s` holds the falling part
+//! above this peak, and the largest rise below the peak.
 
 use lizard_avr::Flash;
 
 use crate::numbers::curve::{Curve, OCTAVE_COUNT, Table, argument_at};
 
-/// The tables of a pair of couplers, Q10. A table that the robot does not need is `None`.
+/// The tables of a pair of couplers, Q10; `None` in place of a table that the robot does not require.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables<'a> {
     /// The rise over `s`, made by [`rise_table`].
     pub rise: Option<Flash<'a, Table>>,
-    /// The rise over `R - s`, made by [`stretched_rise_table`]; for a five-bar whose crank tips can be so far apart
+    /// The rise over `R - s`, made by [`stretched_rise_table`], for a five-bar whose crank tips can be so far apart
     /// that [`Couplers::is_near_stretched`] is true.
     pub stretched_rise: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded_rise_table`]; for couplers for which [`Couplers::needs_folded_table`] is
-    /// true.
+    /// The rise over `s - N`, made by [`folded_rise_table`], for couplers with which [`Couplers::needs_folded_table`]
+    /// is true.
     pub folded_rise: Option<Flash<'a, Table>>,
-    /// The magnitude of the skew over `s`, made by [`skew_table`]; for unequal couplers.
+    /// The magnitude of the skew over `s`, made by [`skew_table`], for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
 }
 
@@ -45,8 +46,8 @@ impl Tables<'_> {
     };
 }
 
-lizard_avr::plain! {
-    /// The lengths of the two couplers of a five-bar, in its steps, and values derived from them.
+lizard_avr::pod! {
+    /// The lengths of a five-bar's two couplers, in steps, and values derived from these lengths.
     #[derive(Debug, PartialEq, Eq)]
     pub struct CouplerLengths {
         left: i16,
@@ -73,7 +74,7 @@ impl CouplerLengths {
         folded_zeros: 32,
     };
 
-    /// Creates a left and a right coupler of these lengths, in steps.
+    /// Creates the lengths of a left and a right coupler, in steps.
     pub const fn new(left: i16, right: i16) -> Self {
         Self {
             left,
@@ -101,44 +102,44 @@ impl CouplerLengths {
     }
 }
 
-/// The two couplers of a five-bar, and their tables.
+/// The two couplers of a five-bar with their tables.
 #[derive(Clone, Copy)]
 pub struct Couplers<'a> {
     lengths: CouplerLengths,
     tables: Tables<'a>,
 }
 
-/// The shape of the couplers' triangle at a distance of the crank tips, Q10.
+/// The shape of the couplers' triangle at a distance between the crank tips, Q10.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TriangleShape {
-    /// Twice the height of the end point over the distance of the crank tips.
+    /// Twice the height of the end point, divided by the distance between the crank tips.
     pub rise: i16,
-    /// Twice the foot of that height over the distance of the crank tips, minus one.
+    /// Twice the foot of the height, divided by the distance between the crank tips, minus one.
     pub skew: i16,
 }
 
 impl<'a> Couplers<'a> {
-    /// Creates couplers of these lengths, with their tables. A shape that needs a missing table is unknown.
+    /// Creates couplers from their lengths and tables. A shape that requires a missing table is unknown.
     pub const fn new(lengths: CouplerLengths, tables: Tables<'a>) -> Self {
         Self { lengths, tables }
     }
 
     /// True if the lengths differ so much that the table over `s` begins below `2 N`. The table for folded couplers
-    /// then gives the rise from `2 N` down to the folded position, `s = N`. For other couplers, [`Couplers::shape_at`]
-    /// returns `None` near the folded position.
+    /// then contains the rise from `2 N` down to the folded position, `s = N`. For other couplers,
+    /// [`Couplers::shape_at`] returns `None` near the folded position.
     pub const fn needs_folded_table(left: i16, right: i16) -> bool {
         CouplerLengths::new(left, right).needs_folded_table()
     }
 
-    /// True if the squared distance of the crank tips, `tips_sq`, is above three quarters of `R`. There the rise is
-    /// read from the table for stretched couplers.
+    /// True if the squared distance between the crank tips, `tips_sq`, is above three quarters of `R`. There the rise
+    /// is read from the table for stretched couplers.
     pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
         is_near_stretched(reach_sq(left, right), tips_sq)
     }
 
-    /// Returns the shape at a squared distance of the crank tips, in units of four squared steps of the bars; `None` if
-    /// the loop does not close. Also returns `None` near the distances at which the loop just closes, and near
-    /// coinciding crank tips, where the tables have no value; the type-2 margin is then below a tenth, the smallest
+    /// Returns the shape at a squared distance between the crank tips, in units of four squared steps of the bars.
+    /// Returns `None` if the loop does not close, and also where the tables have no value: near the distances at which
+    /// the loop just closes, and near coinciding crank tips. The type-2 margin is then below a tenth, the smallest
     /// limit that a robot may have.
     #[inline(always)]
     pub fn shape_at(&self, tips_sq: u32) -> Option<TriangleShape> {
@@ -222,15 +223,15 @@ pub fn skew_table(left: i16, right: i16) -> Table {
     })
 }
 
-/// Computes the rise, `sqrt((R - s)(s - N)) / s`, in Q10, rounded to nearest if `rounding` is 1 and down if it is 0;
-/// returns 0 unless `s` is between `N` and `R`.
+/// Computes the rise, `sqrt((R - s)(s - N)) / s`, Q10, rounded to nearest if `rounding` is 1, or down if it is 0.
+/// Returns 0 unless `s` is between `N` and `R`.
 fn rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 {
     let (reach_sq, folded_sq) = (u64::from(reach_sq), u64::from(folded_sq));
     if tips_sq >= reach_sq || tips_sq <= folded_sq {
         return 0;
     }
     let product = (reach_sq - tips_sq) as u128 * (tips_sq - folded_sq) as u128;
-    // One bit more than Q10 for the rounding.
+    // One bit more than Q10, for rounding.
     let twice_rise = ((product << 22) / (tips_sq as u128 * tips_sq as u128)).isqrt();
     let rise = (twice_rise + rounding) >> 1;
     rise.min(0x7fff) as i16
@@ -239,7 +240,7 @@ fn rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 
 /// Computes `R` in the unit of `s`, four squared steps of the bars.
 const fn reach_sq(left: i16, right: i16) -> u32 {
     let sum = left as u32 + right as u32;
-    // A quarter of the squared sum, rounded down; for equal couplers exactly the squared coupler.
+    // A quarter of the squared sum, rounded down; for equal couplers exactly the squared length of a coupler.
     sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 }
 }
 
@@ -255,7 +256,10 @@ fn peak_sq(left: i16, right: i16) -> u32 {
     (2 * reach_sq * folded_sq / (reach_sq + folded_sq)) as u32
 }
 
-const _: () = assert!(OCTAVE_COUNT == 10, "1/1024 of R is a type-2 margin of .06");
+const _: () = assert!(
+    OCTAVE_COUNT == 10,
+    "guard::bounds assumes 1/1024 of R, a type-2 margin of .06"
+);
 
 #[cfg(test)]
 mod tests;

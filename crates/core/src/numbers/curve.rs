@@ -1,10 +1,9 @@
 //! A smooth function of a squared length, read from a table in flash.
 //!
-//! Computing a root and a quotient would take 2 800 cycles in every frame. The functions that the five-bar needs depend
-//! on a single squared length, so a table is enough. The table has sixteen steps per octave of the argument (a range
-//! from a number to its double), and the function is interpolated linearly within a step. A square root is then
-//! accurate to about one part in ten thousand and a reciprocal to about one in a thousand, near zero as well as far
-//! from it.
+//! Computing a root and a quotient would take 2 800 cycles in every frame. The five-bar's functions depend on a single
+//! squared length, so a table is sufficient. The table has sixteen steps per octave of the argument (a range from a
+//! number to its double), and interpolates the function linearly within a step. For any argument, a square root is then
+//! accurate to about one part in ten thousand, and a reciprocal to about one part in a thousand.
 
 use lizard_avr::{Flash, mul_unsigned};
 
@@ -14,27 +13,27 @@ const STEPS_PER_OCTAVE: usize = 16;
 /// The number of octaves in a table below the octave of the largest argument.
 pub const OCTAVE_COUNT: u32 = 10;
 
-/// The number of entries of a table: one for the start of each step, and one for the end of the last octave.
+/// The number of entries in a table: one for the start of each step, and one for the end of the last octave.
 pub const ENTRY_COUNT: usize = STEPS_PER_OCTAVE * (OCTAVE_COUNT as usize + 1) + 1;
 
-/// The table of a function.
+/// The table of a function, indexed by step.
 pub type Table = [i16; ENTRY_COUNT];
 
 /// A function that is read from a table in flash.
 #[derive(Clone, Copy)]
 pub struct Curve<'a> {
     table: Flash<'a, Table>,
-    /// The number of leading zeros of an argument in the first, lowest octave.
+    /// The number of leading zeros of an argument in the lowest octave.
     lowest_octave_zeros: u8,
 }
 
 impl<'a> Curve<'a> {
-    /// Creates the function in `table`, whose arguments go up to `max_argument`.
+    /// Creates the function in `table`, whose largest argument is `max_argument`.
     pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
         Self::with_leading_zeros(table, max_argument.leading_zeros() as u16)
     }
 
-    /// Creates the function in `table`, whose largest argument has this many leading zeros.
+    /// Creates the function in `table`, whose largest argument has `zeros` leading zeros.
     pub const fn with_leading_zeros(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,
@@ -42,20 +41,20 @@ impl<'a> Curve<'a> {
         }
     }
 
-    /// Returns the value of a function that never rises, rounded up; `None` below the table's first octave, which
-    /// begins at 1/1024 of the start of the largest argument's octave.
+    /// Returns the value of a function that never rises, rounded up. Returns `None` below the table's first octave,
+    /// which begins at 1/1024 of the start of the largest argument's octave.
     pub fn at_rounded_up(&self, argument: u32) -> Option<i16> {
         self.interpolate(argument, 0)
     }
 
-    /// Returns the value of any function, rounded to nearest; `None` below the table's first octave, as for
+    /// Returns the value of any function, rounded to nearest. Returns `None` below the table's first octave, see
     /// [`Curve::at_rounded_up`].
     pub fn at(&self, argument: u32) -> Option<i16> {
         self.interpolate(argument, 0x8000)
     }
 
-    /// Interpolates the value. The magnitude of its difference from the entry below the argument is computed with 16
-    /// more bits, which are dropped after `rounding` is added.
+    /// Interpolates the value. The magnitude of the difference between the value and the entry below the argument is
+    /// computed with 16 more bits, which are dropped after adding `rounding`.
     #[inline(never)]
     fn interpolate(&self, argument: u32, rounding: u16) -> Option<i16> {
         let mut mantissa = argument;
@@ -64,7 +63,7 @@ impl<'a> Curve<'a> {
             mantissa <<= 1;
             octave = octave.checked_sub(1)?;
         }
-        // Bits below the leading one: four for the step, then sixteen for the position within it.
+        // Bits below the leading one: four for the step, then sixteen for the position within the step.
         let step = (mantissa >> 24) as u8 >> 3 & (STEPS_PER_OCTAVE as u8 - 1);
         let fraction = ((mantissa << 5) >> 16) as u16;
         let index = usize::from(octave) * STEPS_PER_OCTAVE + usize::from(step);
@@ -80,8 +79,8 @@ impl<'a> Curve<'a> {
     }
 }
 
-/// Returns the argument of the table's entry at `index` if the largest argument is `max_argument`. The result is
-/// rounded down; only a `max_argument` below 16384 needs the rounding.
+/// Returns the argument of the table entry at `index`, for a largest argument of `max_argument`. The result is rounded
+/// down, but is exact if `max_argument` is at least 16384.
 pub const fn argument_at(max_argument: u32, index: usize) -> u64 {
     let (first_zeros, position_zeros) = (
         first_octave_zeros(max_argument) as usize,
@@ -104,16 +103,15 @@ mod tests {
     use lizard_avr::Flash;
     use proptest::prelude::*;
 
-    /// Makes the table of `function`, whose argument is a share of the largest one.
+    /// Makes the table of `function`, whose argument is a fraction of the largest argument.
     fn make_table(max_argument: u32, function: impl Fn(f64) -> f64) -> Table {
         core::array::from_fn(|index| {
-            let share = argument_at(max_argument, index) as f64 / f64::from(max_argument);
-            function(share).round().clamp(-32767.0, 32767.0) as i16
+            let fraction = argument_at(max_argument, index) as f64 / f64::from(max_argument);
+            function(fraction).round().clamp(-32767.0, 32767.0) as i16
         })
     }
 
-    /// Falling functions that fill the table: a logarithm, a root with its sign
-    /// changed, a straight line.
+    /// Falling functions that fill the table: a logarithm, a negative root, and a straight line.
     const FUNCTIONS: [fn(f64) -> f64; 3] = [
         |u| -2900.0 * u.log2(),
         |u| -20_000.0 * u.sqrt(),
@@ -128,26 +126,26 @@ mod tests {
             max_argument in (10u32..32, any::<u32>())
                 .prop_map(|(bits, low)| (1 << bits) | (low & ((1 << bits) - 1))),
             octave in 0u32..=OCTAVE_COUNT,
-            octave_share in 0.5..=1.0f64,
+            octave_fraction in 0.5..=1.0f64,
             function_index in 0usize..3,
         ) {
             let function = FUNCTIONS[function_index];
             let table = make_table(max_argument, function);
             let curve = Curve::new(Flash::from(&table), max_argument);
-            let argument = (f64::from(max_argument >> octave) * octave_share) as u32;
+            let argument = (f64::from(max_argument >> octave) * octave_fraction) as u32;
             if argument < (max_argument >> OCTAVE_COUNT).max(1) {
                 return Ok(());
             }
             let exact = function(f64::from(argument) / f64::from(max_argument));
             let actual = f64::from(curve.at(argument).expect("the argument is within the octaves"));
-            // Within a step of 1/16 octave, the logarithm and the root deviate from a straight line by up to 1.9 and
-            // 2.3. Two roundings add to that.
-            prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {max_argument}: {actual}, {exact}");
+            // Within a step of 1/16 octave, the logarithm and the root differ from a straight line by at most 1.9 and
+            // 2.3. Two roundings add to this difference.
+            prop_assert!((actual - exact).abs() <= 4.0, "{argument} of {max_argument}: {actual}, exactly {exact}");
         }
 
         #[test]
         fn an_entry_is_read_exactly_at_its_argument(
-            // For a smaller `max_argument`, the sixteen steps of the first octaves are not all whole numbers.
+            // For a smaller `max_argument`, not all sixteen steps of the first octaves are whole numbers.
             max_argument in 1u32 << 14..,
             index in 0..ENTRY_COUNT,
         ) {
@@ -165,7 +163,7 @@ mod tests {
         for slope in [-5, 5] {
             let table: Table = core::array::from_fn(|index| slope * index as i16);
             let curve = Curve::new(Flash::from(&table), 1 << 20);
-            // The last octave: entries are 1/16 of it apart.
+            // In the last octave, the distance between entries is 1/16 of the octave.
             for argument in (1 << 20..1 << 21).step_by(997) {
                 let octaves = f64::from(argument) / f64::from(1 << 20) - 1.0;
                 let exact = f64::from(slope) * 16.0 * (f64::from(OCTAVE_COUNT) + octaves);
@@ -176,14 +174,14 @@ mod tests {
                 );
                 assert!(
                     (actual - exact).abs() <= 0.501,
-                    "{argument}: {actual}, {exact}"
+                    "{argument}: {actual}, exactly {exact}"
                 );
             }
         }
     }
 
     #[test]
-    fn a_curve_has_no_value_at_0_and_below_its_first_octave() {
+    fn a_curve_has_no_value_below_its_first_octave() {
         let table = [7; ENTRY_COUNT];
         for max_argument in [0, 1, 1023, 1024, 5000, 1 << 20, u32::MAX] {
             let curve = Curve::new(Flash::from(&table), max_argument);
@@ -198,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_never_decrease_from_entry_to_entry_even_for_a_small_largest_argument() {
+    fn arguments_never_decrease_from_entry_to_entry() {
         for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRY_COUNT {
                 let (previous_argument, current_argument) = (

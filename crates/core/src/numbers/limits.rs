@@ -2,11 +2,11 @@
 
 use crate::numbers::units::Sine;
 
-lizard_avr::plain! {
-    /// The smallest safe margins of each kind.
+lizard_avr::pod! {
+    /// The smallest allowed margin of each kind.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Limits {
-        /// The limit of the type-2 margins, each between the two couplers of head or tail; at least a tenth.
+        /// The limit of the type-2 margins, each between the two couplers of an end; at least a tenth.
         pub type2: Sine,
         /// The limit of the type-1 margins, each between a crank and its coupler; not negative.
         pub type1: Sine,

@@ -1,9 +1,9 @@
-//! The mark of the firmware in flash: it tells other programs the section format that the firmware reads.
+//! The mark of the firmware in flash, from which other programs read the section format that the firmware supports.
 //!
-//! A program that writes only a robot's section communicates with the boot loader; the firmware does not run then and
-//! cannot be asked. The section is useful only to firmware that reads its format. So the firmware has a mark at a fixed
-//! address: after the interrupt vectors, in the first page of flash. Any other program that is written to the board
-//! overwrites that page, so no old mark remains.
+//! A program that writes only a robot's section communicates with the boot loader while the firmware does not run. The
+//! firmware must support the format of the section. Therefore the firmware has a mark at a fixed address, after the
+//! interrupt vectors in the first page of flash. Any other program that is written to the board overwrites this page,
+//! so no old mark remains.
 //!
 //! ```
 //! use lizard_core::numbers::mark::{ADDRESS, Mark};
@@ -16,8 +16,7 @@
 
 use crate::numbers::section::{FORMAT, MAGIC};
 
-/// The mark's address in flash: after the 26 vectors of an ATmega328P, 4 bytes each (data sheet,
-/// table 12-6).
+/// The address of the mark in flash, after the 26 vectors of an ATmega328P with 4 bytes each (data sheet, table 12-6).
 pub const ADDRESS: usize = 26 * 4;
 
 /// The length of the mark, bytes.
@@ -26,7 +25,7 @@ pub const LENGTH: usize = 10;
 /// The mark of a firmware: its section format and its version.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mark {
-    /// The [`FORMAT`] of the sections that the firmware reads.
+    /// The [`FORMAT`] of the sections that the firmware supports.
     pub format: u16,
     /// The firmware's version: major, minor, patch.
     pub version: [u8; 3],
@@ -43,7 +42,7 @@ impl Mark {
         ],
     };
 
-    /// The bytes in flash: magic, format, version, and a zero, since code has to begin at an even address.
+    /// Returns the bytes in flash: magic, format, version, and a zero, because code must begin at an even address.
     pub const fn bytes(self) -> [u8; LENGTH] {
         let [a, b, c, d] = MAGIC.to_le_bytes();
         let [low, high] = self.format.to_le_bytes();
@@ -51,7 +50,7 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// Finds the mark in the bytes of flash from address 0 on; `None` if there is none.
+    /// Finds the mark in the bytes of flash from address 0 on; returns `None` if there is no mark.
     pub fn find(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(ADDRESS..ADDRESS + LENGTH)?;
         let (magic, fields) = bytes.split_first_chunk()?;
@@ -65,11 +64,11 @@ impl Mark {
     }
 }
 
-/// Parses one of the three numbers of the version.
+/// Parses a number of the version.
 const fn parse_number(text: &str) -> u8 {
     match u8::from_str_radix(text, 10) {
         Ok(number) => number,
-        Err(_) => panic!("a part of the version is above 255"),
+        Err(_) => panic!("each number of the version must be at most 255"),
     }
 }
 
@@ -80,14 +79,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_version_equals_that_of_the_package() {
+    fn the_version_matches_the_package() {
         let [major, minor, patch] = Mark::THIS_FIRMWARE.version;
         let version = format!("{major}.{minor}.{patch}");
         assert_eq!(version, env!("CARGO_PKG_VERSION"));
     }
 
     #[test]
-    fn a_flipped_bit_gives_another_mark_or_none() {
+    fn a_flipped_bit_results_in_another_mark_or_none() {
         let mut flash = [0xff; 128];
         flash[ADDRESS..ADDRESS + LENGTH].copy_from_slice(&Mark::THIS_FIRMWARE.bytes());
         for address in ADDRESS..ADDRESS + LENGTH {

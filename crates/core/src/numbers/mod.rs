@@ -1,6 +1,6 @@
-//! The numbers of a robot: units, types without behaviour, and the flash section that holds them.
+//! The numbers of a robot: units, types without behaviour, and the section of flash that contains the numbers.
 //!
-//! The lowest module of the crate: every other module uses it, and it uses none of them.
+//! This is the lowest module of the crate: every other module uses it, but it uses no other module.
 
 pub mod bars;
 pub mod calibration;

@@ -36,12 +36,12 @@ impl Servo {
     /// All four servos, in their order.
     pub const ALL: [Self; 4] = [Self::A1, Self::A2, Self::A3, Self::A4];
 
-    /// Iterates over all four servos; unlike [`Servo::ALL`], it needs no table in RAM.
+    /// Iterates over all four servos; unlike [`Servo::ALL`], this requires no table in RAM.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..4).map(Self::at)
     }
 
-    /// The servo at an index of an array of four; A4 for an index past the end.
+    /// Returns the servo at an index of an array of four; A4 for an index past the end.
     pub const fn at(index: usize) -> Self {
         match index {
             0 => Self::A1,
@@ -61,19 +61,19 @@ impl Servo {
         self as usize
     }
 
-    /// The element of this servo in an array in servo order.
-    pub const fn of<T>(self, items: &[T; 4]) -> &T {
+    /// Picks this servo's element from an array in servo order.
+    pub const fn pick<T>(self, items: &[T; 4]) -> &T {
         &items[self as usize]
     }
 
-    /// The element of this servo in an array in servo order, as a mutable reference.
-    pub const fn of_mut<T>(self, items: &mut [T; 4]) -> &mut T {
+    /// Picks this servo's element, as a mutable reference, from an array in servo order.
+    pub const fn pick_mut<T>(self, items: &mut [T; 4]) -> &mut T {
         &mut items[self as usize]
     }
 }
 
 impl End {
-    /// The servos of the left and of the right crank, in the frame of this end.
+    /// The servos of the left and the right crank, in the frame of this end.
     pub const fn servos(self) -> [Servo; 2] {
         match self {
             Self::Head => [Servo::A1, Servo::A2],
@@ -86,7 +86,7 @@ impl End {
 }
 
 impl Side {
-    /// The servos of the front and of the rear crank.
+    /// The servos of the front and the rear crank.
     pub const fn servos(self) -> [Servo; 2] {
         match self {
             Self::Left => [Servo::A1, Servo::A4],
@@ -103,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_servo_is_at_its_index_and_the_last_one_past_the_end() {
+    fn a_servo_is_at_its_index_and_a4_past_the_end() {
         for index in 0..4 {
             assert_eq!(Servo::at(index).index(), index);
         }

@@ -1,7 +1,7 @@
 //! A pose of the robot: the sweeps of the four servos from their neutral angles.
 //!
-//! The horns are fitted while the servos hold their neutral pulse width. So a sweep is the angle by which a servo
-//! really turns, and a chassis angle can be measured on the robot. All arrays have the order of [`Servo`].
+//! The horns are fitted while the servos hold their neutral pulse width. Therefore a sweep is the angle by which a
+//! servo really turns, and a chassis angle can be measured on the robot. All arrays have the order of [`Servo`].
 
 use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
@@ -16,10 +16,10 @@ pub struct Pose(pub [Sweep; 4]);
 pub struct Pulses(pub [PulseWidth; 4]);
 
 impl Pose {
-    /// All servos at their neutral angle: the robot stands.
+    /// The pose in which all servos are at their neutral angles and the robot stands.
     pub const NEUTRAL: Self = Self([Sweep(0); 4]);
 
-    /// Returns the pose with these chassis angles, given the servos' neutral angles; the pose may be beyond the travel.
+    /// Computes the pose with these chassis angles from the servos' neutral angles; the pose may exceed the travel.
     pub fn from_angles(angles: &[Angle; 4], neutral_angles: &[Angle; 4]) -> Self {
         let mut pose = Self::NEUTRAL;
         for (sweep, (angle, neutral)) in pose.0.iter_mut().zip(angles.iter().zip(neutral_angles)) {
@@ -28,16 +28,16 @@ impl Pose {
         pose
     }
 
-    /// Returns the chassis angles of the servos, given their neutral angles.
+    /// Computes the chassis angles of the servos from their neutral angles.
     pub fn angles(&self, neutral_angles: &[Angle; 4]) -> [Angle; 4] {
         let mut angles = *neutral_angles;
         for (angle, sweep) in angles.iter_mut().zip(&self.0) {
-            *angle = angle.swept(*sweep);
+            *angle = angle.offset_by(*sweep);
         }
         angles
     }
 
-    /// Returns the first servo whose travel does not include its sweep; `None` if every travel does.
+    /// Returns the first servo whose sweep exceeds its travel; `None` if every sweep is within its travel.
     pub fn first_servo_beyond_travel(&self, calibration: &[Calibration; 4]) -> Option<Servo> {
         for (index, servo) in calibration.iter().enumerate() {
             if !servo.reaches(self.0[index]) {
@@ -47,7 +47,7 @@ impl Pose {
         None
     }
 
-    /// The pulses that hold this pose.
+    /// Computes the pulses that hold this pose.
     pub fn pulses(&self, calibration: &[Calibration; 4]) -> Pulses {
         let mut pulses = Pulses::default();
         for (index, servo) in calibration.iter().enumerate() {
@@ -56,7 +56,7 @@ impl Pose {
         pulses
     }
 
-    /// Returns the largest turn of any servo between this pose and `other`, in 1/65536 turn.
+    /// Computes the largest turn of any servo between this pose and `other`, 1/65536 turn.
     pub fn largest_turn_to(&self, other: &Self) -> u16 {
         let mut max_turn = 0;
         for (from, to) in self.0.iter().zip(&other.0) {
@@ -89,7 +89,7 @@ mod tests {
         }
 
         #[test]
-        fn the_first_servo_that_does_not_reach_its_angle_is_named(
+        fn the_first_servo_beyond_its_travel_is_returned(
             (robot, mut pose) in any_robot_and_pose(),
             are_beyond: [bool; 4],
         ) {
@@ -112,7 +112,7 @@ mod tests {
         }
 
         #[test]
-        fn the_largest_turn_is_that_of_any_servo_and_the_same_in_either_direction(
+        fn the_largest_turn_includes_all_servos_and_is_equal_in_both_directions(
             from: [i16; 4],
             to: [i16; 4],
         ) {

@@ -1,7 +1,7 @@
-//! The baud rates of the serial line.
+//! The baud rates of the serial port.
 
-/// A baud rate of the serial line. The variants are numbered from the fastest to the slowest; the number is kept in
-/// memory that survives a reset.
+/// A baud rate of the serial port. The variants are numbered from the fastest to the slowest; the number is stored in
+/// RAM that survives a reset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum BaudRate {
@@ -30,7 +30,7 @@ impl BaudRate {
         }
     }
 
-    /// The rate with this number, modulo 4.
+    /// Returns the rate with this number, modulo 4.
     pub const fn from_number(number: u8) -> Self {
         match number & 3 {
             0 => Self::Fastest,
@@ -40,7 +40,7 @@ impl BaudRate {
         }
     }
 
-    /// The next slower rate; after the slowest, the fastest.
+    /// Returns the next slower rate, or the fastest rate after the slowest.
     pub const fn next(self) -> Self {
         Self::from_number(self as u8 + 1)
     }

@@ -2,16 +2,16 @@
 //!
 //! One firmware drives any robot: bars, limits, servos and gaits come from a section ([`crate::numbers::section`]) in
 //! the flash of a microcontroller or in the memory of a host. The section is checked once, when it is opened; each
-//! number is read when it is needed.
+//! number is read when it is used.
 
 use core::fmt;
 use core::mem::offset_of;
 
-use lizard_avr::{Flash, Plain, Region};
+use lizard_avr::{Flash, Pod, Region};
 
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::NeededTravel;
+use crate::numbers::calibration::SweepRange;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::Tables;
 use crate::numbers::gaits::{Gait, GaitId, Name, Step, Wave};
@@ -26,14 +26,14 @@ use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
 use crate::numbers::units::Angle;
 
-/// A four-servo lizard: its geometry, limits and gaits.
+/// A lizard with four servos: its geometry, limits and gaits.
 #[derive(Clone, Copy)]
 pub struct Robot<'a> {
     section: Region<'a>,
     is_present: bool,
 }
 
-// The numbers are omitted, because they never change while a program runs.
+// The numbers are omitted, because they do not change while a program runs.
 impl fmt::Debug for Robot<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.is_present { "Robot" } else { "no robot" })
@@ -41,13 +41,13 @@ impl fmt::Debug for Robot<'_> {
 }
 
 impl<'a> Robot<'a> {
-    /// No robot: it has no gaits and must not be moved.
+    /// No robot: no gaits, and no motion allowed.
     pub const NONE: Self = Self {
-        section: Region::INITIAL,
+        section: Region::DEFAULT,
         is_present: false,
     };
 
-    /// Returns the robot in `flash`, which has to be exactly a valid section; [`Robot::open`] checks that.
+    /// Returns the robot in `flash`, which must be exactly a valid section; [`Robot::open`] checks this.
     #[inline(always)]
     pub(crate) const fn at(flash: Region<'a>) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl<'a> Robot<'a> {
         }
     }
 
-    /// Returns the robot of a newly made section whose numbers are not checked yet, for the code that checks them;
+    /// Returns the robot of a new section whose numbers are not checked yet, for the code that checks them. Returns
     /// `None` if the section's header, length or checksum is wrong.
     #[cfg(any(test, feature = "host"))]
     pub fn unchecked(flash: Region<'a>) -> Option<Self> {
@@ -69,14 +69,14 @@ impl<'a> Robot<'a> {
         !self.is_present
     }
 
-    /// The flash region that is exactly the robot's section.
+    /// The region of flash that is exactly the robot's section.
     pub const fn section(&self) -> Region<'a> {
         self.section
     }
 
     /// Reads the number at `offset` bytes from the beginning of [`Numbers`].
     #[inline(always)]
-    fn read_number<T: Plain>(&self, offset: usize) -> T {
+    fn read_number<T: Pod>(&self, offset: usize) -> T {
         self.section.read(NUMBERS_OFFSET + offset as u16)
     }
 
@@ -89,7 +89,7 @@ impl<'a> Robot<'a> {
             .take_while(|byte| *byte != 0)
     }
 
-    /// The hash of the robot's numbers; it identifies the robot.
+    /// The hash of the robot's numbers, which identifies the robot.
     pub fn hash(&self) -> u32 {
         self.section.read(offset_of!(Header, hash) as u16)
     }
@@ -104,7 +104,7 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, pins))
     }
 
-    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19; `None` if it is not measured.
+    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19; `None` if the rail is not measured.
     pub fn rail_pin(&self) -> Option<u8> {
         match self.read_number(offset_of!(Numbers, rail_pin)) {
             0 => None,
@@ -117,34 +117,34 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, slow_pace))
     }
 
-    /// The bars of head or tail, in the frame of that five-bar.
+    /// The bars of an end, in the frame of this end.
     pub fn bars(&self, end: End) -> Bars {
         self.read_number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
     }
 
-    /// The tables of the couplers of head or tail.
+    /// The tables of an end's couplers.
     pub(crate) fn tables(&self, end: End) -> Tables<'a> {
         let curves_offset =
             offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVE_COUNT]>();
-        let table_of =
+        let read_table =
             |curve: usize| match self.read_number(curves_offset + curve * size_of::<u16>()) {
                 0 => None,
                 address => self.section.values(address, 1).get(0),
             };
         Tables {
-            rise: table_of(0),
-            stretched_rise: table_of(1),
-            folded_rise: table_of(2),
-            skew: table_of(3),
+            rise: read_table(0),
+            stretched_rise: read_table(1),
+            folded_rise: read_table(2),
+            skew: read_table(3),
         }
     }
 
-    /// The five-bar with a slider on one side, in the chassis frame.
+    /// The slider of a side, in the chassis frame.
     pub fn slider(&self, side: Side) -> Slider {
         self.read_number(offset_of!(Numbers, sliders) + side as usize * size_of::<Slider>())
     }
 
-    /// The smallest margins allowed.
+    /// The smallest allowed margins.
     pub fn limits(&self) -> Limits {
         self.read_number(offset_of!(Numbers, limits))
     }
@@ -159,30 +159,30 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, neutral_angles))
     }
 
-    /// The neutral angle of one servo.
+    /// The neutral angle of a servo.
     #[inline(never)]
-    pub fn neutral_angle_of(&self, servo: Servo) -> Angle {
+    pub fn servo_neutral_angle(&self, servo: Servo) -> Angle {
         self.read_number(offset_of!(Numbers, neutral_angles) + servo.index() * size_of::<Angle>())
     }
 
-    /// The pulse widths and the travel of the servos, as robot.toml defines them.
+    /// The calibration of all servos in robot.toml.
     pub fn calibration(&self) -> [Calibration; 4] {
         self.read_number(offset_of!(Numbers, calibration))
     }
 
-    /// The pulse widths and the travel of one servo.
+    /// The calibration of a servo in robot.toml.
     #[inline(never)]
-    pub fn calibration_of(&self, servo: Servo) -> Calibration {
+    pub fn servo_calibration(&self, servo: Servo) -> Calibration {
         self.read_number(
             offset_of!(Numbers, calibration) + servo.index() * size_of::<Calibration>(),
         )
     }
 
-    /// The range of sweeps that the gaits need of a servo; it includes the neutral angle.
+    /// The range of a servo's sweeps that the gaits need, which includes the neutral angle.
     #[inline(never)]
-    pub fn needed_travel(&self, servo: Servo) -> NeededTravel {
+    pub fn needed_travel(&self, servo: Servo) -> SweepRange {
         self.read_number(
-            offset_of!(Numbers, needed_travel) + servo.index() * size_of::<NeededTravel>(),
+            offset_of!(Numbers, needed_travel) + servo.index() * size_of::<SweepRange>(),
         )
     }
 
@@ -206,12 +206,12 @@ impl<'a> Robot<'a> {
 
     /// Returns all elements of a part.
     #[inline(always)]
-    fn part_elements<T: Plain>(&self, part: Part) -> Flash<'a, [T]> {
+    fn part_elements<T: Pod>(&self, part: Part) -> Flash<'a, [T]> {
         let PartRange { address, count } = self.part_range(part);
         self.section.values(address, count)
     }
 
-    /// The waveforms that gaits share.
+    /// The waveforms of all gaits.
     pub fn waves(&self) -> Flash<'a, [Wave]> {
         self.part_elements(Part::Waves)
     }
@@ -234,17 +234,17 @@ impl<'a> Robot<'a> {
     /// The name of a gait or a routine.
     #[inline(never)]
     pub fn gait_name(&self, id: GaitId) -> Name<'a> {
-        // Reads only these fields, not the entire record, because a line may be compared with every name.
+        // Reads only these fields instead of the entire record, because a line may be compared with every name.
         let gait_address =
             self.part_range(Part::Gaits).address + id.index() as u16 * size_of::<Gait>() as u16;
         let read_field = |field: usize| self.section.read(gait_address + field as u16);
         let start = read_field(offset_of!(Gait, name_start));
         let length = read_field(offset_of!(Gait, name_length));
-        Name::of(start, length, self.part_elements(Part::Names))
+        Name::new(start, length, self.part_elements(Part::Names))
     }
 
-    /// True if a pose is in certified cells, in which the guard accepts every pose. Head, tail, left and right side
-    /// have a map each, and the pose has to be in a cell of all four. A pose outside the cells may be safe, too.
+    /// True if a pose is in certified cells, in which the guard accepts every pose. The head, the tail and both sides
+    /// have a map each, and the pose must be in a cell of all four maps. A pose outside the cells may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
         let rows = self.part_elements::<[i8; 2]>(Part::Rows);
         let mut start = 0;

@@ -1,14 +1,14 @@
 //! The integer square root and the quotient of two integers, computed bit by bit.
 //!
-//! The reported length of a slider is a root; a voltage and the limits of a travel are quotients. The chip has
-//! no instruction for either, and the compiler's 32-bit division takes a kilobyte of flash.
+//! The reported length of a slider is a root; a voltage and the limits of a travel are quotients. The chip has no
+//! instruction for roots or quotients, and the compiler's 32-bit division takes a kilobyte of flash.
 
 use lizard_avr::mul_unsigned;
 
 /// Computes the largest integer whose square is at most `square`.
 ///
-/// Each step computes a bit of the result, without a division or a start value; the number of steps does not depend on
-/// the input.
+/// Each iteration computes a bit of the result without a division. The number of iterations does not depend on the
+/// argument.
 pub const fn isqrt(square: u32) -> u16 {
     let mut remainder = square;
     let mut root: u32 = 0;
@@ -66,12 +66,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_root_is_the_largest_integer_whose_square_does_not_exceed_the_argument(square: u32) {
+        fn every_root_is_the_largest_integer_whose_square_is_at_most_the_argument(square: u32) {
             prop_assert!(has_correct_root(square));
         }
 
         #[test]
-        fn a_quotient_is_exact_except_for_rounding_down_and_the_limit_of_sixteen_bits(
+        fn a_quotient_is_rounded_down_and_limited_to_sixteen_bits(
             dividend: u32,
             divisor: u16,
         ) {

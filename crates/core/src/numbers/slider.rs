@@ -1,17 +1,17 @@
-//! The slider on each side of the body: its lengths and its stroke.
+//! The lengths and the stroke of the slider on each side of the body.
 
 use lizard_avr::mul_unsigned;
 
 use crate::numbers::units::Scale;
 
-/// The limit, in steps, of two lengths of a side: of the sum of base, arms and offset, and of the slider's length.
+/// The upper limit, in steps, of two lengths of a side: the sum of base, arms and offset, and the slider's length.
 pub const MAX_LENGTH_STEPS: f64 = 255.0 * 256.0;
 
-/// The limit of the sum of both arms and the offset, in steps: it has to fit a signed 16-bit number.
+/// The upper limit, in steps, of the sum of both arms and the offset, which must fit into a signed 16-bit number.
 pub const MAX_ARM_STEPS: f64 = 127.0 * 256.0;
 
-lizard_avr::plain! {
-    /// The slider of one side of the body, with its lengths in steps of `scale`.
+lizard_avr::pod! {
+    /// The slider of a side of the body, with lengths in steps of `scale`.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Slider {
         /// The scale of all lengths.
@@ -52,9 +52,10 @@ impl Slider {
         square(self.stroke_min) <= length_sq && length_sq <= square(self.stroke_max)
     }
 
-    /// Returns the difference of a length, in steps, from the nominal length, in hundredths of a millimetre.
+    /// Computes the displacement of a slider of this length, in steps, from its nominal length, in hundredths of a
+    /// millimetre.
     #[inline(always)]
-    pub fn travel(&self, length: u16) -> i32 {
+    pub fn displacement(&self, length: u16) -> i32 {
         self.scale
             .hundredths(i32::from(length) - i32::from(self.nominal_length))
     }

@@ -1,7 +1,7 @@
-//! The supplies as robot.toml describes them: the chip's reference voltage and the thresholds.
+//! The supplies in robot.toml: the chip's reference voltage and the thresholds.
 
-lizard_avr::plain! {
-    /// The thresholds of a supply: voltages below which the robot reacts.
+lizard_avr::pod! {
+    /// The thresholds of a supply, below which the robot reacts.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Thresholds {
         /// The voltage below which gaits slow down and the EEPROM is not written, mV.
@@ -13,8 +13,8 @@ lizard_avr::plain! {
     }
 }
 
-lizard_avr::plain! {
-    /// The supplies of chip and servos.
+lizard_avr::pod! {
+    /// The supplies of the chip and the servos.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Supplies {
         /// The chip's reference voltage, mV.

@@ -1,18 +1,18 @@
 //! The units of the core, and every conversion between them.
 //!
-//! Floating point is slow on an 8-bit processor, so each quantity is an integer whose step is finer than the robot can
-//! resolve. A value that one module passes to another has a type of its own; inside a formula it is a plain integer.
+//! Floating point is slow on an 8-bit processor. Therefore each quantity is an integer whose step is finer than the
+//! robot's resolution. A value that modules exchange has its own type; inside a formula it is a plain integer.
 //!
 //! | quantity | type | step |
 //! |---|---|---|
 //! | angle, chassis frame | [`Angle`], wraps after a turn | 1/65536 turn = 0.0055 deg |
-//! | sweep, an angle from a servo's neutral angle | [`Sweep`] | 1/65536 turn |
+//! | sweep, an angle relative to a servo's neutral angle | [`Sweep`] | 1/65536 turn |
 //! | angle at the console | `i32`, `u16` | 0.01 deg |
 //! | length | `i16`, `u16` | [`Scale`]: 1/256 mm for a robot of the paper's size |
 //! | margin, a sine | [`Sine`], Q15 | 1/32768 |
 //! | pulse width | [`PulseWidth`] | one CPU cycle, 62.5 ns |
 //! | phase of a gait | `u32` | 1/2^24 cycle |
-//! | share of a move's duration | `u16`, Q15 | 1/32768 |
+//! | fraction of a move's duration | `u16`, Q15 | 1/32768 |
 //! | pace | `u16`, Q10 | 1/1024 |
 
 use lizard_avr::{mul, mul_unsigned};
@@ -32,16 +32,16 @@ pub const CYCLES_PER_US: u16 = 16;
 /// The number of steps of an [`Angle`] in a turn.
 pub const STEPS_PER_TURN: i32 = 1 << 16;
 
-/// 1.0 in Q15, one past the largest sine.
+/// 1.0 in Q15, one step more than the largest sine.
 pub const ONE_Q15: i32 = 1 << 15;
 
 /// 1.0 in Q14, the format of gains.
 pub const ONE_Q14: i32 = 1 << 14;
 
-/// One gait cycle, as a phase.
+/// A gait cycle, as a phase.
 pub const CYCLE: u32 = 1 << 24;
 
-/// One gait cycle, as the argument of a waveform, see [`phase16`].
+/// A gait cycle, as the argument of a waveform, see [`phase16`].
 pub const CYCLE16: u32 = 1 << 16;
 
 /// An angle in the chassis frame, 1/65536 turn.
@@ -49,21 +49,21 @@ pub const CYCLE16: u32 = 1 << 16;
 #[repr(transparent)]
 pub struct Angle(pub u16);
 
-lizard_avr::plain!(Angle: u16);
+lizard_avr::pod!(Angle: u16);
 
 /// The angle by which a servo has turned from its neutral angle, counter-clockwise positive, 1/65536 turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[repr(transparent)]
 pub struct Sweep(pub i16);
 
-lizard_avr::plain!(Sweep: i16);
+lizard_avr::pod!(Sweep: i16);
 
 /// A margin: the sine of the angle between two bars, Q15.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
 pub struct Sine(pub i16);
 
-lizard_avr::plain!(Sine: i16);
+lizard_avr::pod!(Sine: i16);
 
 /// The width of a pulse in CPU cycles of 62.5 ns; 0 means no pulse.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -76,12 +76,12 @@ impl From<PulseWidth> for u16 {
     }
 }
 
-lizard_avr::plain!(PulseWidth: u16);
+lizard_avr::pod!(PulseWidth: u16);
 
-lizard_avr::plain! {
+lizard_avr::pod! {
     /// The scale of a mechanism's lengths: a millimetre has 2^`bits` steps.
     ///
-    /// The scale depends on the robot's size, so that sixteen bits hold the bars of any robot.
+    /// The scale depends on the robot's size, so that the bars of any robot fit into sixteen bits.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Scale {
         /// The binary logarithm of the number of steps in a millimetre, at most 14.
@@ -90,11 +90,12 @@ lizard_avr::plain! {
 }
 
 impl Angle {
-    /// Converts hundredths of a degree, at most one turn in either direction, to an angle; exact within 0.004 deg.
+    /// Converts hundredths of a degree, at most one turn in either direction, to an angle, with an error of at most
+    /// 0.004 deg.
     #[inline(never)]
     pub fn from_centideg(centideg: i32) -> Self {
         let magnitude = centideg.unsigned_abs() as u16;
-        // A full turn counts as 0. 65536/36000 is nearly 1 + 53769/65536: the error is below a fifth of a step per
+        // A full turn counts as 0. 65536/36000 is nearly 1 + 53769/65536; the error is below a fifth of a step per
         // turn.
         let magnitude = if magnitude == CENTIDEG_PER_TURN as u16 {
             0
@@ -110,26 +111,26 @@ impl Angle {
         })
     }
 
-    /// Returns the angle in hundredths of a degree, 0..36000: exactly the argument of [`Angle::from_centideg`], because
-    /// the step of an angle is finer than a hundredth of a degree.
+    /// Converts the angle to hundredths of a degree, 0..36000. Returns exactly the argument of
+    /// [`Angle::from_centideg`], because the step of an angle is finer than a hundredth of a degree.
     pub fn centideg(self) -> u16 {
         // The last step of a turn, 359.9945 deg, does not round to 360.
         ((mul_unsigned(self.0, CENTIDEG_PER_TURN as u16) + 0x8000) >> 16) as u16
     }
 
-    /// Returns the angle after a sweep from this one.
-    pub const fn swept(self, sweep: Sweep) -> Self {
+    /// Returns this angle plus a sweep.
+    pub const fn offset_by(self, sweep: Sweep) -> Self {
         Self(self.0.wrapping_add(sweep.0 as u16))
     }
 
-    /// Returns the sweep from this angle to another one, in the direction of the shorter turn.
+    /// Returns the sweep from this angle to `other`, in the direction of the shorter turn.
     pub const fn sweep_to(self, other: Self) -> Sweep {
         Sweep(other.0.wrapping_sub(self.0) as i16)
     }
 }
 
 impl Sine {
-    /// Returns the margin in thousandths, rounded to nearest.
+    /// Converts the sine to thousandths, rounded to nearest.
     pub fn thousandths(self) -> i16 {
         ((mul(self.0, 1000) + (1 << 14)) >> 15) as i16
     }
@@ -140,7 +141,7 @@ impl Scale {
     pub const FINEST: Self = Self { bits: 14 };
 
     /// Converts a length in steps to hundredths of a millimetre, rounded to nearest. The magnitude of `length` must fit
-    /// 16 bits.
+    /// into 16 bits.
     #[inline(always)]
     pub fn hundredths(self, length: i32) -> i32 {
         let magnitude = mul_unsigned(length.unsigned_abs() as u16, 100) as i32;
@@ -150,7 +151,7 @@ impl Scale {
     }
 }
 
-/// Returns the highest sixteen bits of a phase: the argument of the waveforms, in 1/65536 cycle.
+/// Returns the highest sixteen bits of a phase, the argument of the waveforms, 1/65536 cycle.
 pub const fn phase16(phase: u32) -> u16 {
     (phase >> 8) as u16
 }
@@ -164,28 +165,28 @@ pub fn thousandths_from_phase(phase: u32) -> u16 {
 mod tests {
     use super::*;
 
-    /// Returns the smaller angle between two directions, deg.
+    /// Computes the smaller angle between two directions, deg.
     fn angle_between(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)
     }
 
-    fn degrees_of(angle: Angle) -> f64 {
+    fn to_degrees(angle: Angle) -> f64 {
         f64::from(angle.0) * 360.0 / 65536.0
     }
 
     #[test]
-    fn an_angle_from_hundredths_of_a_degree_is_within_0_004_degrees() {
+    fn an_angle_from_hundredths_of_a_degree_has_an_error_of_at_most_0_004_degrees() {
         for centideg in -36_000..=36_000 {
             let angle = Angle::from_centideg(centideg);
-            let error = angle_between(degrees_of(angle), f64::from(centideg) / 100.0);
-            // Half a step is 0.0027 deg; the rest is the error of the factor.
+            let error = angle_between(to_degrees(angle), f64::from(centideg) / 100.0);
+            // Half a step is 0.0027 deg; the factor has the remaining error.
             assert!(error <= 0.004, "{centideg}: {error} deg");
         }
     }
 
     #[test]
-    fn every_hundredth_of_a_degree_is_unchanged_after_conversion_to_an_angle_and_back() {
+    fn every_hundredth_of_a_degree_survives_conversion_to_an_angle_and_back() {
         for centideg in 0..36_000u16 {
             let angle = Angle::from_centideg(centideg.into());
             assert_eq!(angle.centideg(), centideg);
@@ -197,19 +198,19 @@ mod tests {
         for angle in (0..=u16::MAX).map(Angle) {
             let centideg = angle.centideg();
             assert!(centideg < 36_000);
-            let error = angle_between(f64::from(centideg) / 100.0, degrees_of(angle));
+            let error = angle_between(f64::from(centideg) / 100.0, to_degrees(angle));
             assert!(error <= 0.005 + 1e-9, "{angle:?}: {error}");
         }
     }
 
     #[test]
-    fn a_sweep_leads_from_one_angle_to_the_other_and_counts_counter_clockwise() {
+    fn a_sweep_is_the_counter_clockwise_difference_of_two_angles() {
         for start in (0..=u16::MAX).step_by(771).map(Angle) {
             for sweep in (i16::MIN..=i16::MAX).map(Sweep) {
-                assert_eq!(start.sweep_to(start.swept(sweep)), sweep);
+                assert_eq!(start.sweep_to(start.offset_by(sweep)), sweep);
             }
         }
-        assert_eq!(Angle(0xffff).swept(Sweep(2)), Angle(1));
+        assert_eq!(Angle(0xffff).offset_by(Sweep(2)), Angle(1));
         assert_eq!(Angle(1).sweep_to(Angle(0xffff)), Sweep(-2));
     }
 
@@ -241,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_phase_converts_to_thousandths_rounded_down_and_never_to_a_whole_cycle() {
+    fn a_phase_converts_to_thousandths_rounded_down_below_a_whole_cycle() {
         for phase in (0..CYCLE).step_by(97).chain([CYCLE - 1]) {
             let exact = f64::from(phase) * 1000.0 / f64::from(CYCLE);
             let thousandths = thousandths_from_phase(phase);

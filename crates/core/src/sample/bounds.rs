@@ -1,4 +1,4 @@
-//! The bounds of [`crate::guard::bounds`] for the five-bars of a sample.
+//! The bounds of [`crate::guard::bounds`], applied to a sample's five-bars.
 
 pub use crate::guard::bounds::*;
 

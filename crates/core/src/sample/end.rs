@@ -10,12 +10,12 @@ use crate::numbers::curve::Table;
 use crate::numbers::section;
 use crate::numbers::units::Scale;
 
-/// One five-bar linkage, head or tail, with the tables of its couplers. Its lengths are in steps.
+/// The five-bar linkage of an end, with lengths in steps and the tables of its couplers.
 #[derive(Clone, Debug)]
 pub struct SampleFiveBar {
-    /// The base, the left crank and the right crank. Their sum is the largest distance between the crank tips.
+    /// The base, the left crank and the right crank, whose sum is the largest distance between the crank tips.
     pub bars: [i16; 3],
-    /// The step of all lengths.
+    /// The scale of all lengths.
     pub scale: Scale,
     pub couplers: SampleCouplers,
 }
@@ -32,9 +32,8 @@ pub struct SampleCouplers {
 }
 
 impl SampleCouplers {
-    /// Makes the tables for couplers of these lengths, in steps.
+    /// Creates couplers of these lengths, in steps, and their tables.
     pub fn new(left: i16, right: i16) -> Self {
-        let are_unequal = left != right;
         Self {
             left,
             right,
@@ -42,11 +41,11 @@ impl SampleCouplers {
             stretched_rise: couplers::stretched_rise_table(left, right),
             folded_rise: Couplers::needs_folded_table(left, right)
                 .then(|| couplers::folded_rise_table(left, right)),
-            skew: are_unequal.then(|| couplers::skew_table(left, right)),
+            skew: (left != right).then(|| couplers::skew_table(left, right)),
         }
     }
 
-    /// Returns the couplers as the guard uses them.
+    /// Converts the couplers to the type that the guard uses.
     pub fn couplers(&self) -> Couplers<'_> {
         Couplers::new(CouplerLengths::new(self.left, self.right), self.tables())
     }
@@ -62,9 +61,9 @@ impl SampleCouplers {
 }
 
 impl SampleFiveBar {
-    /// Converts a five-bar from mm to the finest steps in which each coupler and the sum of the other bars are below
-    /// [`bars::MAX_LENGTH_STEPS`]. Returns `None` if even steps of 1 mm are too fine, or if a coupler is then shorter
-    /// than [`bars::MIN_COUPLER_STEPS`].
+    /// Converts a five-bar from mm to the finest steps with which each coupler, and the sum of the other bars, is below
+    /// [`bars::MAX_LENGTH_STEPS`]. Returns `None` if even steps of 1 mm are too fine, or if a coupler is shorter than
+    /// [`bars::MIN_COUPLER_STEPS`].
     pub fn new(five_bar: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [
             five_bar.base,
@@ -88,7 +87,7 @@ impl SampleFiveBar {
         })
     }
 
-    /// Returns the five-bar's lengths as a section stores them.
+    /// Converts the five-bar to the lengths that a section stores.
     pub(super) fn content(&self) -> section::FiveBarLengths {
         let [base, left, right] = self.bars;
         section::FiveBarLengths {
@@ -100,7 +99,7 @@ impl SampleFiveBar {
         }
     }
 
-    /// Returns the five-bar as the guard uses it.
+    /// Converts the five-bar to the type that the guard uses.
     pub fn five_bar(&self) -> FiveBar<'_> {
         let SampleCouplers { left, right, .. } = self.couplers;
         let bars = bars::Bars::new(self.bars, [left, right], self.scale);

@@ -1,4 +1,4 @@
-//! Robots in millimetres, degrees and microseconds, as builders measure them.
+//! Robots in millimetres, degrees and microseconds, the units of robot.toml.
 
 use lizard_kinematics as kinematics;
 use lizard_kinematics::{Leg, Links, Lizard};
@@ -8,14 +8,14 @@ use super::STEPS_PER_DEGREE;
 use crate::numbers::calibration::Calibration;
 use crate::numbers::units::{PulseWidth, Sweep};
 
-/// One servo, with its values in robot.toml.
+/// A servo with its values in robot.toml.
 #[derive(Clone, Copy, Debug)]
 pub struct Servo {
-    /// Servo angle in the chassis frame at the neutral pulse width, deg.
+    /// The servo's angle in the chassis frame at the neutral pulse width, deg.
     pub neutral_deg: f64,
     /// The neutral pulse width.
     pub neutral_us: f64,
-    /// Change of the pulse width per degree; negative for a reversed servo.
+    /// The change of the pulse width per degree; negative for a reversed servo.
     pub us_per_degree: f64,
     /// The shortest pulse of the servo's travel.
     pub min_us: f64,
@@ -23,7 +23,7 @@ pub struct Servo {
     pub max_us: f64,
 }
 
-/// A robot as a builder measures it.
+/// A robot's values in robot.toml.
 #[derive(Clone, Copy, Debug)]
 pub struct Measurements {
     pub lizard: Lizard,
@@ -34,7 +34,7 @@ pub struct Measurements {
 }
 
 impl Measurements {
-    /// The paper's robot, with the limits and servos of robots/paper.toml.
+    /// Returns the paper's robot, with the limits and servos of robots/paper.toml.
     pub fn paper() -> Self {
         let servo = |neutral_deg| Servo {
             neutral_deg,
@@ -59,8 +59,8 @@ impl Measurements {
         }
     }
 
-    /// A robot without symmetry: its head differs from its tail, its left side from its right, and no two servos are
-    /// alike.
+    /// Returns a robot without symmetry: the head differs from the tail, the left side from the right side, and no two
+    /// servos are equal.
     pub fn asymmetric() -> Self {
         let servo =
             |neutral_deg, neutral_us, us_per_degree: f64, lower_deg: f64, upper_deg: f64| Servo {
@@ -138,15 +138,15 @@ impl Measurements {
                     max_us: (neutral_us + gain * upper_deg).min(2500.0),
                 }
             });
-            let links_of_end = |(l0, l1, l2, l3, l4)| [l0, l1, l2, l3, l4];
-            let links_of_side = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
+            let end_links = |(l0, l1, l2, l3, l4)| [l0, l1, l2, l3, l4];
+            let side_links = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
             let (type2, type1, leg, stroke_min, stroke_max, slew_deg_per_s) = limits;
             Self {
                 lizard: lizard(
-                    links_of_end(head),
-                    links_of_end(tail),
-                    links_of_side(left),
-                    links_of_side(right),
+                    end_links(head),
+                    end_links(tail),
+                    side_links(left),
+                    side_links(right),
                 ),
                 limits: kinematics::Limits {
                     type2,
@@ -163,7 +163,7 @@ impl Measurements {
 }
 
 impl Servo {
-    /// Converts the servo to a calibration in the core's units, its travel rounded inwards.
+    /// Converts the servo to a calibration in the core's units, with its travel rounded inwards.
     pub fn calibration(&self) -> Calibration {
         let sweep_at = |us: f64| (us - self.neutral_us) / self.us_per_degree * STEPS_PER_DEGREE;
         let limits = [sweep_at(self.min_us), sweep_at(self.max_us)];
@@ -176,8 +176,8 @@ impl Servo {
     }
 }
 
-/// Builds a robot from the links of its head and tail (base, left crank, left coupler, right coupler, right crank) and
-/// of its sides (chassis, rear arm, rear half of the slider, front half, front arm), mm.
+/// Builds a robot from the links, in mm, of its head and tail (base, left crank, left coupler, right coupler, right
+/// crank) and of its sides (chassis, rear arm, rear half of the slider, front half, front arm).
 fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
     for (index, part_links) in [head, tail, left, right].iter().enumerate() {

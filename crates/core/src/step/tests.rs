@@ -10,20 +10,20 @@ use crate::motion::Motion;
 use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
-/// Starts a robot's program at this tick, with these bytes already received.
+/// Starts a robot's program at tick `ticks`, after the board has received `received`.
 fn start_robot(ticks: u8, received: &str) -> RunningRobot {
     let mut board = VirtualBoard::default().at_tick(ticks);
     board.send(received.as_bytes());
     RunningRobot::with_flash(Sample::asymmetric().section(), board)
 }
 
-/// Runs a step. Returns true if the main loop did something in it.
+/// Runs a step. Returns true if the main loop did a task.
 fn run_step(robot: &mut RunningRobot) -> bool {
     robot.main.step(&mut robot.board) == Step::Worked
 }
 
-/// Returns a robot that stands and has received a line of garbled bytes, as from a sender at another rate.
-fn robot_after_garbled_line() -> RunningRobot {
+/// Runs a robot that stands and has received a line of garbled bytes, as from a sender at another baud rate.
+fn run_robot_with_garbled_line() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(10);
     robot
@@ -32,13 +32,13 @@ fn robot_after_garbled_line() -> RunningRobot {
     robot
 }
 
-/// Returns the number of lines written so far.
+/// Counts the lines written so far.
 fn count_written_lines(robot: &RunningRobot) -> usize {
     robot.board.transmitter.text.lines().count()
 }
 
-/// Counts the lines that the robot has written and the bytes that it has not read.
-fn written_and_unread(robot: &RunningRobot) -> (usize, usize) {
+/// Counts the lines that the robot has written, and the bytes that it has not read.
+fn count_written_lines_and_unread_bytes(robot: &RunningRobot) -> (usize, usize) {
     (count_written_lines(robot), robot.board.unread_count())
 }
 
@@ -48,7 +48,7 @@ fn a_tick_has_priority_over_output_and_output_over_input() {
     robot.board.tick();
     assert!(run_step(&mut robot));
     assert!(robot.board.is_frame_pending());
-    assert_eq!(written_and_unread(&robot), (0, 9));
+    assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
     assert!(run_step(&mut robot));
     assert!(robot.board.transmitter.text.starts_with("# lizard "));
     assert_eq!(count_written_lines(&robot), 1, "one line at a time");
@@ -65,17 +65,17 @@ fn a_tick_has_priority_over_output_and_output_over_input() {
 }
 
 #[test]
-fn nothing_is_written_without_room_for_the_longest_line_but_frames_continue() {
+fn without_room_for_the_longest_line_nothing_is_written_but_frames_continue() {
     let mut robot = start_robot(0, "speed 50\r");
     robot.board.transmitter = Transmitter::new(16_000, 255);
     let queued_bytes = 255 - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
     robot.board.transmitter.queue_bytes(queued_bytes);
     assert_eq!(robot.main.step(&mut robot.board), Step::Idle(0));
-    assert_eq!(written_and_unread(&robot), (0, 9));
+    assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
     robot.board.tick();
     assert!(run_step(&mut robot));
     assert_eq!(robot.main.step(&mut robot.board), Step::Idle(1));
-    assert_eq!(written_and_unread(&robot), (0, 9));
+    assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
     robot.board.transmitter = Transmitter::default();
     robot.settle();
     let text = &robot.board.transmitter.text;
@@ -84,7 +84,7 @@ fn nothing_is_written_without_room_for_the_longest_line_but_frames_continue() {
 }
 
 #[test]
-fn several_ticks_at_once_get_one_frame_even_if_the_count_wraps() {
+fn several_ticks_at_once_get_one_frame_even_if_their_count_wraps() {
     let mut robot = start_robot(250, "");
     robot.settle();
     for frames in 1..=300 {
@@ -102,7 +102,7 @@ fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
     for is_resting in [false, true] {
         let mut robot = start_robot(0, "");
         robot.run_frames(100);
-        // The main loop is late for a tick, so its frame waits until after the next tick.
+        // The main loop is late for a tick, so this frame waits until after the next tick.
         robot.board.pass_time(1 + 5);
         robot.settle();
         let late_frame = robot.board.submitted_pulses();
@@ -131,7 +131,7 @@ fn a_frame_that_waits_to_be_played_is_replaced_only_at_rest() {
 }
 
 #[test]
-fn submitted_pulses_are_those_of_the_motion_and_counters_reach_status() {
+fn submitted_pulses_match_the_motion_and_status_shows_the_counters() {
     let mut robot = start_robot(0, "");
     let mut motion_alone = Motion::new(*Sample::asymmetric());
     for _ in 0..30 {
@@ -144,7 +144,7 @@ fn submitted_pulses_are_those_of_the_motion_and_counters_reach_status() {
 }
 
 /// Returns the numbers of frames between the changes of the LED.
-fn frames_between_changes(led_states: &[bool]) -> Vec<usize> {
+fn measure_change_intervals(led_states: &[bool]) -> Vec<usize> {
     let changes: Vec<usize> = (1..led_states.len())
         .filter(|n| led_states[*n] != led_states[n - 1])
         .collect();
@@ -165,35 +165,35 @@ fn the_led_shows_the_heartbeat_and_flashes_while_the_guard_holds_the_robot() {
     assert_eq!(robot.motion().activity(), Activity::Stop);
     assert!(first_held_frame > 40);
     let (heartbeat_states, flash_states) = led_states.split_at(first_held_frame - 1);
-    // Lit for the first 31 frames from power-on, then dark for 32, and so on.
+    // The LED is lit for the first 31 frames from power-on, then dark for 32 frames, and so on.
     assert!(heartbeat_states[..31].iter().all(|led| *led) && !heartbeat_states[31]);
-    let heartbeat_intervals = frames_between_changes(heartbeat_states);
+    let heartbeat_intervals = measure_change_intervals(heartbeat_states);
     assert!(heartbeat_intervals.iter().all(|frames| *frames == 32));
-    let flash_intervals = frames_between_changes(flash_states);
+    let flash_intervals = measure_change_intervals(flash_states);
     assert!(flash_intervals.len() > 6, "{flash_intervals:?}");
     let is_flash = |frames: &usize| matches!(frames, 8 | 56);
     assert!(flash_intervals.iter().all(is_flash), "{flash_intervals:?}");
 }
 
 #[test]
-fn the_servos_state_is_stored_in_every_frame_even_at_rest() {
+fn the_servo_state_is_stored_in_every_frame_even_at_rest() {
     let mut robot = start_robot(0, "sway\r");
     for _ in 0..100 {
         let pulses = robot.run_frame();
-        let stored_stance = robot.board.stored_stance();
-        let stored_stance = stored_stance.expect("the board has stored a stance");
-        assert!(!stored_stance.is_resting);
-        assert_eq!(stored_stance.pose, *robot.motion().pose());
-        for (sent, pulse) in stored_stance.sent_pulses.0.iter().zip(pulses.0) {
+        let stored_servo_state = robot.board.stored_servo_state();
+        let stored_servo_state = stored_servo_state.expect("the board has stored a servo state");
+        assert!(!stored_servo_state.is_resting);
+        assert_eq!(stored_servo_state.pose, *robot.motion().pose());
+        for (sent, pulse) in stored_servo_state.sent_pulses.0.iter().zip(pulses.0) {
             assert!(pulse.0 == 0 || pulse == *sent);
         }
     }
     robot.send_line("rest");
     robot.run_frame();
-    let stored_stance = robot.board.stored_stance();
-    let stored_stance = stored_stance.expect("the board has stored a stance");
-    assert!(stored_stance.is_resting);
-    assert_eq!(stored_stance.pose, *robot.motion().pose());
+    let stored_servo_state = robot.board.stored_servo_state();
+    let stored_servo_state = stored_servo_state.expect("the board has stored a servo state");
+    assert!(stored_servo_state.is_resting);
+    assert_eq!(stored_servo_state.pose, *robot.motion().pose());
 }
 
 #[test]
@@ -205,7 +205,7 @@ fn a_slow_memory_delays_the_input_but_no_frame() {
     let mut steps = 0;
     while !robot.board.transmitter.text.contains("ok save") {
         assert!(!robot.board.transmitter.text.contains("ok stand"));
-        // A tick in every seventh step.
+        // Every seventh step has a tick.
         steps += 1;
         if steps % 7 == 0 {
             robot.board.tick();
@@ -220,15 +220,15 @@ fn a_slow_memory_delays_the_input_but_no_frame() {
 }
 
 #[test]
-fn a_line_that_began_at_another_rate_is_reported_as_garbled_and_the_next_is_obeyed() {
-    let mut robot = robot_after_garbled_line();
+fn a_line_that_began_at_another_rate_is_garbled_and_the_next_line_is_executed() {
+    let mut robot = run_robot_with_garbled_line();
     robot.board.send(b"bo");
     assert_eq!(robot.board.rate, BaudRate::Fastest);
     robot.run_frames(3);
     let rate = robot.board.rate;
     assert_eq!(rate, BaudRate::Half, "the rate changes after a pause");
     let text = robot.send_line("rest");
-    assert_eq!(text, "err 1 the line came garbled, send it again");
+    assert_eq!(text, "err 1 the line was garbled; send it again");
     assert!(!robot.motion().is_resting());
     assert_eq!(robot.send_line("rest"), "ok rest");
     for (cause, rate) in [
@@ -241,8 +241,8 @@ fn a_line_that_began_at_another_rate_is_reported_as_garbled_and_the_next_is_obey
 }
 
 #[test]
-fn the_rate_does_not_change_while_bytes_wait_behind_an_answer() {
-    let mut robot = robot_after_garbled_line();
+fn the_rate_does_not_change_while_received_bytes_wait_for_an_answer() {
+    let mut robot = run_robot_with_garbled_line();
     robot.run_without_reader(10);
     assert_eq!(robot.board.rate, BaudRate::Fastest);
     robot.run_frames(3);
@@ -258,7 +258,7 @@ fn a_late_edge_and_a_stack_in_the_data_are_reported_as_faults() {
         |lines: &[std::string::String], fault| lines.iter().any(|line| line.starts_with(fault));
     let lines = robot.run_frames(1);
     assert!(
-        is_reported(&lines, "# fault: a pulse came late"),
+        is_reported(&lines, "# fault: a pulse was late"),
         "{lines:?}"
     );
     robot.board.is_stack_intact = false;

@@ -1,14 +1,14 @@
-//! The analogue-to-digital converter, and the time that its measurements take.
+//! The analogue-to-digital converter, whose measurements take several frames.
 
 use crate::control::supply::Reading;
 use crate::numbers::supplies::Supplies;
 
-/// The analogue-to-digital converter. It measures one voltage in every second frame.
+/// The analogue-to-digital converter, which measures one voltage in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Converter {
     /// The reading of the actual supplies.
     true_reading: Reading,
-    /// True if the servos' rail is measured too.
+    /// True if the servos' rail is measured, too.
     has_rail: bool,
     /// The latest measured values.
     last_reading: Reading,
@@ -19,7 +19,7 @@ pub struct Converter {
 }
 
 impl Converter {
-    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured too.
+    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured, too.
     pub fn new(true_reading: Reading, has_rail: bool) -> Self {
         Self {
             true_reading,
@@ -38,7 +38,7 @@ impl Converter {
         self.true_reading
     }
 
-    /// True once every voltage has been measured since the program started.
+    /// True once every voltage has been measured since the program's start.
     pub const fn is_complete(&self) -> bool {
         self.is_complete
     }
@@ -47,8 +47,8 @@ impl Converter {
         Self::new(self.true_reading, self.has_rail)
     }
 
-    /// Advances by a frame. Returns the latest value of each voltage, or the default reading until every voltage has
-    /// been measured once.
+    /// Advances the converter by a frame. Returns the latest value of each voltage, or the default reading until every
+    /// voltage has been measured.
     pub(super) fn advance_frame(&mut self) -> Reading {
         match self.frame_in_round {
             1 => {
@@ -71,19 +71,17 @@ impl Converter {
     }
 }
 
-/// Returns the converter's reading if the chip has the voltage `board_mv` and the servos' rail has the voltage
-/// `rail_mv`. The rail is measured through its voltage divider.
+/// Computes the converter's reading if the chip is supplied with `board_mv` and the servos' rail with `rail_mv`. The
+/// rail is measured through its voltage divider.
 pub fn compute_reading(supplies: &Supplies, board_mv: u32, rail_mv: u32) -> Reading {
     let board = u64::from(board_mv);
-    let reading_of = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
+    let convert = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
     let reference = u64::from(supplies.reference_mv);
     Reading {
-        reference: reading_of(reference),
+        reference: convert(reference),
         rail: match supplies.rail_reference_mv {
             0 => 0,
-            rail_reference => {
-                reading_of(u64::from(rail_mv) * reference / u64::from(rail_reference))
-            }
+            rail_reference => convert(u64::from(rail_mv) * reference / u64::from(rail_reference)),
         },
     }
 }

@@ -1,4 +1,4 @@
-//! The EEPROM: 1024 bytes that are slow to write, wear out, and may lose power during a write.
+//! The EEPROM: 1024 bytes that are slow to write, wear out, and may be damaged by a power cut during a write.
 
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
@@ -7,22 +7,21 @@ use std::vec::Vec;
 
 use crate::memory::record::{ERASED, MEMORY_BYTES, Memory};
 
-/// An EEPROM. Clones share their bytes until one of them is written to.
+/// An EEPROM. Clones share their bytes until one of the clones is written.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Eeprom {
     bytes: Arc<[u8; MEMORY_BYTES]>,
-    /// The time until the EEPROM is ready again after a write: in milliseconds if `is_timed`, otherwise in polls.
+    /// The time from a write until the EEPROM is ready again: milliseconds if `is_timed` is true, otherwise polls.
     pub write_delay: u16,
-    /// True if the EEPROM becomes ready by the passing of time, as on the chip; false if it becomes ready by being
-    /// polled.
+    /// True if the EEPROM becomes ready after some time, as on the chip; false if it becomes ready after some polls.
     pub is_timed: bool,
     /// True if the EEPROM is worn out, so that writes change nothing.
     pub is_worn: bool,
-    /// Every write of a byte so far: address, old value, new value.
+    /// All writes so far: address, old value and new value.
     pub log: Vec<(u16, u8, u8)>,
-    /// The part of `write_delay` that has not passed yet.
+    /// The remaining part of `write_delay`.
     remaining_delay: Cell<u16>,
-    /// True if the last poll found the EEPROM busy; only set if `is_timed`.
+    /// True if the EEPROM was busy at the last poll; set only if `is_timed` is true.
     was_polled_busy: Cell<bool>,
     /// The address of the byte that is being written, if any.
     address_in_write: Cell<Option<u16>>,
@@ -79,8 +78,8 @@ impl Eeprom {
         self.address_in_write.get()
     }
 
-    /// True if the last poll found the EEPROM busy and only the passing of time can make it ready. Clears the flag.
-    pub fn was_polled_busy(&self) -> bool {
+    /// Takes the flag that is true if the EEPROM was busy at the last poll and becomes ready only after some time.
+    pub fn take_polled_busy(&self) -> bool {
         self.was_polled_busy.take()
     }
 
@@ -96,13 +95,13 @@ impl Eeprom {
         }
     }
 
-    /// Completes the write of a byte at once.
+    /// Completes a write immediately.
     pub(super) fn complete_write(&mut self) {
         self.remaining_delay.set(0);
         self.address_in_write.set(None);
     }
 
-    /// Cuts the power: a byte that is being written gets this value.
+    /// Cuts the power: a byte that is being written gets the value `byte`.
     pub(super) fn cut_power(&mut self, byte: u8) {
         if let Some(address) = self.address_in_write.take() {
             self.bytes_mut()[usize::from(address)] = byte;
@@ -129,7 +128,7 @@ impl Memory for Eeprom {
         assert_eq!(
             self.remaining_delay.get(),
             0,
-            "no byte is read during a write"
+            "a byte must not be read during a write"
         );
         self.bytes[usize::from(address)]
     }
@@ -138,10 +137,10 @@ impl Memory for Eeprom {
         assert_eq!(
             self.remaining_delay.get(),
             0,
-            "no byte is written during another write"
+            "a byte must not be written during another write"
         );
         let old_byte = self.bytes[usize::from(address)];
-        assert_ne!(old_byte, byte, "every write changes its byte");
+        assert_ne!(old_byte, byte, "a write must change its byte");
         self.log.push((address, old_byte, byte));
         if !self.is_worn {
             self.bytes_mut()[usize::from(address)] = byte;

@@ -1,9 +1,9 @@
-//! The RAM bytes that survive a reset.
+//! The bytes of RAM that survive a reset.
 
 use core::cell::Cell;
 use core::hash::{Hash, Hasher};
 
-use crate::memory::restart::{Cause, Restart, Stance};
+use crate::memory::restart::{Cause, Restart, ServoState};
 use crate::memory::retained_ram::{self, CELL_COUNT, Cells};
 use crate::numbers::rate::BaudRate;
 
@@ -12,7 +12,7 @@ use crate::numbers::rate::BaudRate;
 pub struct Ram(Cell<[u8; CELL_COUNT]>);
 
 impl Default for Ram {
-    /// The cells just after power-on.
+    /// Returns the cells after power-on.
     fn default() -> Self {
         let ram = Self(Cell::new([0; CELL_COUNT]));
         ram.begin(Some(Cause::Power));
@@ -39,24 +39,24 @@ impl Cells for Ram {
 }
 
 impl Ram {
-    /// Returns the state that the program would find if it started now, without changing the cells. `reported_cause` is
-    /// the cause that the chip reports, or `None` if a boot loader hides it.
+    /// Returns the information that the program would read if it started now, without changing the cells.
+    /// `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides the cause.
     pub fn peek_restart(&self, reported_cause: Option<Cause>) -> Restart {
         retained_ram::begin(&self.clone(), reported_cause)
     }
 
-    /// Returns the cause of the reset and the state from before it, and marks the program as running, as the firmware
-    /// does at its start. `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides it.
+    /// Returns the information that survived the reset, and marks the program as running, as the firmware does when it
+    /// starts. `reported_cause` is the cause that the chip reports, or `None` if a boot loader hides the cause.
     pub fn begin(&self, reported_cause: Option<Cause>) -> Restart {
         retained_ram::begin(self, reported_cause)
     }
 
-    /// Stores the servos' state, and the number of consecutive resets that a weak supply may have caused.
-    pub fn store_stance(&self, stance: &Stance, brown_outs: u8) {
-        retained_ram::store_stance(self, stance, brown_outs);
+    /// Stores the servo state, and the number of consecutive resets that a weak supply may have caused.
+    pub fn store_servo_state(&self, servo_state: &ServoState, suspected_brown_outs: u8) {
+        retained_ram::store_servo_state(self, servo_state, suspected_brown_outs);
     }
 
-    /// Stores the rate of the serial line.
+    /// Stores the baud rate.
     pub fn store_rate(&self, rate: BaudRate) {
         retained_ram::store_rate(self, rate);
     }

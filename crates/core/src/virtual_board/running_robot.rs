@@ -1,4 +1,4 @@
-//! A robot that runs on a virtual board, with a user at the other end of its serial line.
+//! A robot that runs on a virtual board, and a user at the other end of its serial port.
 
 use std::string::{String, ToString};
 use std::vec::Vec;
@@ -18,22 +18,22 @@ use crate::step::{Main, Step};
 pub struct RunningRobot {
     /// The firmware's main loop.
     pub main: Main,
-    /// The board that it runs on.
+    /// The board on which the main loop runs.
     pub board: VirtualBoard,
     /// The flash that holds the robot's section.
     flash: Region<'static>,
 }
 
 impl RunningRobot {
-    /// Powers on a robot with good supplies and nothing saved.
+    /// Powers on a robot with good supplies and a blank memory.
     pub fn power_on(robot: Robot<'static>) -> Self {
         Self::with_memory(robot, Eeprom::blank(), Restart::default())
     }
 
-    /// Starts a robot with this memory, after a restart with this cause and state.
+    /// Starts a robot with this memory after a restart.
     pub fn with_memory(robot: Robot<'static>, memory: Eeprom, restart: Restart) -> Self {
         let supplies = robot.supplies();
-        // A rail voltage well above its thresholds.
+        // A rail voltage well above the thresholds of the rail.
         let rail_mv = u32::from(supplies.rail.slow_mv) + 1_000;
         let reading = compute_reading(&supplies, 5_000, rail_mv.max(6_000));
         let board = VirtualBoard {
@@ -43,7 +43,7 @@ impl RunningRobot {
         Self::with_flash(robot.section(), board)
     }
 
-    /// Starts the firmware on this board, with the bytes `flash` in place of a robot's section.
+    /// Starts the firmware on this board, with `flash` as the flash region of the robot's section.
     pub fn with_flash(flash: Region<'static>, mut board: VirtualBoard) -> Self {
         let mut main = Main::new();
         main.begin(flash, &mut board);
@@ -60,12 +60,12 @@ impl RunningRobot {
         self.main.console().has_output(self.main.control())
     }
 
-    /// True once the watchdog has ended the pulses: the main loop has stopped and waits for the reset.
+    /// True once the watchdog has ended the pulses and the main loop has stopped until the reset.
     pub const fn is_stopped_by_watchdog(&self) -> bool {
         self.board.are_pulses_ended()
     }
 
-    /// Steps the main loop until it has nothing more to do before time passes.
+    /// Runs steps of the main loop until it has no task before time passes.
     ///
     /// # Panics
     /// Panics if the main loop never becomes idle.
@@ -75,15 +75,15 @@ impl RunningRobot {
         }
         for _ in 0..100_000 {
             let step = self.main.step(&mut self.board);
-            if step != Step::Worked || self.board.memory.was_polled_busy() {
+            if step != Step::Worked || self.board.memory.take_polled_busy() {
                 return;
             }
         }
         panic!("the main loop never becomes idle");
     }
 
-    /// Runs a frame: passes the time until 19 ms after the next tick, so that the main loop computes the frame and
-    /// its four pulses begin. Returns these pulses.
+    /// Runs a frame: lets time pass until 19 ms after the next tick, so that the main loop computes the frame and its
+    /// four pulses begin. Returns these pulses.
     pub fn run_frame(&mut self) -> Pulses {
         self.settle();
         self.board.pass_time(self.board.ms_until_tick());
@@ -106,7 +106,7 @@ impl RunningRobot {
         printed_lines
     }
 
-    /// Runs frames while nobody reads the output.
+    /// Runs frames while the output is not read.
     pub fn run_without_reader(&mut self, frames: u32) {
         self.board.transmitter.is_held = true;
         for _ in 0..frames {
@@ -115,10 +115,10 @@ impl RunningRobot {
         self.board.transmitter.is_held = false;
     }
 
-    /// Reads all waiting lines and checks their form.
+    /// Reads all waiting lines and checks their format.
     ///
     /// # Panics
-    /// Panics if a line has a wrong form.
+    /// Panics if a line has a wrong format.
     pub fn read_lines(&mut self) -> Vec<String> {
         self.settle();
         let text = core::mem::take(&mut self.board.transmitter.text);
@@ -136,7 +136,7 @@ impl RunningRobot {
         lines
     }
 
-    /// Sends bytes one by one, reading the output before each, and returns all output.
+    /// Sends bytes one by one, reads the output before each byte, and returns all output.
     pub fn send(&mut self, bytes: &[u8]) -> Vec<String> {
         let mut lines = self.read_lines();
         for byte in bytes {
@@ -146,7 +146,7 @@ impl RunningRobot {
         lines
     }
 
-    /// Sends a line and returns its answer. The lines after the answer remain to be read.
+    /// Sends a line and returns its answer. The lines after the answer stay in the output.
     ///
     /// # Panics
     /// Panics if the line gets no answer or several answers.
@@ -155,12 +155,13 @@ impl RunningRobot {
         let mut printed_lines = self.send(line.as_bytes());
         printed_lines.extend(self.send(b"\r"));
         let answer_index = printed_lines.iter().position(|line| is_answer(line));
-        let later_lines = printed_lines.split_off(answer_index.expect("the line is answered") + 1);
+        let later_lines =
+            printed_lines.split_off(answer_index.expect("the line has an answer") + 1);
         self.board.transmitter.text = later_lines
             .iter()
             .map(|line| std::format!("{line}\r\n"))
             .collect();
-        let answer = printed_lines.pop().expect("the line is answered");
+        let answer = printed_lines.pop().expect("the line has an answer");
         let mut other_lines = printed_lines.iter().chain(&later_lines);
         assert!(
             other_lines.all(|line| line.starts_with("# ")),
@@ -169,7 +170,7 @@ impl RunningRobot {
         answer
     }
 
-    /// Sends a line, which must be accepted.
+    /// Sends a line that must be accepted.
     ///
     /// # Panics
     /// Panics if the answer is not `ok` followed by the line.
@@ -178,7 +179,7 @@ impl RunningRobot {
         assert_eq!(self.send_line(line), std::format!("ok {line}"));
     }
 
-    /// Sends a line, which must be refused with an answer that begins with `err` and `reason`.
+    /// Sends a line that must be refused with an answer that begins with `err` and `reason`.
     ///
     /// # Panics
     /// Panics if the line is accepted, or refused for another reason.
@@ -188,7 +189,7 @@ impl RunningRobot {
         let is_refused = answer
             .strip_prefix("err ")
             .is_some_and(|text| text.starts_with(reason));
-        assert!(is_refused, "{line}: {answer}, not {reason}");
+        assert!(is_refused, "{line}: {answer}, expected {reason}");
     }
 
     /// Requests the status and returns the value of a key in it.
@@ -201,10 +202,8 @@ impl RunningRobot {
         let value = pairs.into_iter().find(|(name, _)| *name == key);
         value.expect("the status has this key").1.to_string()
     }
-}
 
-impl RunningRobot {
-    /// Stalls the main loop for some milliseconds. Once the watchdog has ended the pulses, the loop stays stopped
+    /// Stalls the main loop for `ms` milliseconds. Once the watchdog has ended the pulses, the loop remains stopped
     /// until the reset. Returns true if the processor was reset.
     pub fn stall(&mut self, ms: u16) -> bool {
         let mut is_reset = self.board.pass_time(ms);
@@ -223,7 +222,7 @@ impl RunningRobot {
         self.restart_main();
     }
 
-    /// Turns the power off and on; see [`VirtualBoard::lose_power`].
+    /// Switches the power off and on; see [`VirtualBoard::lose_power`].
     pub fn lose_power(&mut self, torn_byte: Option<u8>) {
         self.board.lose_power(torn_byte);
         self.restart_main();

@@ -7,8 +7,8 @@ use crate::memory::record::{ERASED, Memory};
 use crate::sample::Sample;
 use crate::step::{Main, Step};
 
-/// Returns a robot that stands.
-fn standing_robot() -> RunningRobot {
+/// Runs a robot until it stands.
+fn run_standing_robot() -> RunningRobot {
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(30);
     robot
@@ -17,7 +17,7 @@ fn standing_robot() -> RunningRobot {
 const NO_PULSES: Pulses = Pulses([PulseWidth(0); 4]);
 
 #[test]
-fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_main_is_late() {
+fn a_frame_is_played_once_taken_over_and_repeats_while_main_is_late() {
     let mut board = VirtualBoard::default();
     board.connect([9, 10, 5, 6], None);
     let pulses = Pulses([1_000, 20_000, 30_000, 63_000].map(PulseWidth));
@@ -44,18 +44,18 @@ fn a_frame_is_played_after_it_is_taken_over_and_repeats_while_main_is_late() {
 }
 
 #[test]
-fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() {
-    let mut robot = standing_robot();
+fn a_stall_below_125_ms_changes_nothing_and_a_longer_stall_restarts_the_program() {
+    let mut robot = run_standing_robot();
     assert!(!robot.stall(WATCHDOG_MS - 20));
     assert!(!robot.board.are_pulses_ended());
     assert_ne!(robot.run_frame(), NO_PULSES);
-    let mut hung_robot = standing_robot();
+    let mut hung_robot = run_standing_robot();
     assert!(!hung_robot.board.pass_time(WATCHDOG_MS + 20));
     assert!(hung_robot.board.are_pulses_ended());
     assert_eq!(
         hung_robot.board.started_pulses(),
         NO_PULSES,
-        "no pulse begins any more"
+        "no further pulse begins"
     );
     let pose = *hung_robot.motion().pose();
     let frames = hung_robot.motion().frame_count();
@@ -66,23 +66,31 @@ fn a_stall_below_125_ms_changes_nothing_and_a_longer_one_restarts_the_program() 
     assert!(!hung_robot.board.are_pulses_ended());
     let restart = hung_robot.board.last_restart();
     assert_eq!((restart.cause, restart.reset_count), (Cause::Watchdog, 1));
-    assert_eq!(restart.stance_before.map(|stance| stance.pose), Some(pose));
+    assert_eq!(
+        restart
+            .servo_state_before
+            .map(|servo_state| servo_state.pose),
+        Some(pose)
+    );
 }
 
 #[test]
 fn a_reset_keeps_the_pose_and_a_loss_of_power_does_not() {
-    let mut robot = standing_robot();
+    let mut robot = run_standing_robot();
     robot.send_line("sway");
     robot.run_frames(60);
     let pose = *robot.motion().pose();
     robot.board.send(b"stand\r");
     robot.reset(Cause::External);
-    let stance_before = robot.board.last_restart().stance_before;
-    assert_eq!(stance_before.map(|stance| stance.pose), Some(pose));
+    let servo_state_before = robot.board.last_restart().servo_state_before;
+    assert_eq!(
+        servo_state_before.map(|servo_state| servo_state.pose),
+        Some(pose)
+    );
     let unread_count = robot.board.unread_count();
     assert_eq!(
         unread_count, 0,
-        "bytes that the main loop had not read are lost"
+        "bytes that the main loop has not read are lost"
     );
     robot.lose_power(None);
     assert_eq!(robot.board.last_restart(), &Restart::NONE);
@@ -106,7 +114,7 @@ fn power_lost_during_a_write_changes_only_the_byte_that_is_being_written() {
 }
 
 #[test]
-fn a_slow_line_leaves_less_room_until_time_passes() {
+fn a_slow_transmitter_has_less_room_until_time_passes() {
     let mut transmitter = Transmitter::new(16_000, 255);
     transmitter.queue_bytes(200);
     assert_eq!(transmitter.room(), 55);
@@ -118,7 +126,7 @@ fn a_slow_line_leaves_less_room_until_time_passes() {
 }
 
 #[test]
-fn no_reading_is_given_before_every_voltage_has_been_measured() {
+fn the_reading_is_empty_until_every_voltage_has_been_measured() {
     let true_reading = Reading {
         reference: 221,
         rail: 393,
@@ -154,8 +162,8 @@ fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
 
 #[test]
 fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
-    // Settings that change before the servos wake must not move them beyond the last submitted frame: the first
-    // pulses repeat it, and the slew limit counts from there.
+    // Settings that change before the servos wake must not make them jump: the first pulses repeat the last submitted
+    // frame, and from then on the slew limit applies.
     let mut robot = RunningRobot::power_on(*Sample::asymmetric());
     robot.run_frames(200);
     robot.send_line("sway");
@@ -165,7 +173,10 @@ fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
     robot.settle();
     robot.reset(Cause::External);
     let submitted_pulses = *robot.motion().sent_pulses();
-    assert_ne!(started_pulses, submitted_pulses, "a frame was on its way");
+    assert_ne!(
+        started_pulses, submitted_pulses,
+        "the submitted frame has not been played"
+    );
     for servo in 1..=4 {
         robot.send_line(&format!("scale {servo} 9.3"));
     }
@@ -181,8 +192,8 @@ fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
     assert_eq!(first_widths, submitted_pulses.0.map(Some));
 }
 
-/// Runs frames and returns the largest change of each servo's pulse width from one frame to the next, cycles.
-fn largest_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
+/// Runs frames. Returns the largest change of each servo's pulse width from one frame to the next, cycles.
+fn measure_largest_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
     let mut last_widths = *robot.motion().sent_pulses();
     let mut changes = [0; 4];
     for _ in 0..frames {
@@ -205,7 +216,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
         .calibration()
         .map(|servo| servo.max_width_change(sweep_per_frame));
     for reset_cause in [None, Some(Cause::External), Some(Cause::Watchdog)] {
-        let mut running_robot = standing_robot();
+        let mut running_robot = run_standing_robot();
         running_robot.send_line("sway");
         running_robot.run_frames(60);
         running_robot.send_line("rest");
@@ -219,7 +230,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
             running_robot.run_frames(60);
         }
         running_robot.send_line("stand");
-        let changes = largest_changes(&mut running_robot, 200);
+        let changes = measure_largest_changes(&mut running_robot, 200);
         for servo in 0..4 {
             assert!(
                 changes[servo] <= max_changes[servo],
@@ -227,7 +238,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
             );
             assert!(
                 changes[servo] > 0,
-                "the robot stands in another pose than it rested"
+                "the neutral pose differs from the rest pose"
             );
         }
         assert_ne!(*running_robot.motion().sent_pulses(), pulses_before_rest);

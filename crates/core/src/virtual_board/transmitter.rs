@@ -1,4 +1,4 @@
-//! The transmitter: the robot's output, over a serial line that needs time for each byte.
+//! The transmitter: the robot's output over a serial port that takes time for each byte.
 
 use core::convert::Infallible;
 use core::hash::{Hash, Hasher};
@@ -9,16 +9,16 @@ use ufmt::uWrite;
 /// CPU cycles in a millisecond.
 const CYCLES_PER_MS: u64 = 16_000;
 
-/// The transmitter of the serial line.
+/// The transmitter of the serial port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Transmitter {
-    /// The text that has been written and not been read yet.
+    /// The text that has been written but not read yet.
     pub text: String,
-    /// True while nobody reads the line, so that nothing more is sent.
+    /// True while the output is not read, so that no further byte is sent.
     pub is_held: bool,
-    /// CPU cycles per byte; 0 for a line that sends at once.
+    /// CPU cycles per byte; 0 for a transmitter that sends at once.
     cycles_per_byte: u64,
-    /// Number of bytes that the transmitter accepts before a writer has to wait.
+    /// The number of bytes that the transmitter accepts before a writer must wait.
     capacity: u64,
     /// The current CPU cycle.
     current_cycle: u64,
@@ -27,7 +27,7 @@ pub struct Transmitter {
 }
 
 impl Default for Transmitter {
-    /// Creates a line that sends at once.
+    /// Creates a transmitter that sends at once.
     fn default() -> Self {
         Self::new(0, 255)
     }
@@ -42,7 +42,7 @@ impl Hash for Transmitter {
 }
 
 impl Transmitter {
-    /// Creates a line that takes `cycles_per_byte` cycles for a byte, with room for `capacity` bytes.
+    /// Creates a transmitter that takes `cycles_per_byte` cycles for a byte and has room for `capacity` bytes.
     pub const fn new(cycles_per_byte: u64, capacity: u64) -> Self {
         Self {
             text: String::new(),
@@ -69,12 +69,12 @@ impl Transmitter {
         self.idle_from_cycle
     }
 
-    /// Makes this number of bytes wait to be sent, as if they were left from an earlier run.
+    /// Makes `bytes` bytes wait to be sent, as if they remained from an earlier run.
     pub const fn queue_bytes(&mut self, bytes: u64) {
         self.idle_from_cycle = self.current_cycle + bytes * self.cycles_per_byte;
     }
 
-    /// Number of bytes that the transmitter accepts without waiting, at most 255; 0 while it is held.
+    /// The number of bytes that the transmitter accepts without waiting, at most 255; 0 while the transmitter is held.
     pub fn room(&self) -> u8 {
         if self.is_held {
             return 0;

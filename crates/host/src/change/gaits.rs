@@ -1,27 +1,27 @@
-//! `lizard gaits`: the results of checking every gait, and the predicted distance of each.
+//! `lizard gaits`: checks every gait and predicts the robot's displacement with each of them.
 
 use std::io::Write;
 
 use lizard_kinematics::Check;
 use lizard_robot::{
-    Assumptions, Prediction, Report, Robot, Round, Row, Sensitivity, ServoTable, servo,
+    Assumptions, GaitRow, Prediction, Report, Robot, RoutineRow, Sensitivity, ServoTable, servo,
 };
 use serde::Serialize;
 
 use crate::shared::json;
 use crate::shared::pose_args::ANGLE_NAMES;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::suggestion_text;
+use crate::shared::suggestion::format_suggestion;
 use crate::{Failure, RobotFile};
 
-/// Check every gait of robot.toml and predict how far it walks.
+/// Check every gait in robot.toml and predict how far the robot walks with it.
 ///
-/// Prints for each gait: the time of a cycle, its fastest frame, the error of its table over all 65536 phases, the
-/// smallest margins and the slider travel over every sample, and the displacement of one cycle by the contact model.
-/// A dash means that two feet pull against two, so the model cannot decide. For each routine it prints how long one
-/// round takes and how far the robot gets in it, including the transitions between its gaits. If a gait breaks a
-/// limit, the program names the gait, its phase, the margin, its value and the limit, and ends with exit code 2. It
-/// does the same for any other mistake in the file.
+/// For each gait, prints the duration of a cycle, the highest servo speed, the table error over all 65536 phases, the
+/// smallest margins and the slider travel, and the displacement per cycle according to the contact model. A dash
+/// means that the model cannot decide: two feet pull with equal force against the other two. For each routine, prints
+/// the duration and the displacement of one round, including the transitions between its gaits. If a gait violates a
+/// limit, reports the gait, its phase, the margin, its value and the limit, and exits with code 2. Any other error in
+/// the file also gives exit code 2.
 #[derive(clap::Args)]
 #[command(after_help = "Examples:
   lizard gaits
@@ -34,21 +34,21 @@ pub struct Args {
     /// Print one JSON object per line, one for each gait and each routine
     #[arg(long)]
     json: bool,
-    /// Print instead the servo angles of one gait over a cycle as CSV, with the header
-    /// seconds,theta1,theta4,theta8,theta5: frames of 20 ms at full speed, degrees in the
+    /// Instead, print one cycle of a gait's servo angles as CSV, with the header
+    /// seconds,theta1,theta4,theta8,theta5: one row per 20 ms at full speed, degrees in the
     /// chassis frame, as `lizard pose` reads them
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "GAIT", conflicts_with = "json")]
     trace: Option<String>,
-    /// Print instead how far each gait walks on other pads (friction backward over
-    /// forward), with the legs mounted differently, and on other feet
+    /// Instead, print each gait's displacement with other pads (ratio of backward to forward
+    /// friction), other leg mountings and other feet
     #[arg(long, conflicts_with_all = ["json", "trace"])]
     sensitivity: bool,
-    /// Print instead which assumptions change how far the gaits walk by a tenth or more, and how
-    /// much: servos, joints, mass, pads, legs and feet, each over its plausible range
+    /// Instead, print the assumptions that change a gait's displacement by 10 % or more, and the
+    /// change: servos, joints, mass, pads, legs and feet, each over its plausible range
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity"])]
     assumptions: bool,
-    /// Print instead how much of their servos' torque-speed line the gaits use, and how far they
-    /// walk, on several supplies and at two speeds
+    /// Instead, print each gait's utilisation of the servos' torque-speed line, and its
+    /// displacement, on several supplies and at two speeds
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity", "assumptions"])]
     servos: bool,
     #[command(flatten)]
@@ -58,44 +58,48 @@ pub struct Args {
 /// Prints the table, the JSON objects or the trace that the arguments select.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a gait that it does not have, or an output that cannot be written.
+/// Fails for an invalid robot.toml, an unknown gait name, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();
     match args.trace {
-        Some(name) => out.write_all(trace_csv(&robot, &name)?.as_bytes())?,
-        None if args.sensitivity => write!(out, "{}", with_spinner(|| Sensitivity::of(&robot)))?,
-        None if args.assumptions => write!(out, "{}", with_spinner(|| Assumptions::of(&robot)))?,
-        None if args.servos => write!(out, "{}", with_spinner(|| ServoTable::of(&robot)))?,
+        Some(name) => out.write_all(format_trace_csv(&robot, &name)?.as_bytes())?,
+        None if args.sensitivity => {
+            write!(out, "{}", with_spinner(|| Sensitivity::compute(&robot)))?
+        }
+        None if args.assumptions => {
+            write!(out, "{}", with_spinner(|| Assumptions::compute(&robot)))?
+        }
+        None if args.servos => write!(out, "{}", with_spinner(|| ServoTable::compute(&robot)))?,
         None if args.json => {
-            let report = with_spinner(|| Report::of(&robot));
+            let report = with_spinner(|| Report::compute(&robot));
             for row in &report.rows {
                 json::write_line(&mut out, &GaitLine::new(row))?;
             }
-            for round in &report.rounds {
+            for round in &report.routines {
                 json::write_line(&mut out, &RoutineLine::new(round))?;
             }
         }
-        None => write!(out, "{}", with_spinner(|| Report::of(&robot)))?,
+        None => write!(out, "{}", with_spinner(|| Report::compute(&robot)))?,
     }
     Ok(out.flush()?)
 }
 
 /// Computes a table while a spinner shows the elapsed time.
 fn with_spinner<T>(compute: impl FnOnce() -> T) -> T {
-    let _spinner = Spinner::new("walking every gait");
+    let _spinner = Spinner::new("simulating every gait");
     compute()
 }
 
 /// Returns the servo angles of one cycle of a gait as CSV, one row per frame, as the firmware reads them from its
 /// table.
-fn trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
+fn format_trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
     let Some(gait) = robot.gait(name) else {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
-            "--trace {name}: the gaits are {}{}",
+            "--trace {name}: unknown gait; allowed values: {}{}",
             names.join(", "),
-            suggestion_text(name, names)
+            format_suggestion(name, names)
         )));
     };
     let mut text = format!("seconds,{}\n", ANGLE_NAMES.join(","));
@@ -106,19 +110,19 @@ fn trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// The values of a gait, under their names in `--json`.
+/// One gait in the `--json` output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct GaitLine<'a> {
     gait: &'a str,
     /// Duration of one cycle, s.
     period: f64,
-    /// Highest speed of a servo over one frame, deg/s.
+    /// Highest servo speed between two frames, deg/s.
     peak_speed: f64,
-    /// The servo that has this speed, A1 to A4.
+    /// Name of the servo with the highest speed, A1 to A4.
     peak_servo: &'static str,
     /// Largest error of the table over all phases, deg.
     table_error_max: f64,
-    /// Root mean square of that error, deg.
+    /// Root mean square error of the table, deg.
     table_error_rms: f64,
     /// Smallest margin to a type-2 singularity.
     type2: LeastMargin,
@@ -126,21 +130,21 @@ struct GaitLine<'a> {
     type1: LeastMargin,
     /// Smallest margin of a leg.
     leg: LeastMargin,
-    /// Smallest and largest slider travel from nominal, mm.
+    /// Smallest and largest slider travel relative to nominal, mm.
     stroke: [f64; 2],
-    /// Displacement of one cycle with ideal servos, mm and deg counter-clockwise. A value is null if the contact
-    /// model cannot decide it, since two feet pull against two with equal force.
+    /// Displacement of one cycle with ideal servos. A value is null if the contact model cannot decide because two
+    /// feet pull with equal force against the other two.
     predicted: Displacement,
-    /// Largest used share of a servo's torque-speed line.
+    /// Highest utilisation of the torque-speed line by a servo; 1 is the limit.
     line: f64,
-    /// Displacement of one cycle with the servos of robot.toml, in the form of `predicted`.
+    /// Displacement of one cycle with the servos from robot.toml.
     by_servos: Displacement,
 }
 
-/// The smallest margin of a kind over a cycle.
+/// The smallest margin of one kind over a cycle.
 #[derive(Serialize)]
 struct LeastMargin {
-    /// As a sine.
+    /// The margin, a sine.
     margin: f64,
     /// The name of the check that has this margin.
     what: &'static str,
@@ -156,31 +160,31 @@ struct Displacement {
     turn: Option<f64>,
 }
 
-/// The values of a routine, under their names in `--json`.
+/// One routine in the `--json` output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct RoutineLine<'a> {
     routine: &'a str,
-    /// Number of its steps.
+    /// Number of steps.
     steps: usize,
-    /// Number of rounds; null for a routine without an end.
+    /// Number of rounds; null for a routine that repeats forever.
     repeat: Option<u16>,
     /// Duration of one round that starts from standing, s.
     seconds: f64,
-    /// Displacement of one round with ideal servos, in the form of [`GaitLine::predicted`].
+    /// Displacement of one round with ideal servos; null as in [`GaitLine::predicted`].
     predicted: Displacement,
-    /// Displacement of one round with the servos of robot.toml.
+    /// Displacement of one round with the servos from robot.toml.
     by_servos: Displacement,
 }
 
 impl<'a> RoutineLine<'a> {
-    fn new(round: &'a Round) -> Self {
+    fn new(round: &'a RoutineRow) -> Self {
         Self {
             routine: &round.name,
             steps: round.step_count,
             repeat: round.round_count,
             seconds: round.seconds,
             predicted: round.movement.into(),
-            by_servos: round.driven_movement.into(),
+            by_servos: round.movement_with_servos.into(),
         }
     }
 }
@@ -196,8 +200,8 @@ impl From<Prediction> for Displacement {
 }
 
 impl<'a> GaitLine<'a> {
-    fn new(row: &'a Row) -> Self {
-        let least_margin = |smallest: lizard_robot::LeastMargin| LeastMargin {
+    fn new(row: &'a GaitRow) -> Self {
+        let to_json = |smallest: lizard_robot::LeastMargin| LeastMargin {
             margin: smallest.value,
             what: Check::name(smallest.check),
             phase: smallest.phase,
@@ -210,13 +214,13 @@ impl<'a> GaitLine<'a> {
             peak_servo: servo::SERVO_NAMES[audit.peak_speed.servo],
             table_error_max: row.table_error.max,
             table_error_rms: row.table_error.rms,
-            type2: least_margin(audit.type2),
-            type1: least_margin(audit.type1),
-            leg: least_margin(audit.leg),
+            type2: to_json(audit.type2),
+            type1: to_json(audit.type1),
+            leg: to_json(audit.leg),
             stroke: [audit.stroke_range.0, audit.stroke_range.1],
             predicted: row.movement.into(),
-            line: row.line_share,
-            by_servos: row.driven_movement.into(),
+            line: row.utilisation,
+            by_servos: row.movement_with_servos.into(),
         }
     }
 }

@@ -1,5 +1,5 @@
-//! The commands for changing the robot's gaits and measures: they write a new robot.toml, check its gaits, search for
-//! faster ones, and prove that the firmware's guard judges every pose correctly.
+//! The commands for changing the robot's gaits and dimensions: they write a new robot.toml, check its gaits, search
+//! for faster gaits, and prove that the firmware's guard decides every pose correctly.
 
 pub mod gaits;
 pub mod new;

@@ -1,4 +1,4 @@
-//! `lizard new`: writes a robot.toml to start from.
+//! `lizard new`: writes a robot.toml as a starting point.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Write};
@@ -7,15 +7,15 @@ use std::path::PathBuf;
 use crate::Failure;
 use crate::shared::{files, robot_file};
 
-/// Write a robot.toml to begin with: every key with a comment
+/// Write a new robot.toml with a comment on every key
 ///
-/// It is the robot of the paper. A file that is already there is left as it is.
+/// The file describes the paper's robot. An existing file is not overwritten.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard new my.toml && lizard gaits --robot my.toml
   lizard new robot.toml    # commands in this folder and below find it without --robot")]
 pub struct Args {
-    /// The new file
+    /// Path of the new file
     file: PathBuf,
 }
 
@@ -29,14 +29,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let result =
         file.and_then(|mut file| file.write_all(robot_file::DEFAULT_ROBOT_TOML.as_bytes()));
     result.map_err(|error| match error.kind() {
-        ErrorKind::AlreadyExists => Failure::Input(format!(
-            "{name} already exists and is left as it is; name a new file"
-        )),
+        ErrorKind::AlreadyExists => {
+            Failure::Input(format!("{name} already exists; choose another name"))
+        }
         _ => files::write_failure(&args.file, &error),
     })?;
     writeln!(
         io::stdout(),
-        "{name} is the paper's robot; change it, then check it: lizard gaits --robot {name}"
+        "wrote the paper's robot to {name}; edit it, then check it: lizard gaits --robot {name}"
     )?;
     Ok(())
 }

@@ -1,5 +1,4 @@
-//! `lizard prove`: compares the integer guard with floating point at every pair of positions that two servos can
-//! take.
+//! `lizard prove`: compares the integer guard with floating point at every pair of positions of two servos.
 
 use std::io::{self, Write};
 
@@ -9,19 +8,19 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::format_grouped;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Compare the firmware's guard with floating point at every possible pose.
 ///
-/// Every condition of a safe pose depends on one servo or on two. So this command takes
-/// every pair of positions of the two servos of the head, the tail, the left and the
-/// right side, in the firmware's own steps of 1/65536 turn, and decides it both with the
-/// firmware's integers and in floating point. In certified cells, where the firmware does
-/// not measure a pose, the guard must accept every pair. The command prints the largest
-/// error of each margin (at an end, only where the type-2 margin keeps its limit), and the
-/// largest distance from a limit at which the two decide differently. The exit code is 1 if
-/// that distance is larger than the documentation says, or if a pose in a cell is refused.
+/// Every condition of a safe pose depends on one servo or on two. The command therefore
+/// checks every pair of positions of the two servos at the head, the tail, the left and the
+/// right side, in the firmware's steps of 1/65536 turn. It decides each pair both with the
+/// firmware's integers and in floating point. In certified cells, where the firmware skips
+/// the guard, the guard must accept every pair. The command prints the largest error of each
+/// margin (at an end, only where the type-2 margin keeps its limit), and the largest distance
+/// from a limit at which the two decisions differ. The exit code is 1 if that distance exceeds
+/// the documented one, or if the guard refuses a pose in a cell.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard prove
@@ -31,7 +30,7 @@ pub struct Args {
     /// Check only one pair in N, evenly spread
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     one_in: u32,
-    /// Offset of the selected pairs; each number below N selects different pairs
+    /// Offset of the selected pairs, less than N; each offset selects different pairs
     #[arg(long, value_name = "K", default_value_t = 0)]
     offset: u32,
     /// Print one JSON object
@@ -61,16 +60,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
         one_in: args.one_in,
         offset: args.offset,
     };
-    let row_count = Proof::row_count(guard) * args.spread.own_piece_count(PIECE_COUNT) as u64
+    let row_count = Proof::row_count(guard) * args.spread.count_own_pieces(PIECE_COUNT) as u64
         / PIECE_COUNT as u64;
-    let bar = progress_bar(
+    let bar = create_progress_bar(
         row_count as usize,
         "{bar:40} {percent} % of all rows, {eta} left",
     );
     let comparison = GuardComparison::new(&robot, guard, sample);
     let check_piece =
         |index| comparison.compare_piece(index, &|checked_rows| bar.inc(checked_rows));
-    let pieces = args.spread.all_pieces(&args, PIECE_COUNT, check_piece)?;
+    let pieces = args.spread.run_pieces(&args, PIECE_COUNT, check_piece)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
@@ -87,7 +86,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     match proof.wrong_count() {
         0 => Ok(()),
         wrong_count => Err(Failure::Impossible(format!(
-            "the guard decides {wrong_count} pairs wrong that are outside the band or in a cell"
+            "the guard decides {wrong_count} pairs outside the band or in a cell incorrectly"
         ))),
     }
 }
@@ -95,7 +94,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
-        "                                      largest error          decided otherwise within"
+        "                                      largest error          decisions differ within"
     )?;
     writeln!(
         out,
@@ -138,12 +137,12 @@ fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<
     if proof.wrong_count() == 0 {
         writeln!(
             out,
-            "no pose that is farther than {:.4} (a sine) or {LENGTH_BAND_STEPS} steps of length from a limit is decided wrong",
+            "the guard decides every pose correctly that is more than {:.4} (a sine) or {LENGTH_BAND_STEPS} length steps from a limit",
             proof.margin_band
         )?;
         writeln!(
             out,
-            "the guard accepts all {} pairs in the robot's cells, where the firmware does not ask it",
+            "the guard accepts all {} pairs in the robot's cells, where the firmware skips the guard",
             format_grouped(proof.certified_count() as f64, 0)
         )?;
     }

@@ -1,12 +1,12 @@
-//! The commands that this build lacks because a cargo feature that they need is off.
+//! The commands that are missing from a build because one of their cargo features is off.
 
 use std::ffi::OsString;
 
 use super::known::CommandEntry;
 use crate::Failure;
-use crate::shared::suggestion::suggestion_text;
+use crate::shared::suggestion::format_suggestion;
 
-/// Describes the commands that need a feature, for messages.
+/// Describes the commands that need `feature`, for messages.
 pub(super) fn describe_feature(feature: &str) -> &'static str {
     match feature {
         "simulator" => "the simulator",
@@ -28,12 +28,12 @@ fn is_feature_built(feature: &str) -> bool {
     features.contains(&(feature, true))
 }
 
-/// Lists the commands that this build lacks, for the help; empty for a complete build.
+/// Lists the commands that are missing from this build, for the help; empty for a complete build.
 pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
     list_absent_in_build(commands, is_feature_built)
 }
 
-/// Lists the commands that a build with only the features of `has_feature` lacks.
+/// Lists the commands that are missing from a build with only the features that `has_feature` accepts.
 fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) -> bool) -> String {
     let absent_commands = commands.iter().filter(|command| {
         !command
@@ -59,7 +59,7 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     )
 }
 
-/// The failure of a command line that starts with a command that this build lacks or does not know.
+/// Returns the failure for a command that is unknown or missing from this build.
 #[cfg_attr(
     all(
         feature = "simulator",
@@ -67,13 +67,13 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
         feature = "console",
         feature = "parts"
     ),
-    allow(dead_code, reason = "a complete build lacks nothing")
+    allow(dead_code, reason = "a complete build has every command")
 )]
 pub(super) fn explain_absence(words: &[OsString], commands: &[CommandEntry]) -> Failure {
     explain_absence_in_build(words, commands, is_feature_built)
 }
 
-/// The arguments of a command that this build lacks; nothing reads them.
+/// The arguments of a command that is missing from this build; they are never read.
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 #[derive(clap::Args)]
 pub struct AbsentCommand {
@@ -83,7 +83,7 @@ pub struct AbsentCommand {
 
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 impl AbsentCommand {
-    /// The failure of a command that this build lacks, with the features that the command needs.
+    /// Returns the failure of a missing command; it names the missing features.
     pub fn failure(name: &str, needed_features: &[&str]) -> Failure {
         absent_command_failure(name, needed_features, is_feature_built)
     }
@@ -102,7 +102,7 @@ fn absent_command_failure(
     let is_simulator_absent = needed_features.contains(&"simulator") && !has_feature("simulator");
     let advice = match is_simulator_absent && !cfg!(target_os = "linux") {
         true => "the simulator runs on Linux",
-        false => "make cli builds all",
+        false => "`make cli` builds every command",
     };
     Failure::Input(format!(
         "`lizard {name}` is missing: this program was built without {}; {advice}",
@@ -121,9 +121,9 @@ fn explain_absence_in_build(
     let is_called =
         |command: &&CommandEntry| command.name() == word || command.aliases.contains(&word);
     let Some(command) = commands.iter().find(is_called) else {
-        let suggestion = suggestion_text(word, names.iter().map(String::as_str));
+        let suggestion = format_suggestion(word, names.iter().map(String::as_str));
         return Failure::Input(format!(
-            "there is no command `{word}`{suggestion}; lizard --help lists them"
+            "unknown command `{word}`{suggestion}; `lizard --help` lists the commands"
         ));
     };
     absent_command_failure(&command.name(), command.needed_features, has_feature)
@@ -134,7 +134,7 @@ mod tests {
     use super::super::KNOWN_COMMANDS;
     use super::*;
 
-    fn message_of(word: &str, features: &[&str]) -> String {
+    fn absence_message(word: &str, features: &[&str]) -> String {
         explain_absence_in_build(&[word.into(), "--json".into()], KNOWN_COMMANDS, |feature| {
             features.contains(&feature)
         })
@@ -142,18 +142,18 @@ mod tests {
     }
 
     #[test]
-    fn the_message_about_an_absent_command_names_the_feature_that_it_needs() {
+    fn absence_message_names_the_missing_feature() {
         assert_eq!(
-            message_of("sim", &["paper"]),
-            "`lizard sim` is missing: this program was built without the simulator; make cli builds all"
+            absence_message("sim", &["paper"]),
+            "`lizard sim` is missing: this program was built without the simulator; `make cli` builds every command"
         );
-        assert!(message_of("info", &[]).contains("without the commands for a board on USB;"));
-        assert!(message_of("parts", &["console"]).contains("without the parts to print;"));
-        assert!(message_of("monitor", &[]).starts_with("`lizard console` is missing: "));
+        assert!(absence_message("info", &[]).contains("without the commands for a board on USB;"));
+        assert!(absence_message("parts", &["console"]).contains("without the parts to print;"));
+        assert!(absence_message("monitor", &[]).starts_with("`lizard console` is missing: "));
     }
 
     #[test]
-    fn the_help_names_exactly_the_commands_that_a_build_lacks() {
+    fn help_lists_exactly_the_missing_commands() {
         assert_eq!(list_absent_in_build(KNOWN_COMMANDS, |_| true), "");
         assert_eq!(
             list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "simulator"),
@@ -167,10 +167,12 @@ mod tests {
     }
 
     #[test]
-    fn of_two_features_only_the_absent_ones_are_named() {
-        assert!(message_of("tune", &["simulator"]).contains("without the commands that compute;"));
-        assert!(message_of("tune", &["paper"]).contains("without the simulator;"));
-        let message = message_of("tune", &[]);
+    fn absence_message_omits_features_of_the_build() {
+        assert!(
+            absence_message("tune", &["simulator"]).contains("without the commands that compute;")
+        );
+        assert!(absence_message("tune", &["paper"]).contains("without the simulator;"));
+        let message = absence_message("tune", &[]);
         assert!(
             message.contains("the simulator and the commands that compute;"),
             "{message}"
@@ -178,11 +180,11 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_command_is_answered_with_a_suggestion_if_one_is_close() {
+    fn unknown_command_gets_a_suggestion_if_one_is_close() {
         assert_eq!(
-            message_of("fly", &[]),
-            "there is no command `fly`; lizard --help lists them"
+            absence_message("fly", &[]),
+            "unknown command `fly`; `lizard --help` lists the commands"
         );
-        assert!(message_of("claibrate", &[]).contains("; did you mean `calibrate`?"));
+        assert!(absence_message("claibrate", &[]).contains("; did you mean `calibrate`?"));
     }
 }

@@ -1,4 +1,4 @@
-//! `lizard completions` and `lizard completions man`: completions and manual pages.
+//! `lizard completions`: shell completions; `lizard completions man`: manual pages.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -9,14 +9,14 @@ use clap_complete::Shell;
 use crate::Failure;
 use crate::shared::{files, robot_file};
 
-/// Print what a shell needs to complete commands and options
+/// Print a shell's completion script
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard completions bash > ~/.local/share/bash-completion/completions/lizard
   lizard completions zsh > ~/.zfunc/_lizard
   lizard completions fish > ~/.config/fish/completions/lizard.fish")]
 pub struct CompletionsArgs {
-    /// The shell to print the completions for
+    /// The shell
     #[arg(required = true)]
     shell: Option<Shell>,
 }
@@ -99,7 +99,7 @@ pub fn write_manual_pages(args: ManArgs, command: Command) -> Result<(), Failure
         }
     }
     let folder = args.folder.display();
-    writeln!(io::stdout(), "{page_count} manual pages are in {folder}")?;
+    writeln!(io::stdout(), "wrote {page_count} manual pages to {folder}")?;
     Ok(())
 }
 

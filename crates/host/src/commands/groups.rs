@@ -1,7 +1,7 @@
 //! The list of commands, grouped by purpose.
 //!
-//! The owner of a robot needs five commands, which one long list would hide. So `lizard help` groups the commands under
-//! headings, and gives only the names of those for scripts and development.
+//! A robot's owner needs five commands, which would be lost in one long list. `lizard help` therefore groups the
+//! commands under headings, and prints only the names of the commands for scripts and development.
 
 use std::fmt::Write as _;
 
@@ -10,23 +10,23 @@ use clap::Command;
 use super::absent;
 use super::known::{CommandEntry, Group};
 
-/// Returns `command` with a help text that lists its subcommands in the groups of `known`.
-pub(super) fn with_groups(command: Command, known: &[CommandEntry]) -> Command {
-    let list = list_commands(&command, known);
-    let absent_note = absent::list_absent(known);
+/// Returns `command` with a help text that lists its subcommands in groups according to `known_commands`.
+pub(super) fn group_in_help(command: Command, known_commands: &[CommandEntry]) -> Command {
+    let list = list_commands(&command, known_commands);
+    let absent_note = absent::list_absent(known_commands);
     command.help_template(format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{list}{absent_note}`lizard help COMMAND` explains one of them.\n\n{}\n{{options}}{{after-help}}",
-        heading("Options")
+        format_heading("Options")
     ))
 }
 
-fn heading(text: &str) -> String {
+fn format_heading(text: &str) -> String {
     let style = *clap::builder::Styles::styled().get_header();
     format!("{style}{text}:{style:#}")
 }
 
 /// Lists every subcommand once, under the heading of its group.
-fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
+fn list_commands(command: &Command, known_commands: &[CommandEntry]) -> String {
     let subcommands: Vec<&Command> = command.get_subcommands().collect();
     let max_name_length = subcommands.iter().map(|sub| sub.get_name().len()).max();
     let width = max_name_length.unwrap_or(0);
@@ -35,16 +35,16 @@ fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
         if listed_subcommands.is_empty() {
             return;
         }
-        _ = writeln!(text, "{}", heading(title));
+        _ = writeln!(text, "{}", format_heading(title));
         for sub in listed_subcommands {
             let about = sub.get_about().map(ToString::to_string).unwrap_or_default();
             let aliases: Vec<&str> = sub.get_visible_aliases().collect();
-            let note_of = |word: &str, names: &[&str]| match names.join(", ") {
+            let format_note = |word: &str, names: &[&str]| match names.join(", ") {
                 names if names.is_empty() => names,
                 names => format!(" [{word}: {names}]"),
             };
             let nested_names: Vec<&str> = sub.get_subcommands().map(Command::get_name).collect();
-            let notes = note_of("also", &aliases) + &note_of("with", &nested_names);
+            let notes = format_note("also", &aliases) + &format_note("with", &nested_names);
             // clap would read braces as placeholders of the template.
             let about = about.replace(['{', '}'], "");
             _ = writeln!(text, "  {:<width$}  {about}{notes}", sub.get_name());
@@ -52,7 +52,7 @@ fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
         text.push('\n');
     };
     for group in Group::ALL {
-        let entries = known.iter().filter(|entry| entry.group == group);
+        let entries = known_commands.iter().filter(|entry| entry.group == group);
         let group_subcommands: Vec<&Command> = entries
             .filter_map(|entry| {
                 let name = entry.name();
@@ -64,7 +64,12 @@ fn list_commands(command: &Command, known: &[CommandEntry]) -> String {
             .collect();
         if group == Group::Development && !group_subcommands.is_empty() {
             let names: Vec<&str> = group_subcommands.iter().map(|sub| sub.get_name()).collect();
-            _ = writeln!(text, "{}\n  {}\n", heading(group.title()), names.join(", "));
+            _ = writeln!(
+                text,
+                "{}\n  {}\n",
+                format_heading(group.title()),
+                names.join(", ")
+            );
         } else {
             write_section(&mut text, group.title(), &group_subcommands);
         }
@@ -77,23 +82,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_command_is_listed_once_in_the_order_of_the_groups() {
+    fn list_commands_lists_every_command_once_in_group_order() {
         let subcommand = |name: &'static str| Command::new(name).about(format!("does {name}"));
         let command = Command::new("lizard").subcommands([
             subcommand("pose").visible_alias("fk"),
             subcommand("completions"),
             subcommand("console"),
         ]);
-        let entry_of = |group, variant| CommandEntry {
+        let new_entry = |group, variant| CommandEntry {
             group,
             variant,
             aliases: &[],
             needed_features: &[],
         };
         let known = [
-            entry_of(Group::Drive, "Console"),
-            entry_of(Group::Paper, "Pose"),
-            entry_of(Group::Development, "Completions"),
+            new_entry(Group::Drive, "Console"),
+            new_entry(Group::Paper, "Pose"),
+            new_entry(Group::Development, "Completions"),
         ];
         assert_eq!(
             strip_colours(&list_commands(&command, &known)),

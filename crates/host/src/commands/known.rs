@@ -1,11 +1,11 @@
-//! An entry of the list of commands, and the groups of the entries.
+//! An entry in the list of commands, and the groups of entries.
 
 /// A group of commands, with its heading in the help.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Group {
     /// Commands for a board, real or simulated.
     Drive,
-    /// Simulations of the firmware and of the body.
+    /// Simulations of the firmware and the body.
     Simulate,
     /// Parts and drawings.
     Build,
@@ -13,7 +13,7 @@ pub(super) enum Group {
     Change,
     /// Results of the paper, computed for any robot.
     Paper,
-    /// Commands for scripts and for the development of the program.
+    /// Commands for scripts and for program development.
     Development,
 }
 
@@ -34,14 +34,14 @@ impl Group {
             Self::Drive => "Drive the robot",
             Self::Simulate => "Simulate it",
             Self::Build => "Build it",
-            Self::Change => "Change its gaits and measures",
+            Self::Change => "Change its gaits and dimensions",
             Self::Paper => "The paper, computed",
             Self::Development => "For scripts and development",
         }
     }
 }
 
-/// A command of the program, whether or not this build has it.
+/// A command of the program, which may be missing from this build.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CommandEntry {
     pub(super) group: Group,

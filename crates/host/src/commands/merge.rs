@@ -21,19 +21,18 @@ use crate::shared::spread::{PartOutput, Spreadable, mismatched_parts_failure};
   lizard fit --part $SLURM_ARRAY_TASK_ID/20 > part-$SLURM_ARRAY_TASK_ID
   lizard merge part-*")]
 pub struct MergeArgs {
-    /// Files with the output of the parts, one or more parts a file [default: standard
-    /// input]
+    /// Files with the output of one or more parts each [default: standard input]
     #[arg(value_name = "FILE")]
-    files: Vec<PathBuf>,
+    paths: Vec<PathBuf>,
 }
 
-/// Reads all parts, and runs the command with their results.
+/// Reads all parts and runs the command with their results.
 ///
 /// # Errors
-/// Fails if a part is missing, is given twice or does not belong to the others, or if the command
+/// Fails if a part is missing, is given twice or belongs to another computation, or if the command
 /// itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
-    let merged = MergedParts::join(read_all_parts(&args.files)?)?;
+    let merged = MergedParts::join(read_all_parts(&args.paths)?)?;
     match merged.command.as_str() {
         #[cfg(feature = "paper")]
         "prove" => merged.run(crate::change::prove::run),
@@ -44,13 +43,13 @@ pub fn merge(args: MergeArgs) -> Result<(), Failure> {
         #[cfg(feature = "parts")]
         "fit" => merged.run(crate::make::parts::fit::run),
         command => Err(Failure::Input(format!(
-            "the parts are from `lizard {command}`, which this program does not have"
+            "the parts are from `lizard {command}`, which is missing from this program"
         ))),
     }
 }
 
 /// Reads the parts from files, or from standard input.
-fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
+fn read_all_parts(paths: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
     let mut parts = Vec::new();
     let mut read_parts = |name: &str, text: &str| {
         for (number, line) in (1..).zip(text.lines()) {
@@ -64,14 +63,14 @@ fn read_all_parts(files: &[PathBuf]) -> Result<Vec<PartOutput>, Failure> {
         }
         Ok::<(), Failure>(())
     };
-    if files.is_empty() {
+    if paths.is_empty() {
         let mut text = String::new();
         io::stdin().lock().read_to_string(&mut text)?;
         read_parts("standard input", &text)?;
     }
-    for file in files {
-        let name = file.display().to_string();
-        let text = files::read_text(file)?;
+    for path in paths {
+        let name = path.display().to_string();
+        let text = files::read_text(path)?;
         read_parts(&name, &text)?;
     }
     Ok(parts)
@@ -83,7 +82,7 @@ struct MergedParts {
     options: Value,
     /// The text of robot.toml.
     robot: String,
-    /// The results of all pieces of the computation, by their indices.
+    /// The results of all pieces, by piece index.
     results: BTreeMap<usize, Value>,
 }
 
@@ -93,7 +92,7 @@ impl MergedParts {
         let refuse = |reason: String| Err(Failure::Input(reason));
         let Some(first) = parts.first() else {
             return refuse(
-                "there are no parts; `lizard merge --help` says how to make them".to_owned(),
+                "no parts given; `lizard merge --help` shows how to compute them".to_owned(),
             );
         };
         let (part_count, pieces) = (first.part.part_count, first.pieces);
@@ -109,13 +108,13 @@ impl MergedParts {
             let version = env!("CARGO_PKG_VERSION");
             if part.lizard != version {
                 return refuse(format!(
-                    "part {name} is from version {}, and this is {version}",
+                    "part {name} is from version {}, but this is version {version}",
                     part.lizard
                 ));
             }
             if part.command != merged.command {
                 return refuse(format!(
-                    "part {name} is from `lizard {}`, and another one is from `lizard {}`",
+                    "part {name} is from `lizard {}`, but another part is from `lizard {}`",
                     part.command, merged.command
                 ));
             }
@@ -144,7 +143,7 @@ impl MergedParts {
         Ok(merged)
     }
 
-    /// Runs the command as on one machine, but with the results of the parts instead of computing them.
+    /// Runs the command as on one machine, but takes the results from the parts instead of computing them.
     #[cfg_attr(
         not(any(feature = "paper", feature = "parts")),
         allow(dead_code, reason = "this build has no command with parts")
@@ -176,7 +175,7 @@ mod tests {
         }
     }
 
-    fn refusal_of(parts: Vec<PartOutput>) -> String {
+    fn refusal_message(parts: Vec<PartOutput>) -> String {
         match MergedParts::join(parts) {
             Ok(_) => panic!("the parts must be refused"),
             Err(failure) => failure.to_string(),
@@ -184,15 +183,18 @@ mod tests {
     }
 
     #[test]
-    fn parts_that_are_not_of_one_computation_are_refused() {
-        let refusal_after = |change: fn(&mut PartOutput)| {
+    fn missing_duplicate_and_unrelated_parts_are_refused() {
+        let message_after = |change: fn(&mut PartOutput)| {
             let mut second = part_output("2/2");
             change(&mut second);
-            refusal_of(vec![part_output("1/2"), second])
+            refusal_message(vec![part_output("1/2"), second])
         };
-        assert_eq!(refusal_of(vec![part_output("1/2")]), "part 2/2 is missing");
         assert_eq!(
-            refusal_of(vec![
+            refusal_message(vec![part_output("1/2")]),
+            "part 2/2 is missing"
+        );
+        assert_eq!(
+            refusal_message(vec![
                 part_output("1/2"),
                 part_output("1/2"),
                 part_output("2/2")
@@ -200,22 +202,22 @@ mod tests {
             "part 1/2 is given twice"
         );
         assert_eq!(
-            refusal_after(|part| part.robot = "other".to_owned()),
+            message_after(|part| part.robot = "other".to_owned()),
             "part 2/2 has a different robot from another part"
         );
         assert_eq!(
-            refusal_after(|part| part.options = Value::Bool(true)),
+            message_after(|part| part.options = Value::Bool(true)),
             "part 2/2 has different options from another part"
         );
         assert_eq!(
-            refusal_after(|part| part.command = "fit".to_owned()),
-            "part 2/2 is from `lizard fit`, and another one is from `lizard prove`"
+            message_after(|part| part.command = "fit".to_owned()),
+            "part 2/2 is from `lizard fit`, but another part is from `lizard prove`"
         );
         assert!(
-            refusal_after(|part| part.lizard = "0.0.1".to_owned())
+            message_after(|part| part.lizard = "0.0.1".to_owned())
                 .contains("is from version 0.0.1")
         );
-        assert!(refusal_of(Vec::new()).starts_with("there are no parts"));
+        assert!(refusal_message(Vec::new()).starts_with("no parts given"));
         assert!(
             MergedParts::join(vec![part_output("2/2"), part_output("1/2")]).is_ok(),
             "parts are accepted in any order"

@@ -1,8 +1,8 @@
-//! The table of the program's commands. A row has a command's name, its arguments, the function that runs it, the cargo
-//! features that it needs and its alias. The rows are grouped as in the help.
+//! The table of the program's commands. A row has a command's name, arguments, function, cargo features and alias. The
+//! rows are grouped as in the help.
 //!
-//! A build without a feature lacks some commands, and says so when one of them is used. The table therefore
-//! defines both the enum of the commands that this build has and the list of all commands.
+//! A build without a cargo feature reports its missing commands by name. The table therefore defines both the enum of
+//! this build's commands and the list of all commands.
 
 mod absent;
 pub mod completions;
@@ -21,7 +21,7 @@ use crate::shared::plain::readable_lines;
 use known::{CommandEntry, Group};
 use nested::WithSubcommand;
 
-/// Makes [`Command`] and [`KNOWN_COMMANDS`] from the table below.
+/// Defines [`Command`] and [`KNOWN_COMMANDS`] from the table below.
 macro_rules! commands {
     ($(
         $group:ident {
@@ -38,10 +38,10 @@ macro_rules! commands {
             $($(
                 $(#[cfg(all($(feature = $feature),+))])?
                 $(#[command(visible_alias = $alias)])?
-                #[allow(missing_docs, reason = "the help is that of the arguments")]
+                #[allow(missing_docs, reason = "the help text is in the arguments")]
                 $name($arguments),
             )+)+
-            /// The words of a command line whose command this build lacks or does not know.
+            /// The words of a command line whose command is unknown or missing from this build.
             #[cfg(not(all(
                 feature = "simulator",
                 feature = "paper",
@@ -70,7 +70,7 @@ macro_rules! commands {
             }
         }
 
-        /// All commands, including those that this build lacks, in the order of the help.
+        /// All commands in the order of the help, including those missing from this build.
         const KNOWN_COMMANDS: &[CommandEntry] = &[$($(
             CommandEntry {
                 group: Group::$group,
@@ -145,7 +145,7 @@ const REMOVED_COMMANDS: [(&str, &str); 2] = [
         "a spring's force and rate belong in robot.toml, under [leg.drive], or its coil under \
          [parts.spring]",
     ),
-    ("speed", "make bench measures how fast poses are solved"),
+    ("speed", "`make bench` measures the speed of solving poses"),
 ];
 
 /// Translates a command line of the previous version.
@@ -158,12 +158,12 @@ fn translate_old_arguments(mut arguments: Vec<OsString>) -> Result<Vec<OsString>
     };
     if let Some((word, advice)) = REMOVED_COMMANDS.iter().find(|(old, _)| *old == word) {
         return Err(Failure::Input(format!(
-            "there is no command `{word}` any more; {advice}"
+            "the command `{word}` was removed; {advice}"
         )));
     }
     if let Some((old, new)) = RENAMED_COMMANDS.iter().find(|(old, _)| *old == word) {
         eprintln!(
-            "lizard: `{old}` is `lizard {}` now; the next version will not know the old word",
+            "lizard: `{old}` is deprecated and will be removed in the next version; use `lizard {}`",
             new.join(" ")
         );
         arguments.splice(1..2, new.iter().map(OsString::from));
@@ -184,7 +184,7 @@ fn run_completions(
 /// theta1 (front left), A2 = theta4 (front right), A3 = theta8 (back right), A4 =
 /// theta5 (back left).
 ///
-/// Exit codes: 0 done, 1 it could not be done, 2 the input is wrong.
+/// Exit codes: 0 success, 1 failure, 2 invalid input.
 #[derive(Parser)]
 #[command(name = "lizard", version, max_term_width = 100)]
 struct Cli {
@@ -192,10 +192,10 @@ struct Cli {
     command: Command,
 }
 
-/// The program's commands and options; the help lists the commands in groups.
+/// Returns the program's commands and options; the help lists the commands in groups.
 pub fn program() -> clap::Command {
     let addresses = list_addresses(env!("CARGO_PKG_HOMEPAGE"), env!("CARGO_PKG_REPOSITORY"));
-    groups::with_groups(Cli::command().after_help(addresses), KNOWN_COMMANDS)
+    groups::group_in_help(Cli::command().after_help(addresses), KNOWN_COMMANDS)
 }
 
 /// Lists the project's addresses that are not empty, one per line, for the end of the help.
@@ -203,7 +203,7 @@ fn list_addresses(page: &str, source: &str) -> String {
     let lines = [
         ("Page", page, ""),
         ("Source", source, ""),
-        ("Report a fault", source, "/issues"),
+        ("Report a bug", source, "/issues"),
     ];
     let present_lines = lines.iter().filter(|(_, address, _)| !address.is_empty());
     present_lines
@@ -229,7 +229,7 @@ pub fn run_and_report(arguments: Vec<OsString>) -> u8 {
         Ok(()) => 0,
         Err(failure) if failure.is_silent() => 0,
         Err(failure) => {
-            // The message may quote a file or a board. A closed terminal is no reason to panic.
+            // The message may quote a file or a board. A closed terminal must not cause a panic.
             let message = readable_lines(&failure.to_string());
             let _ = writeln!(io::stderr(), "lizard: {message}");
             failure.exit_code()
@@ -287,7 +287,7 @@ mod tests {
         }
 
         #[test]
-        fn docs_commands_md_names_exactly_the_commands_without_json() {
+        fn docs_list_exactly_the_commands_without_json() {
             let page = include_str!("../../../../docs/commands.md");
             let (_, list) = page
                 .split_once("`--json`, except ")
@@ -308,13 +308,13 @@ mod tests {
     }
 
     #[test]
-    fn a_renamed_command_leads_to_an_existing_one_and_a_removed_one_to_advice() {
+    fn old_commands_lead_to_an_existing_command_or_to_advice() {
         for (old, new) in RENAMED_COMMANDS {
             let [is_old_known, is_new_known] =
                 [old, new[0]].map(|word| KNOWN_COMMANDS.iter().any(|entry| entry.name() == word));
             assert_eq!((is_old_known, is_new_known), (false, true), "{new:?}");
         }
-        let arguments_of = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
+        let split_words = |line: &str| line.split(' ').map(OsString::from).collect::<Vec<_>>();
         for (old, new) in [
             (
                 "lizard velocity --omega1 5",
@@ -327,17 +327,17 @@ mod tests {
             ("lizard console solve", "lizard console solve"),
         ] {
             assert_eq!(
-                translate_old_arguments(arguments_of(old)).expect("the command was not removed"),
-                arguments_of(new)
+                translate_old_arguments(split_words(old)).expect("the command was not removed"),
+                split_words(new)
             );
         }
-        let error = translate_old_arguments(arguments_of("lizard spring --wire 0.6"))
+        let error = translate_old_arguments(split_words("lizard spring --wire 0.6"))
             .expect_err("the command was removed");
         assert!(error.to_string().contains("[leg.drive]"), "{error}");
     }
 
     #[test]
-    fn the_help_names_the_addresses_that_the_project_has() {
+    fn help_lists_only_addresses_that_are_not_empty() {
         assert_eq!(list_addresses("", ""), "");
         assert_eq!(
             list_addresses("https://p.example", ""),
@@ -345,12 +345,12 @@ mod tests {
         );
         assert_eq!(
             list_addresses("", "https://s.example/l"),
-            "Source: https://s.example/l\nReport a fault: https://s.example/l/issues\n"
+            "Source: https://s.example/l\nReport a bug: https://s.example/l/issues\n"
         );
     }
 
     #[test]
-    fn every_feature_that_a_command_needs_has_a_description() {
+    fn every_needed_feature_has_a_description() {
         for entry in KNOWN_COMMANDS {
             for feature in entry.needed_features {
                 assert_ne!(absent::describe_feature(feature), "", "{entry:?}");

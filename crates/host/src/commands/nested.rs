@@ -1,7 +1,7 @@
 //! Commands with subcommands, such as `lizard calibrate backup`.
 //!
-//! Related commands share one entry in the list of commands: `flash image` writes to a file what `flash` writes to
-//! a board, and `sim bench` measures the firmware that `sim` runs. The modules of the commands know nothing of this
+//! Related commands share one entry in the list of commands: `flash` uploads an image to a board and `flash image`
+//! saves it in a file; `sim bench` measures the firmware that `sim` runs. The commands' modules do not depend on this
 //! nesting.
 
 use clap::{Args, Subcommand};
@@ -16,7 +16,7 @@ use crate::{Failure, commands::completions};
 #[cfg(not(all(feature = "paper", feature = "simulator")))]
 use super::absent::AbsentCommand;
 
-// The types of this file have no documentation comments: clap would show them instead of those of the arguments. A
+// The types in this file have no doc comments because clap would show them instead of the arguments' comments. A
 // `WithSubcommand` is a command that runs either with its own arguments or with a subcommand.
 #[derive(Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]

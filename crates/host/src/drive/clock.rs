@@ -1,15 +1,15 @@
-//! A clock that does not advance while this program is suspended, and a time limit by that clock.
+//! A clock that stops while this program is suspended, and a time limit measured with that clock.
 //!
-//! A machine that sleeps or is too busy suspends this program. When it continues, a time limit by the machine's clock
-//! would be over, although the program could not read anything meanwhile.
+//! A machine that sleeps or is too busy suspends this program. With the machine's clock, a time limit would be over
+//! when the program continues, although the program could not read anything in the meantime.
 
 use std::time::{Duration, Instant};
 
-/// The longest time that counts between two readings of the machine's clock. A read of the port ends after some
-/// milliseconds, so a longer time means that the program was suspended.
-const LONGEST_STEP: Duration = Duration::from_millis(100);
+/// The longest time that counts between two readings of the machine's clock. A read from the port takes a few
+/// milliseconds; a longer time therefore means that the program was suspended.
+const MAX_STEP: Duration = Duration::from_millis(100);
 
-/// A clock that advances like the machine's, except during pauses of this program.
+/// A clock that advances like the machine's clock, except while this program is suspended.
 #[derive(Debug)]
 pub struct Clock {
     now: Instant,
@@ -17,8 +17,8 @@ pub struct Clock {
 }
 
 impl Clock {
-    /// Starts at the machine's time. [`Clock::now`] must be called after each read of the port, since at most
-    /// [`LONGEST_STEP`] counts between two calls.
+    /// Starts at the machine's time. [`Clock::now`] must be called after each read from the port, since at most
+    /// [`MAX_STEP`] counts between two calls.
     pub fn start() -> Self {
         let now = Instant::now();
         Self {
@@ -29,12 +29,12 @@ impl Clock {
 
     /// Returns the time, excluding pauses.
     pub fn now(&mut self) -> Instant {
-        self.now_at(Instant::now())
+        self.advance_to(Instant::now())
     }
 
-    fn now_at(&mut self, reading: Instant) -> Instant {
+    fn advance_to(&mut self, reading: Instant) -> Instant {
         let step = reading.saturating_duration_since(self.last_reading);
-        self.now += step.min(LONGEST_STEP);
+        self.now += step.min(MAX_STEP);
         self.last_reading = reading;
         self.now
     }
@@ -48,7 +48,7 @@ pub struct Deadline {
 }
 
 impl Deadline {
-    /// Starts a time limit. [`Deadline::has_passed`] must be called after each read of the port.
+    /// Starts a time limit. [`Deadline::has_passed`] must be called after each read from the port.
     pub fn after(duration: Duration) -> Self {
         let clock = Clock::start();
         let end = clock.now + duration;
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_longer_pause_counts_as_the_longest_step_only() {
+    fn pause_counts_as_at_most_the_longest_step() {
         let ms = Duration::from_millis;
         let mut clock = Clock::start();
         let start = clock.now;
@@ -74,7 +74,7 @@ mod tests {
             [(10, 10), (100, 100), (3000, 200), (3049, 249), (3050, 250)]
         {
             assert_eq!(
-                clock.now_at(start + ms(reading_ms)),
+                clock.advance_to(start + ms(reading_ms)),
                 start + ms(elapsed_ms),
                 "{reading_ms} ms"
             );
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn a_time_limit_passes_after_its_time() {
+    fn deadline_passes_after_its_duration() {
         let mut zero_deadline = Deadline::after(Duration::ZERO);
         assert!(zero_deadline.has_passed());
         let mut long_deadline = Deadline::after(Duration::from_secs(3600));

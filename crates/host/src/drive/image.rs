@@ -1,12 +1,11 @@
-//! `lizard flash image`: writes the firmware and a robot to a file, for any program that flashes boards.
+//! `lizard flash image`: writes the firmware and a robot to a file.
 //!
-//! `lizard flash` writes a robot to a board. A user with another programmer, or with the board
-//! attached to another machine, needs a file.
+//! `lizard flash` writes to a board. A user with another programmer, or with a board on another machine, needs a file.
 
 use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
-use lizard_core::numbers::section::SPACE_BYTES;
+use lizard_core::numbers::section::REGION_BYTES;
 use lizard_robot::RobotIdentity;
 use serde::Serialize;
 
@@ -16,14 +15,14 @@ use crate::{Failure, RobotFile};
 
 /// Write the firmware and your robot to an Intel HEX file, without a compiler
 ///
-/// The image is the firmware inside this program with the robot of robot.toml behind it, as `lizard
-/// flash` writes it. avrdude and other programs can write it, too.
+/// The image is the built-in firmware followed by the robot from robot.toml, as `lizard flash`
+/// writes it. avrdude and other programs can write it, too.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// The file for the image [default: standard output, unless that is a terminal]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Only the robot, for a board that has this firmware: avrdude -D leaves the rest as it is
+    /// Only the robot, for a board with this firmware; avrdude -D leaves the rest unchanged
     #[arg(long)]
     only_robot: bool,
     /// Print one JSON object about the file
@@ -33,16 +32,16 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// The description of an image file, with the field names of `--json`.
+/// The description of an image file; the field names are the JSON keys.
 #[derive(Serialize)]
 struct ImageFile {
     file: String,
-    /// The version of the firmware; null in a file with only the robot.
+    /// The firmware's version; null in a file with only the robot.
     firmware: Option<&'static str>,
     robot: RobotIdentity,
     /// The size of the robot's section, bytes.
     robot_bytes: usize,
-    /// The space in flash that is reserved for this section, bytes.
+    /// The flash space reserved for the robot's section, bytes.
     robot_space: u16,
 }
 
@@ -53,13 +52,14 @@ struct ImageFile {
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(
-            "an image is not for a terminal; --output lizard.hex writes it to a file".to_owned(),
+            "standard output is a terminal; write the image to a file with --output lizard.hex"
+                .to_owned(),
         ));
     }
     let robot = args.robot.load()?;
     let image = match args.only_robot {
-        true => file::robot_only_image(&robot)?,
-        false => file::image(&robot)?,
+        true => file::build_robot_image(&robot)?,
+        false => file::build_image(&robot)?,
     };
     let hex = image.to_hex();
     let Some(path) = args.output else {
@@ -69,21 +69,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let image_file = ImageFile {
         file: path.display().to_string(),
         firmware: (!args.only_robot).then_some(env!("CARGO_PKG_VERSION")),
-        robot: RobotIdentity::of(robot.firmware()),
+        robot: RobotIdentity::for_robot(robot.firmware()),
         robot_bytes: robot.section().len(),
-        robot_space: SPACE_BYTES,
+        robot_space: REGION_BYTES,
     };
-    json::print_json_or_text(args.json, &image_file, || image_file.text())
-}
-
-impl ImageFile {
-    fn text(&self) -> String {
-        let firmware_text = self
-            .firmware
-            .map_or(String::new(), |version| format!("lizard {version} "));
+    json::print_json_or_text(args.json, &image_file, || {
+        let firmware = image_file.firmware;
+        let firmware_text = firmware.map_or(String::new(), |version| format!("lizard {version} "));
         format!(
-            "{}: {firmware_text}robot {} {}; the robot has {} of {} bytes\n",
-            self.file, self.robot.name, self.robot.hash, self.robot_bytes, self.robot_space
+            "{}: {firmware_text}robot {} {}; the robot has {} of {REGION_BYTES} bytes\n",
+            image_file.file, image_file.robot.name, image_file.robot.hash, image_file.robot_bytes
         )
-    }
+    })
 }

@@ -1,4 +1,4 @@
-//! `lizard info ports`: the serial ports of this machine, and the boards that may be connected to them.
+//! `lizard info ports`: this machine's serial ports, and the boards that may be connected to them.
 
 use std::fmt::Write as _;
 
@@ -10,10 +10,10 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::plain::escape_controls;
 
-/// List the USB serial ports: which chip each has, and whether you may open it
+/// List the USB serial ports with their chips and your permissions
 ///
-/// Opens none of them, since that would reset the board. The chip says which board it may be:
-/// only `lizard info` asks the board itself.
+/// Opens none of the ports, because opening would reset the board. The chip indicates the kind
+/// of board; only `lizard info` reads from the board itself.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// Print one JSON array, empty if there is no port
@@ -21,7 +21,7 @@ pub struct Args {
     json: bool,
 }
 
-/// A serial port, with the field names of `--json`.
+/// A serial port; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 struct PortLine {
     port: String,
@@ -31,11 +31,11 @@ struct PortLine {
     product: String,
     /// The product name that the chip reports.
     name: Option<String>,
-    /// The kind of chip and of board, if known.
+    /// The kind of chip and board, if known.
     chip: Option<&'static str>,
     /// True if this user may open the port.
     may_open: bool,
-    /// Another program that has the port open, if the system shows it.
+    /// The program that has the port open, if the system shows it.
     open_in: Option<String>,
 }
 
@@ -44,7 +44,7 @@ impl PortLine {
         Self {
             vendor: format!("{:04x}", port.vendor_id),
             product: format!("{:04x}", port.product_id),
-            chip: chip_description([port.vendor_id, port.product_id]),
+            chip: describe_chip([port.vendor_id, port.product_id]),
             may_open: port::may_open(&port.name),
             open_in: port::find_holder(&port.name),
             name: port
@@ -55,17 +55,17 @@ impl PortLine {
     }
 }
 
-/// Returns the description of a chip by its USB vendor ID and product ID; `None` if the chip is not known.
-fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
+/// Describes a chip by its USB vendor ID and product ID; `None` if the chip is unknown.
+fn describe_chip(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
         [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => {
             "an Arduino UNO"
         }
-        [vendor, _] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but no UNO R3",
-        [0x1a86, 0x7523 | 0x5523] => "a CH340: a copy of a UNO or a Nano",
-        [0x1a86, _] => "a chip of WCH: a copy of a UNO or a Nano",
+        [vendor, _] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but not a UNO R3",
+        [0x1a86, 0x7523 | 0x5523] => "a CH340: a clone of a UNO or Nano",
+        [0x1a86, _] => "a WCH chip: a clone of a UNO or Nano",
         [0x0403, 0x6001 | 0x6015] => "an FTDI: an older Nano, or an adapter",
-        [0x10c4, 0xea60] => "a CP210x: an adapter, seldom a UNO",
+        [0x10c4, 0xea60] => "a CP210x: an adapter, rarely a UNO",
         _ => return None,
     })
 }
@@ -75,24 +75,24 @@ fn chip_description(ids: [u16; 2]) -> Option<&'static str> {
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let lines: Vec<PortLine> = find::usb_ports()
+    let lines: Vec<PortLine> = find::list_usb_ports()
         .into_iter()
         .map(PortLine::from_port)
         .collect();
-    json::print_json_or_text(args.json, &lines, || text(&lines))
+    json::print_json_or_text(args.json, &lines, || format_ports(&lines))
 }
 
-fn text(lines: &[PortLine]) -> String {
+fn format_ports(lines: &[PortLine]) -> String {
     if lines.is_empty() {
-        return "this machine has no USB serial port. Connect the UNO by a cable that carries data \
-                (some only charge). A virtual machine, a container or WSL sees it only after the \
-                port was passed to it. Without a board: lizard console --sim\n"
+        return "this machine has no USB serial port. Connect the UNO with a cable that carries data \
+                (some only charge). A virtual machine, a container or WSL needs the port passed \
+                through. Without a board: lizard console --sim\n"
             .to_owned();
     }
     let mut text = String::new();
     for line in lines {
         let name = line.name.as_deref().unwrap_or("no name");
-        let chip = line.chip.unwrap_or("a chip that no UNO has");
+        let chip = line.chip.unwrap_or("not the chip of a UNO");
         let PortLine {
             port,
             vendor,
@@ -104,7 +104,7 @@ fn text(lines: &[PortLine]) -> String {
             _ = write!(text, "; open in {program}");
         }
         if !line.may_open {
-            text += "; you may not open it";
+            text += "; no permission to open it";
         }
         text.push('\n');
     }
@@ -128,10 +128,10 @@ mod tests {
     }
 
     #[test]
-    fn a_port_is_listed_with_its_usb_ids_and_its_kind_of_board() {
+    fn list_shows_usb_ids_and_the_kind_of_board() {
         let uno = port_line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
-        let copy = port_line(0x1a86, 0x7523, None);
-        let output = text(&[uno, copy]);
+        let clone = port_line(0x1a86, 0x7523, None);
+        let output = format_ports(&[uno, clone]);
         let output: Vec<&str> = output.lines().collect();
         assert!(output[0].contains("Arduino Uno"), "{output:?}");
         assert!(
@@ -144,29 +144,29 @@ mod tests {
             "{output:?}"
         );
         assert!(
-            chip_description([0x0483, 0x5740]).is_none(),
-            "the chip of another maker"
+            describe_chip([0x0483, 0x5740]).is_none(),
+            "a chip of another maker"
         );
     }
 
     #[test]
-    fn a_forbidden_port_is_listed_with_the_remedy_and_the_program_that_has_it_open() {
+    fn list_shows_the_remedy_and_the_program_for_a_forbidden_port() {
         let mut forbidden_port = port_line(0x2341, 0x0043, None);
         forbidden_port.may_open = false;
         forbidden_port.open_in = Some("screen (process 7)".to_owned());
-        let output = text(&[forbidden_port]);
+        let output = format_ports(&[forbidden_port]);
         assert!(
-            output.contains("; open in screen (process 7); you may not open it\n"),
+            output.contains("; open in screen (process 7); no permission to open it\n"),
             "{output}"
         );
         assert!(output.contains("usermod -aG dialout"), "{output}");
         let mut free_port = port_line(0x2341, 0x0043, None);
         free_port.may_open = true;
-        assert!(!text(&[free_port]).contains("dialout"));
+        assert!(!format_ports(&[free_port]).contains("dialout"));
     }
 
     #[test]
-    fn without_a_port_the_message_says_what_to_do() {
-        assert!(text(&[]).contains("carries data") && text(&[]).contains("--sim"));
+    fn message_without_a_port_names_the_remedies() {
+        assert!(format_ports(&[]).contains("carries data") && format_ports(&[]).contains("--sim"));
     }
 }

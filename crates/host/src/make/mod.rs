@@ -1,5 +1,5 @@
-//! The commands for making the robot: drawings of it and of its wiring, its parts as files to print and to cut, the
-//! proof that they fit, and models of it for other programs.
+//! The commands for making the robot: drawings of the robot and its wiring, files of its parts for printing and
+//! cutting, the proof that the parts fit, and models for other programs.
 
 pub mod draw;
 #[cfg(feature = "parts")]

@@ -1,4 +1,4 @@
-//! `lizard measure keys`: identifies keys of robot.toml from the measured movements per cycle of gaits.
+//! `lizard measure keys`: identifies keys of robot.toml from measured movements of gaits.
 
 use std::path::{Path, PathBuf};
 
@@ -7,32 +7,33 @@ use lizard_robot::Robot;
 use rayon::prelude::*;
 use serde::Deserialize;
 
-use super::keys_report::{KeysReport, report_text};
+use super::keys_report::{KeysReport, format_report};
 use crate::shared::files;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Largest difference between a gait's cycle times in two robot.toml files that still count as the same robot, s.
+/// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
 const MAX_PERIOD_DIFFERENCE_S: f64 = 0.005;
 
-/// Find the keys of robot.toml with which the model goes as far as the robot did
+/// Identify keys of robot.toml from measured gaits
 ///
-/// Each FILE has what `lizard measure --json` printed, for one gait or more; walk, trot, crawl, back, left, right
-/// and the arcs tell most. Finds the play of the legs, their mounting, mass centre, a foot too long, and the friction,
-/// by least squares. A key that these gaits do not tell, or that is right within two standard errors, stays as it is.
-/// Writes a new robot.toml with a comment at each changed line, and prints the predictions before and after.
+/// Each FILE is the output of `lizard measure --json` for one or several gaits; walk, trot, crawl, back, left, right
+/// and the arcs contribute most. Finds the play of the legs, their mounting, the centre of mass, a foot that is too
+/// long, and the friction, by least squares. A key stays unchanged if these gaits do not determine it, or if it is
+/// right within two standard errors. Writes a new robot.toml with a comment at each changed line, and prints the
+/// predictions before and after.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
-  lizard measure film.mp4 --json > film.json
-  lizard measure keys film.json --output measured.toml
+  lizard measure video.mp4 --json > video.json
+  lizard measure keys video.json --output measured.toml
   lizard gaits --robot measured.toml
   lizard tune --robot measured.toml")]
 pub struct KeysArgs {
-    /// Files with what `lizard measure --json` printed
+    /// Files with the output of `lizard measure --json`
     #[arg(value_name = "FILE", required = true)]
-    files: Vec<PathBuf>,
-    /// The file for the new robot.toml
+    paths: Vec<PathBuf>,
+    /// Output file for the new robot.toml
     #[arg(long, short, value_name = "FILE", default_value = "out/measured.toml")]
     output: PathBuf,
     /// Print one JSON object
@@ -42,7 +43,7 @@ pub struct KeysArgs {
     robot: RobotFile,
 }
 
-/// The fields of the output of `lizard measure --json` that identification needs.
+/// The output of `lizard measure --json`, with only the fields that identification needs.
 #[derive(Deserialize)]
 struct MeasureOutput {
     gaits: Vec<MeasuredGait>,
@@ -52,10 +53,12 @@ struct MeasureOutput {
 #[derive(Deserialize)]
 struct MeasuredGait {
     gait: String,
-    /// Speed, percent.
-    speed: f64,
-    /// Cycle time in the robot.toml with which the gait was measured, s; `None` if that file does not have the gait.
-    period_expected: Option<f64>,
+    /// Pace, percent.
+    #[serde(rename = "speed")]
+    pace_percent: f64,
+    /// Cycle time in the robot.toml of the measurement, s; `None` if that file does not have the gait.
+    #[serde(rename = "period_expected")]
+    expected_period: Option<f64>,
     forward: Component,
     left: Component,
     turn: Component,
@@ -71,67 +74,67 @@ struct Component {
 /// Finds the keys, prints them, and writes the new robot.toml.
 ///
 /// # Errors
-/// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, or if the
-/// output would replace an input or a robot, or cannot be written.
+/// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, if the output
+/// would replace an input or a robot, or if it cannot be written.
 pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
     let robot = args.robot.load()?;
     let mut movements = Vec::new();
-    for file in &args.files {
-        movements.append(&mut read_movements(file, &robot)?);
+    for path in &args.paths {
+        movements.append(&mut read_movements(path, &robot)?);
     }
     files::check_replaceable(&args.output)?;
     let spinner = Spinner::new("simulating the gaits");
-    let failure_of = |error: IdentifyError| Failure::Input(error.to_string());
+    let to_failure = |error: IdentifyError| Failure::Input(error.to_string());
     let identified = identify(&robot, &movements, &|count, walk| {
         (0..count).into_par_iter().map(walk).collect()
     })
-    .map_err(failure_of)?;
+    .map_err(to_failure)?;
     drop(spinner);
     let has_changes = identified.changed_keys().next().is_some();
     if has_changes {
         let new_text = identified
             .updated_robot_toml(&old_text)
-            .map_err(failure_of)?;
+            .map_err(to_failure)?;
         files::write(&args.output, new_text.as_bytes())?;
     }
-    let written_path = has_changes.then_some(args.output.as_path());
-    let report = KeysReport::new(&identified, written_path);
+    let output_path = has_changes.then_some(args.output.as_path());
+    let report = KeysReport::new(&identified, output_path);
     json::print_json_or_text(args.json, &report, || {
-        report_text(&identified, written_path)
+        format_report(&identified, output_path)
     })
 }
 
 /// Reads the measured gaits of a file.
 fn read_movements(path: &Path, robot: &Robot) -> Result<Vec<MeasuredMovement>, Failure> {
-    let failure_of = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
+    let to_failure = |problem: String| Failure::Input(format!("{}: {problem}", path.display()));
     let output: MeasureOutput =
         serde_json::from_str(&files::read_text(path)?).map_err(|error| {
-            failure_of(format!(
-                "this is not what `lizard measure --json` prints: {error}"
+            to_failure(format!(
+                "expected the output of `lizard measure --json`: {error}"
             ))
         })?;
     let movements = output
         .gaits
         .iter()
-        .map(|measured| measured_movement(measured, robot));
-    movements.collect::<Result<_, _>>().map_err(failure_of)
+        .map(|measured| to_movement(measured, robot));
+    movements.collect::<Result<_, _>>().map_err(to_failure)
 }
 
-/// The movement per cycle of a measured gait.
+/// Converts a measured gait to its movement per cycle.
 ///
 /// # Errors
-/// Fails if the gait was measured with a robot.toml that gives it another cycle time.
-fn measured_movement(measured: &MeasuredGait, robot: &Robot) -> Result<MeasuredMovement, String> {
-    let MeasuredGait { gait, speed, .. } = measured;
-    let pace = speed / 100.0;
+/// Fails if the gait was measured with a robot.toml in which it has another cycle time.
+fn to_movement(measured: &MeasuredGait, robot: &Robot) -> Result<MeasuredMovement, String> {
+    let gait = &measured.gait;
+    let pace = measured.pace_percent / 100.0;
     let robot_period = robot.gait(gait).map(|gait| gait.period() / pace);
-    if let (Some(robot_period), Some(measurement_period)) = (robot_period, measured.period_expected)
+    if let (Some(robot_period), Some(measurement_period)) = (robot_period, measured.expected_period)
         && (robot_period - measurement_period).abs() > MAX_PERIOD_DIFFERENCE_S
     {
         return Err(format!(
-            "a cycle of `{gait}` takes {robot_period:.2} s by this robot.toml, but took {measurement_period:.2} s by that of the measurement; \
-             give the same one with --robot"
+            "a cycle of `{gait}` takes {robot_period:.2} s in this robot.toml, but {measurement_period:.2} s in \
+             the robot.toml of the measurement: give the same file with --robot"
         ));
     }
     let components = [&measured.forward, &measured.left, &measured.turn];

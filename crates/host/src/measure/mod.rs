@@ -1,19 +1,19 @@
-//! Measurements of the real robot in films: the movement per cycle of gaits, the keys of robot.toml identified from
-//! such movements, a servo in a jig, and friction on a slope; and the sheet of tags that the films must show.
+//! Measurements of the real robot in videos: displacements per cycle, the resulting keys of robot.toml, a servo in a
+//! jig, and friction on a slope. Also writes the sheet of tags that the videos must show.
 
 mod command;
-mod figures;
-mod film;
-mod filming;
+mod ffmpeg;
 mod frames;
 mod keys;
 mod keys_report;
+mod measured_key;
 mod picture;
+mod recording;
 mod servo;
 mod sheet;
 mod slope;
 mod steps;
-mod through_ffmpeg;
+mod video;
 
 pub use command::{Args, run};
 pub use keys::{KeysArgs, find_keys};

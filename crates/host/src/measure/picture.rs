@@ -1,10 +1,10 @@
-//! A picture to share: the path within a cycle and the distances per cycle of each gait, measured beside predicted.
+//! Draws a picture to share: the measured and the predicted path within a cycle, and the displacements per cycle.
 
 use lizard_measure::{COMPONENT_NAMES, GaitReport, Report};
 use svg::node::element::Group;
 
 use crate::shared::ink::{
-    Anchor, GREY, SERVO_COLOURS, add_title, circle, line, outlined, rectangle, svg_page, text,
+    Anchor, GREY, SERVO_COLOURS, add_outline, add_title, circle, line, rectangle, render_svg, text,
     text_middle, text_start,
 };
 use crate::shared::plot::{Axis, Plot, draw_legend_entry};
@@ -38,7 +38,7 @@ pub(super) fn draw(report: &Report) -> String {
         Group::new(),
         PATH_X,
         "The robot measured",
-        "mean of a cycle in a film, with twice its standard error, beside the prediction",
+        "mean of a cycle in a video, with two standard errors, and the prediction",
     );
     group = draw_legend_entry(group, (PATH_X, 92.0), MEASURED_COLOUR, "none", "measured");
     group = draw_legend_entry(
@@ -51,7 +51,7 @@ pub(super) fn draw(report: &Report) -> String {
     for (row, gait) in report.gaits.iter().enumerate() {
         group = draw_gait(group, gait, TITLE_HEIGHT + ROW_HEIGHT * row as f64);
     }
-    svg_page(
+    render_svg(
         (
             PAGE_WIDTH,
             TITLE_HEIGHT + ROW_HEIGHT * report.gaits.len() as f64,
@@ -60,10 +60,11 @@ pub(super) fn draw(report: &Report) -> String {
     )
 }
 
-/// Draws the row of a gait with its upper edge at y = `top`.
+/// Draws a gait's row with its upper edge at `top`.
 fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
-    let name = format!("{}, {} cycles", gait.gait, gait.cycles);
-    let group = group.add(text_start(&name, (PATH_X, top + 35.0), 18.0).set("font-weight", "bold"));
+    let title = format!("{}, {} cycles", gait.name, gait.cycle_count);
+    let group =
+        group.add(text_start(&title, (PATH_X, top + 35.0), 18.0).set("font-weight", "bold"));
     let group = draw_path(group, gait, top + 55.0);
     draw_bars(group, gait, top + 55.0)
 }
@@ -73,23 +74,24 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted: Vec<(f64, f64)> = gait
         .predicted_path
         .iter()
-        .map(|position| (position.forward, position.left))
+        .map(|place| (place.forward, place.left))
         .collect();
     let mut points: Vec<(f64, f64)> = gait
-        .within
+        .mean_path
         .iter()
         .map(|point| (point.forward.mean, point.left.mean))
         .collect();
     points.insert(0, (0.0, 0.0));
     points.push((gait.forward.mean, gait.left.mean));
-    let range_of = |component: fn(&(f64, f64)) -> f64| {
+    let find_range = |component: fn(&(f64, f64)) -> f64| {
         let values = predicted.iter().chain(&points).map(component);
         values.fold([0.0f64; 2], |[low, high], value| {
             [low.min(value), high.max(value)]
         })
     };
-    let ([min_x, max_x], [min_y, max_y]) = (range_of(|point| point.0), range_of(|point| point.1));
-    // The same scale in both directions, mm per pixel, with a margin.
+    let ([min_x, max_x], [min_y, max_y]) =
+        (find_range(|point| point.0), find_range(|point| point.1));
+    // Both directions have the same scale, mm per pixel, with a margin.
     let scale = ((max_x - min_x) / PATH_WIDTH)
         .max((max_y - min_y) / PANEL_HEIGHT)
         .max(1e-3)
@@ -107,7 +109,7 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         x_range: axis_range(min_x, max_x, PATH_WIDTH),
         y_range: axis_range(min_y, max_y, PANEL_HEIGHT),
     };
-    let tick_step = tick_step(scale * PATH_WIDTH);
+    let tick_step = find_tick_step(scale * PATH_WIDTH);
     let (ahead, left) = (
         Axis::new(tick_step, "ahead, mm"),
         Axis::new(tick_step, "left, mm"),
@@ -116,30 +118,34 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let mut group =
         plot.draw_axes(group, &ahead, &left)
             .add(plot.curve(&predicted, PREDICTED_COLOUR, 2.0));
-    for point in &gait.within {
+    for point in &gait.mean_path {
         let (x, y) = (point.forward.mean, point.left.mean);
         let [error_x, error_y] = [&point.forward, &point.left]
-            .map(|component| ERROR_BAR_STANDARD_ERRORS * component.error);
+            .map(|component| ERROR_BAR_STANDARD_ERRORS * component.standard_error);
         group = group
             .add(line(
-                plot.page_point(x - error_x, y),
-                plot.page_point(x + error_x, y),
+                plot.to_page_point(x - error_x, y),
+                plot.to_page_point(x + error_x, y),
                 MEASURED_COLOUR,
                 1.0,
             ))
             .add(line(
-                plot.page_point(x, y - error_y),
-                plot.page_point(x, y + error_y),
+                plot.to_page_point(x, y - error_y),
+                plot.to_page_point(x, y + error_y),
                 MEASURED_COLOUR,
                 1.0,
             ));
     }
     group = group.add(plot.curve(&points, MEASURED_COLOUR, 2.0));
-    let (start, last_point) = (plot.page_point(0.0, 0.0), points[points.len() - 1]);
+    let (start, last_point) = (plot.to_page_point(0.0, 0.0), points[points.len() - 1]);
     group
-        .add(outlined(circle(start, 5.0, "white"), MEASURED_COLOUR, 2.0))
+        .add(add_outline(
+            circle(start, 5.0, "white"),
+            MEASURED_COLOUR,
+            2.0,
+        ))
         .add(circle(
-            plot.page_point(last_point.0, last_point.1),
+            plot.to_page_point(last_point.0, last_point.1),
             5.0,
             MEASURED_COLOUR,
         ))
@@ -150,8 +156,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
     let components = gait.components();
     let ends = components.iter().flat_map(|component| {
         let error_ends = [
-            component.mean - ERROR_BAR_STANDARD_ERRORS * component.error,
-            component.mean + ERROR_BAR_STANDARD_ERRORS * component.error,
+            component.mean - ERROR_BAR_STANDARD_ERRORS * component.standard_error,
+            component.mean + ERROR_BAR_STANDARD_ERRORS * component.standard_error,
         ];
         error_ends.into_iter().chain(component.predicted)
     });
@@ -165,16 +171,16 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         x_range: (0.5, 0.5 + components.len() as f64),
         y_range: (low - margin, high + margin),
     };
-    // The tick step is longer than the axis, so no ticks are drawn; the names of the bars are below the axis.
+    // The tick step is longer than the axis, so no ticks are drawn. The names of the bars are below the axis.
     let name_axis = Axis::new(10.0, "");
-    let value_axis = Axis::new(tick_step(high - low + 2.0 * margin), "");
+    let value_axis = Axis::new(find_tick_step(high - low + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &name_axis, &value_axis);
     for (i, component) in components.into_iter().enumerate() {
-        // Each component has a slot of width 1, with the measured bar to the left of the predicted one.
+        // Each component has a slot of width 1, with the measured bar on the left and the predicted bar on the right.
         let slot_x = 0.5 + i as f64;
         let draw_bar = |offset: f64, value: f64, colour: &str| {
-            let (left, top) = plot.page_point(slot_x + offset, value.max(0.0));
-            let (right, bottom) = plot.page_point(slot_x + offset + 0.28, value.min(0.0));
+            let (left, top) = plot.to_page_point(slot_x + offset, value.max(0.0));
+            let (right, bottom) = plot.to_page_point(slot_x + offset + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
         group = group.add(draw_bar(0.2, component.mean, MEASURED_COLOUR));
@@ -182,30 +188,30 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             group = group.add(draw_bar(0.52, predicted, PREDICTED_COLOUR).set("fill-opacity", 0.6));
         }
         let [low, high] = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
-            .map(|errors| component.mean + errors * component.error);
+            .map(|errors| component.mean + errors * component.standard_error);
         let x = slot_x + 0.34;
         group = group.add(line(
-            plot.page_point(x, low),
-            plot.page_point(x, high),
+            plot.to_page_point(x, low),
+            plot.to_page_point(x, high),
             "black",
             1.5,
         ));
         for end in [low, high] {
             group = group.add(line(
-                plot.page_point(x - 0.05, end),
-                plot.page_point(x + 0.05, end),
+                plot.to_page_point(x - 0.05, end),
+                plot.to_page_point(x + 0.05, end),
                 "black",
                 1.5,
             ));
         }
         let point_below = |lines: f64| {
-            let (x, y) = plot.page_point(slot_x + 0.5, plot.y_range.0);
+            let (x, y) = plot.to_page_point(slot_x + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group
             .add(text_middle(COMPONENT_NAMES[i], point_below(0.0), 15.0))
             .add(text(
-                &component.verdict(),
+                &component.format_verdict(),
                 point_below(1.0),
                 13.0,
                 GREY,
@@ -213,8 +219,8 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             ));
     }
     group = group.add(line(
-        plot.page_point(plot.x_range.0, 0.0),
-        plot.page_point(plot.x_range.1, 0.0),
+        plot.to_page_point(plot.x_range.0, 0.0),
+        plot.to_page_point(plot.x_range.1, 0.0),
         "black",
         1.0,
     ));
@@ -222,7 +228,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
 }
 
 /// Returns the distance between ticks that divides `range` into 4 to 10 steps: 1, 2 or 5 times a power of ten.
-fn tick_step(range: f64) -> f64 {
+fn find_tick_step(range: f64) -> f64 {
     let max_step = range / 4.0;
     let power = 10f64.powf(max_step.log10().floor());
     let factor = [5.0, 2.0]

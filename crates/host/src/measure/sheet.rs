@@ -1,4 +1,4 @@
-//! `lizard measure sheet`: the sheet of tags, to be printed at actual size.
+//! `lizard measure sheet`: writes the sheet of tags, which is printed at actual size.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ enum PaperName {
 /// Write the sheet of tags to print for `lizard measure`, as PDF
 ///
 /// One page, at actual size: two strips for the floor, a card for the robot's deck, instructions for laying and
-/// gluing them, and a line of 100 mm that shows whether the printer kept the size.
+/// gluing them, and a line of 100 mm that shows the scale of the printout.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure sheet --paper letter")]
@@ -29,7 +29,7 @@ pub struct SheetArgs {
     /// The paper in the printer
     #[arg(long, value_enum, default_value_t)]
     paper: PaperName,
-    /// The file for the sheet
+    /// Output file for the sheet
     #[arg(long, short, value_name = "FILE", default_value = "out/sheet.pdf")]
     output: PathBuf,
 }
@@ -43,7 +43,7 @@ pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
         PaperName::A4 => Paper::A4,
         PaperName::Letter => Paper::Letter,
     };
-    files::write(&args.output, &paper.tag_sheet_pdf())?;
+    files::write(&args.output, &paper.draw_tag_sheet())?;
     let file = args.output.display();
     writeln!(
         io::stdout(),

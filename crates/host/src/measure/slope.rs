@@ -3,36 +3,37 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use lizard_film::{Figure, Slide};
-use lizard_measure::{NamedFilm, board_height};
+use lizard_measure::{NamedVideo, board_height};
 use lizard_robot::Robot;
+use lizard_video::{Estimate, MeasuredSlide};
 use serde::Serialize;
 
-use super::figures::{self, MeasuredKey};
-use super::film::film_failure;
-use super::filming::{Filming, parse_height};
+use super::measured_key::{self, MeasuredKey};
+use super::recording::{Recording, parse_height};
+use super::video::video_failure;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
 use crate::{Failure, RobotFile};
 
-/// Measure in films of a tilted board the friction of the robot's pads, for robot.toml
+/// Measure the friction of the robot's pads in videos of a tilted board, for robot.toml
 ///
-/// Each FILM shows the robot on a board between the two strips, from a camera that stands still. It begins with the
-/// board level; then one end is lifted slowly until the robot slides. Prints the friction of sliding pads with its
-/// standard error, and static friction beside it. Films with the head downhill give friction forward, with the head
-/// uphill backward.
+/// Each VIDEO shows the robot on a board between the two strips, from a camera that stands still. The board is level at
+/// the start; then one end is lifted slowly until the robot slides. Prints sliding and static friction with their
+/// standard errors. Videos with the head downhill give the friction forward, videos with the head uphill the friction
+/// backward.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure slope downhill.mp4 uphill.mp4")]
 pub struct SlopeArgs {
-    /// Folders of pictures (PNG or JPEG), or films
-    #[arg(value_name = "FILM", required = true)]
-    films: Vec<PathBuf>,
-    /// Height of the deck's tag above the strips, mm [default: the top of the board, by the robot's parts]
+    /// Videos, or folders of frames (PNG or JPEG)
+    #[arg(value_name = "VIDEO", required = true)]
+    videos: Vec<PathBuf>,
+    /// Height of the deck's tag above the strips, mm [default: the top of the UNO board, computed from the robot's
+    /// parts]
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[command(flatten)]
-    filming: Filming,
+    recording: Recording,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -40,80 +41,83 @@ pub struct SlopeArgs {
     robot: RobotFile,
 }
 
-/// The result, with the field names of `--json`.
+/// The result, as `--json` prints it.
 #[derive(Serialize)]
 struct Report {
-    films: Vec<SlideLine>,
-    figures: Vec<MeasuredKey>,
+    #[serde(rename = "videos")]
+    slides: Vec<SlideReport>,
+    #[serde(rename = "figures")]
+    keys: Vec<MeasuredKey>,
 }
 
-/// The slide in a film. Pairs are a value and its standard error.
+/// The slide in a video. Pairs are a value and its standard error.
 #[derive(Serialize)]
-struct SlideLine {
-    film: String,
+struct SlideReport {
+    video: String,
     is_head_first: bool,
     /// Tilt at which the slide begins, deg.
     tilt: [f64; 2],
-    /// Coefficient of static friction.
-    resting: [f64; 2],
-    /// Coefficient of sliding friction.
-    sliding: [f64; 2],
+    #[serde(rename = "resting")]
+    static_friction: [f64; 2],
+    #[serde(rename = "sliding")]
+    sliding_friction: [f64; 2],
 }
 
 /// Measures slides and prints the result.
 ///
 /// # Errors
-/// Fails for a film that cannot be read or shows no slide.
+/// Fails if a video cannot be read or shows no slide.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let height = args.height.unwrap_or_else(|| board_height(&robot));
-    let setup = args.filming.setup(height);
-    let spinner = Spinner::new("reading the pictures");
-    let slide_of = |path: &PathBuf| {
-        let NamedFilm { name, analysis } = args.filming.analyse(path, setup)?;
-        let slide = Slide::of(&analysis).map_err(|error| film_failure(&name, &error))?;
+    let setup = args.recording.setup(height);
+    let spinner = Spinner::new("reading the frames");
+    let measure_slide = |path: &PathBuf| {
+        let NamedVideo { name, analysis } = args.recording.analyse(path, setup)?;
+        let slide =
+            MeasuredSlide::from_video(&analysis).map_err(|error| video_failure(&name, &error))?;
         Ok((name, slide))
     };
-    let slides: Vec<(String, Slide)> = args
-        .films
+    let slides: Vec<(String, MeasuredSlide)> = args
+        .videos
         .iter()
-        .map(slide_of)
+        .map(measure_slide)
         .collect::<Result<_, Failure>>()?;
     drop(spinner);
     let report = Report::new(&robot, &slides);
-    json::print_json_or_text(args.json, &report, || report.text())
+    json::print_json_or_text(args.json, &report, || report.format_text())
 }
 
-/// Averages figures that share a systematic error, such as that of the level board; `None` if `figures` is empty.
-fn mean_figure(figures: &[Figure]) -> Option<Figure> {
-    let count = figures.len() as f64;
-    let mean_of =
-        |value_of: &dyn Fn(&Figure) -> f64| figures.iter().map(value_of).sum::<f64>() / count;
-    let value = mean_of(&|figure| figure.value);
-    let variance = mean_of(&|figure| (figure.value - value).powi(2)) / (count - 1.0).max(1.0);
-    (!figures.is_empty()).then(|| Figure {
+/// Averages estimates that have a systematic error in common, such as the error of the level board; `None` if
+/// `estimates` is empty.
+fn average(estimates: &[Estimate]) -> Option<Estimate> {
+    let count = estimates.len() as f64;
+    let mean = |value: &dyn Fn(&Estimate) -> f64| estimates.iter().map(value).sum::<f64>() / count;
+    let value = mean(&|estimate| estimate.value);
+    let variance = mean(&|estimate| (estimate.value - value).powi(2)) / (count - 1.0).max(1.0);
+    (!estimates.is_empty()).then(|| Estimate {
         value,
-        error: mean_of(&|figure| figure.error).hypot(variance.sqrt()),
+        standard_error: mean(&|estimate| estimate.standard_error).hypot(variance.sqrt()),
     })
 }
 
 impl Report {
-    fn new(robot: &Robot, slides: &[(String, Slide)]) -> Self {
-        let friction_of = |is_head_first: bool| {
+    fn new(robot: &Robot, slides: &[(String, MeasuredSlide)]) -> Self {
+        let average_friction = |is_head_first: bool| {
             let slides = slides
                 .iter()
                 .filter(|(_, slide)| slide.is_head_first == is_head_first);
-            mean_figure(
+            average(
                 &slides
                     .map(|(_, slide)| slide.sliding_friction)
                     .collect::<Vec<_>>(),
             )
         };
-        let (forward, backward) = (friction_of(true), friction_of(false));
-        let mut figures = Vec::new();
+        let (forward, backward) = (average_friction(true), average_friction(false));
+        let mut keys = Vec::new();
         let ground = robot.ground();
         if let Some(forward) = forward {
-            figures.push(MeasuredKey::new(
+            keys.push(MeasuredKey::new(
                 "ground",
                 "friction",
                 3,
@@ -122,62 +126,61 @@ impl Report {
             ));
             if let Some(backward) = backward {
                 let value = backward.value / forward.value;
-                let relative_error =
-                    (backward.error / backward.value).hypot(forward.error / forward.value);
-                let ratio = Figure {
+                let [backward_error, forward_error] =
+                    [backward, forward].map(|friction| friction.standard_error / friction.value);
+                let ratio = Estimate {
                     value,
-                    error: value * relative_error,
+                    standard_error: value * backward_error.hypot(forward_error),
                 };
-                let key = "friction_back_over_forward";
-                figures.push(MeasuredKey::new(
+                keys.push(MeasuredKey::new(
                     "ground",
-                    key,
+                    "friction_back_over_forward",
                     3,
                     ratio,
                     ground.friction_ratio,
                 ));
             }
         }
-        let value_and_error = |figure: Figure| [figure.value, figure.error];
-        let line_of = |(film, slide): &(String, Slide)| SlideLine {
-            film: film.clone(),
+        let value_and_error = |estimate: Estimate| [estimate.value, estimate.standard_error];
+        let to_report = |(video, slide): &(String, MeasuredSlide)| SlideReport {
+            video: video.clone(),
             is_head_first: slide.is_head_first,
             tilt: value_and_error(slide.tilt),
-            resting: value_and_error(slide.static_friction),
-            sliding: value_and_error(slide.sliding_friction),
+            static_friction: value_and_error(slide.static_friction),
+            sliding_friction: value_and_error(slide.sliding_friction),
         };
         Self {
-            films: slides.iter().map(line_of).collect(),
-            figures,
+            slides: slides.iter().map(to_report).collect(),
+            keys,
         }
     }
 
-    fn text(&self) -> String {
+    fn format_text(&self) -> String {
         let mut text =
-            "slides first  begins at, deg   static friction  sliding friction\n".to_owned();
-        for line in &self.films {
-            let end_name = if line.is_head_first { "head" } else { "tail" };
+            "slides first  tilt, deg        static friction  sliding friction\n".to_owned();
+        for slide in &self.slides {
+            let end_name = if slide.is_head_first { "head" } else { "tail" };
             let format_pair = |[value, error]: [f64; 2], digits: usize| {
-                format!("{value:.digits$} to {error:.digits$}")
+                format!("{value:.digits$} +- {error:.digits$}")
             };
             let _ = writeln!(
                 text,
                 "{end_name:<14}{:<17}{:<17}{:<18}{}",
-                format_pair(line.tilt, 1),
-                format_pair(line.resting, 3),
-                format_pair(line.sliding, 3),
-                line.film
+                format_pair(slide.tilt, 1),
+                format_pair(slide.static_friction, 3),
+                format_pair(slide.sliding_friction, 3),
+                slide.video
             );
         }
-        if self.figures.is_empty() {
+        if self.keys.is_empty() {
             return text
-                + "\nfriction in robot.toml is that of pads which slide head first: film the robot with its head \
-                   downhill, too\n";
+                + "\nNot measured: friction (needs a video of a slide with the head downhill).\n";
         }
-        let table = figures::table_text(&self.figures);
-        let _ = write!(text, "\n{table}\n{}", figures::toml_lines(&self.figures));
-        if self.figures.len() == 1 {
-            text += "A film with the head uphill gives friction_back_over_forward.\n";
+        let table = measured_key::format_table(&self.keys);
+        let toml_lines = measured_key::format_toml_lines(&self.keys);
+        let _ = write!(text, "\n{table}\n{toml_lines}");
+        if self.keys.len() == 1 {
+            text += "Not measured: friction_back_over_forward (needs a video of a slide with the head uphill).\n";
         }
         text
     }

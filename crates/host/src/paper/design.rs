@@ -14,20 +14,20 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::pose_args::Quantity;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
-/// Number of rings on which the inscribed circle of a single design is sampled.
+/// Number of sampling rings in the inscribed circle of a single design.
 const FINE_RING_COUNT: usize = 128;
-/// Number of rings on which the inscribed circles of many designs are sampled.
+/// Number of sampling rings in the inscribed circles of many designs.
 pub const COARSE_RING_COUNT: usize = 32;
 
-/// Dimensional synthesis of the head and tail five-bar.
+/// Dimensional synthesis of the head and tail five-bar
 ///
-/// From non-dimensional links r1, r2, r3 (crank, coupler, half base; they add up
-/// to 0.9) and the base l0: workspace, maximal inscribed circle (MIC), local
-/// conditioning index (LCI) over it, dimensional factor D and link table. Without
-/// options these are the paper's.
+/// Takes the non-dimensional links r1, r2, r3 (crank, coupler, half base; their sum is
+/// 0.9) and the base l0; the defaults are the paper's values. Prints the workspace, the
+/// maximal inscribed circle (MIC), the local conditioning index (LCI) in the circle, the
+/// dimensional factor D and the link table.
 #[derive(clap::Args, Serialize, Deserialize)]
 #[command(
     allow_negative_numbers = true,
@@ -41,7 +41,7 @@ pub struct Args {
     /// Distance between the two servo shafts, mm [default: 20]
     #[arg(long, value_name = "MM", value_parser = parse_base)]
     l0: Option<f64>,
-    /// Crank; give two or three of r1, r2, r3 [default: 0.3]
+    /// Crank; two or three of r1, r2, r3 are required [default: 0.3]
     #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r1: Option<f64>,
     /// Coupler [default: 0.5]
@@ -50,17 +50,17 @@ pub struct Args {
     /// Half the base [default: 0.1]
     #[arg(long, value_parser = Quantity::PROPORTION.parser())]
     r3: Option<f64>,
-    /// Print the performance charts over the complete triangle, as CSV
+    /// Print the performance charts over the whole design space, as CSV
     #[arg(long, conflicts_with = "search")]
     chart: bool,
-    /// Rank all designs that keep the servos' travel and the margins
+    /// Rank all designs that keep the servo travel and the margins
     #[arg(long)]
     search: bool,
-    /// Step of the grid of --chart and --search
-    #[arg(long, default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, "0.002 to 0.2"))]
+    /// Grid step of --chart and --search
+    #[arg(long, default_value_t = 0.02, value_parser = range_parser(0.002, 0.2, ""))]
     step: f64,
-    /// Sweep that --search requires of every servo, degrees to either side
-    #[arg(long, default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, "1 to 60 degrees"))]
+    /// Sweep of every servo that --search requires, degrees to either side
+    #[arg(long, default_value_t = 20.0, value_parser = range_parser(1.0, 60.0, " degrees"))]
     sweep: f64,
     /// Shortest link that --search allows, mm; two M3 joints need about this length
     #[arg(long, default_value_t = 20.0, value_name = "MM", value_parser = Quantity::LENGTH.parser())]
@@ -84,21 +84,21 @@ impl Spreadable for Args {
     }
 }
 
-/// Returns a parser for numbers from `min` to `max`. `range` is the range in words, for the error message.
+/// Returns a parser for numbers between `min` and `max`; `unit` is for the error message.
 fn range_parser(
     min: f64,
     max: f64,
-    range: &'static str,
+    unit: &'static str,
 ) -> impl Fn(&str) -> Result<f64, String> + Clone {
     move |text| match text.parse::<f64>() {
         Ok(value) if (min..=max).contains(&value) => Ok(value),
-        _ => Err(format!("it must be {range}")),
+        _ => Err(format!("must be between {min} and {max}{unit}")),
     }
 }
 
 fn parse_base(text: &str) -> Result<f64, String> {
     match Quantity::LENGTH.parser()(text) {
-        Ok(l0) if l0 < 0.001 => Err("it must be at least 0.001 mm".to_string()),
+        Ok(l0) if l0 < 0.001 => Err("must be at least 0.001 mm".to_string()),
         result => result,
     }
 }
@@ -110,11 +110,9 @@ fn parse_base(text: &str) -> Result<f64, String> {
 /// that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.spread.part().is_some() && !args.search {
-        return Err(Failure::Input(
-            "--part goes with --search, which alone takes long".to_owned(),
-        ));
+        return Err(Failure::Input("--part requires --search".to_owned()));
     }
-    let proportions = args.proportions().map_err(Failure::Input)?;
+    let proportions = args.complete_proportions().map_err(Failure::Input)?;
     let l0 = args.l0.unwrap_or(20.0);
     let robot = args.spread.robot.load()?;
     let mut out = BufWriter::new(io::stdout().lock());
@@ -134,19 +132,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    fn proportions(&self) -> Result<Proportions, String> {
+    fn complete_proportions(&self) -> Result<Proportions, String> {
         match (self.r1, self.r2, self.r3) {
             (None, None, None) => Ok(Proportions::PAPER),
             (Some(r1), Some(r2), Some(r3)) => Proportions::new(r1, r2, r3),
             (Some(r1), Some(r2), None) => Proportions::new(r1, r2, PROPORTION_SUM - r1 - r2),
             (Some(r1), None, Some(r3)) => Proportions::new(r1, PROPORTION_SUM - r1 - r3, r3),
             (None, Some(r2), Some(r3)) => Proportions::new(PROPORTION_SUM - r2 - r3, r2, r3),
-            _ => Err("give two or three of --r1, --r2, --r3".to_string()),
+            _ => Err("two or three of --r1, --r2, --r3 are required".to_string()),
         }
     }
 }
 
-/// The report on one design; lengths in mm.
+/// The report on one design, with lengths in mm; the field names are the JSON keys.
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
@@ -170,7 +168,7 @@ impl Report {
             l0: five_bar.base,
             l1: five_bar.left_crank_length,
             l2: five_bar.left_coupler_length,
-            performance: Performance::of(&five_bar, FINE_RING_COUNT),
+            performance: Performance::compute(&five_bar, FINE_RING_COUNT),
         }
     }
 
@@ -208,7 +206,7 @@ LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1}
                     lci.most,
                     100.0 * lci.share_above,
                 );
-                text += &claim_verdict(lci, performance.r_mic);
+                text += &format_claim_verdict(lci, performance.r_mic);
             }
         }
         let links = robot.lizard().links;
@@ -238,7 +236,7 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
 }
 
 /// Formats the line about the paper's claim "LCI > 0.7".
-fn claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
+fn format_claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
     let mean_verdict = if lci.mean > CLAIMED_LCI {
         "holds"
     } else {
@@ -256,10 +254,10 @@ fn claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
     )
 }
 
-/// Computes the performance charts on a grid of this step, with a progress bar.
+/// Computes the performance charts with a grid of `step`, with a progress bar.
 pub fn compute_charts(step: f64, ring_count: usize) -> Vec<ChartPoint> {
     let points = triangle_points(step);
-    let bar = progress_bar(
+    let bar = create_progress_bar(
         points.len(),
         "performance charts {bar:40} {pos}/{len} {eta}",
     );
@@ -325,12 +323,12 @@ fn print_ranking(
         sweep_deg: args.sweep,
     };
     let search = Search::new(args.step, requirements);
-    let point_count = search.point_count(args.spread.own_piece_count(search.piece_count()));
-    let progress = progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
+    let point_count = search.point_count(args.spread.count_own_pieces(search.piece_count()));
+    let progress = create_progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
     let search_piece = |index| search.compute_piece(index, &|| progress.inc(1));
     let pieces = args
         .spread
-        .all_pieces(args, search.piece_count(), search_piece)?;
+        .run_pieces(args, search.piece_count(), search_piece)?;
     progress.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
@@ -344,7 +342,7 @@ fn print_ranking(
     writeln!(
         out,
         "{} of {} designs keep every margin and the stroke with all servos anywhere within +-{:.0} deg\n\
-         and have no link under {:.0} mm.\n\
+         and have no link shorter than {:.0} mm.\n\
          Ranked by mean LCI, least margin (both within that sweep) and stride (with the widest safe sweep);\n\
          * none is better in all three. Base l0 {l0} mm.\n",
         designs.len(),
@@ -378,12 +376,12 @@ fn print_ranking(
     match given_design {
         None => writeln!(
             out,
-            "\nThe given design (r1 {}, r2 {}, r3 {}) does not.",
+            "\nThe given design (r1 {}, r2 {}, r3 {}) does not meet these requirements.",
             given_proportions.r1, given_proportions.r2, given_proportions.r3
         )?,
         Some(mut given_design) => {
             // The given design may have the best value of a criterion.
-            let best_values = BestValues::among(designs.iter().chain([&given_design]));
+            let best_values = BestValues::from_designs(designs.iter().chain([&given_design]));
             given_design.score = best_values.score(&given_design);
             let rank = 1 + designs
                 .iter()

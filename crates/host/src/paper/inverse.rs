@@ -1,4 +1,4 @@
-//! `lizard pose --head X Y --tail X Y`: the servo angles that put head and tail at given points.
+//! `lizard pose --head X Y --tail X Y`: computes the servo angles that put head and tail at given points.
 
 use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector};
 use lizard_robot::{Robot, verdict};
@@ -8,7 +8,7 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
 
-/// The solutions for the given points of head and tail.
+/// The solutions for the given points of head and tail; the field names are the JSON keys.
 #[derive(Serialize)]
 struct Report {
     head: Option<FiveBarSolutions>,
@@ -20,7 +20,7 @@ struct Report {
     why: Vec<String>,
 }
 
-/// The servo angles of a pose, degrees, chassis frame.
+/// The servo angles of a pose in the chassis frame, degrees.
 #[derive(Serialize)]
 struct Angles {
     theta1: f64,
@@ -44,19 +44,19 @@ struct ModeSolution {
     right: &'static str,
     /// Position of the end point relative to the crank tips: `ahead` or `behind`.
     assembly_mode: &'static str,
-    /// Left servo (A1 or A4), degrees, chassis frame.
+    /// Angle of the left servo (A1 or A4) in the chassis frame, degrees.
     theta_left: f64,
-    /// Right servo (A2 or A3), degrees, chassis frame.
+    /// Angle of the right servo (A2 or A3) in the chassis frame, degrees.
     theta_right: f64,
     /// Distance between the forward solution and the point, mm.
     error_mm: f64,
-    /// The smallest margin of the five-bar.
+    /// The five-bar's smallest margin.
     margin: f64,
     reachable: bool,
     why: Vec<String>,
 }
 
-/// Prints the servo angles that put head and tail at these points, mm in the chassis frame.
+/// Prints the servo angles that put head and tail at `end_points`, mm in the chassis frame.
 ///
 /// # Errors
 /// Fails if a point is out of reach, or if the output cannot be written.
@@ -75,7 +75,7 @@ pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> R
     }
 }
 
-/// Solves the five-bar of head or tail for a point, in all working modes.
+/// Solves the five-bar of the head or tail for a point, in all working modes.
 fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     let local_point = robot.lizard().to_end(end, point);
     let (working_modes, reason) = match robot.lizard().end(end).inverse(local_point) {
@@ -94,7 +94,7 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
     }
 }
 
-/// Checks an inverse solution: computes its error and its margin, and lists the robot's limits that it violates.
+/// Checks an inverse solution: computes its error and margin, and lists the robot's limits that it violates.
 fn check_solution(
     robot: &Robot,
     end: End,
@@ -102,7 +102,7 @@ fn check_solution(
     solution: InverseSolution,
 ) -> ModeSolution {
     let five_bar = robot.lizard().end(end);
-    let pose = five_bar.forward_in(
+    let pose = five_bar.forward_in_mode(
         solution.assembly_mode,
         solution.theta_left,
         solution.theta_right,
@@ -116,7 +116,7 @@ fn check_solution(
         .servos()
         .into_iter()
         .zip(angles)
-        .filter_map(|(servo, angle)| verdict::travel_violation(robot, servo, angle))
+        .filter_map(|(servo, angle)| verdict::find_travel_violation(robot, servo, angle))
         .collect();
     let is_behind = solution.assembly_mode == AssemblyMode::Behind;
     if is_behind {
@@ -128,7 +128,7 @@ fn check_solution(
         reasons.push(fault.to_string());
     }
     if let Ok(pose) = &pose {
-        // Behind the crank tips, the type-2 margin is negative. The reason above already states this.
+        // Behind the crank tips, the type-2 margin is negative, which the reason above already states.
         let is_already_stated = |check| is_behind && Check::TYPE2.contains(&check);
         let violations = robot.limits().end_violations(end, pose);
         reasons.extend(
@@ -138,8 +138,8 @@ fn check_solution(
         );
     }
     ModeSolution {
-        left: elbow_text(solution.working_mode.left),
-        right: elbow_text(solution.working_mode.right),
+        left: name_elbow(solution.working_mode.left),
+        right: name_elbow(solution.working_mode.right),
         assembly_mode: if is_behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
@@ -150,14 +150,14 @@ fn check_solution(
     }
 }
 
-fn elbow_text(elbow: Elbow) -> &'static str {
+fn name_elbow(elbow: Elbow) -> &'static str {
     match elbow {
         Elbow::Outward => "outward",
         Elbow::Inward => "inward",
     }
 }
 
-/// Combines the solutions of head and tail into one pose, and checks this pose.
+/// Combines the solutions of head and tail into one pose and checks the pose.
 fn combine_ends(
     robot: &Robot,
     head: Option<FiveBarSolutions>,
@@ -185,7 +185,7 @@ fn combine_ends(
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => reasons.extend(verdict::refusal_reasons(robot, &solution)),
+            Ok(solution) => reasons.extend(verdict::find_pose_violations(robot, &solution)),
             Err(infeasible) => reasons.push(infeasible.to_string()),
         }
     }
@@ -221,7 +221,7 @@ fn format_text(report: &Report) -> String {
             page += &format!("  {reason}\n\n");
             continue;
         }
-        // The columns are in servo order, A3 before A4. The tail's left servo is A4, so left and right are swapped.
+        // The columns are in servo order, A3 before A4. The tail's left servo is A4, so its left and right are swapped.
         let is_swapped = name == "tail";
         page += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
@@ -270,7 +270,7 @@ fn format_text(report: &Report) -> String {
     page
 }
 
-/// Formats an error in mm. Errors below 1e-9 come from rounding, so their values are not printed.
+/// Formats an error in mm. Errors below 1e-9 are rounding errors, so their values are not printed.
 fn format_mm_error(mm: f64) -> String {
     if mm < 1e-9 {
         "< 1e-9".to_string()

@@ -1,4 +1,4 @@
-//! `lizard pose --show freedoms`: degrees of freedom, counted and measured.
+//! `lizard pose --show freedoms`: prints the degrees of freedom, counted and measured.
 
 use lizard_kinematics::{Lizard, Solution};
 use lizard_paper::mobility::{Mobility, measure};
@@ -6,7 +6,7 @@ use lizard_paper::mobility::{Mobility, measure};
 use crate::Failure;
 use crate::shared::json;
 
-/// Prints the degrees of freedom of the body and of each leg.
+/// Prints the degrees of freedom of the body and each leg.
 ///
 /// # Errors
 /// Fails if the output cannot be written.
@@ -35,7 +35,7 @@ fn format_text(mobilities: &[Mobility]) -> String {
         );
     }
     page +=
-        "locked: freedoms left with the driven cranks locked; conditioning: of that Jacobian\n\n";
+        "locked: freedoms left with the driven cranks locked; conditioning: of the Jacobian\n\n";
     let is_singular = |mobility: &&Mobility| {
         mobility.freedoms as i64 != mobility.gruebler || mobility.locked_freedoms > 0
     };

@@ -1,4 +1,4 @@
-//! `lizard pose`: everything about the robot at one pose, or the joints of many poses.
+//! `lizard pose`: computes the robot's state at one pose, or the joints of many poses.
 
 use lizard_kinematics::Vector;
 
@@ -8,16 +8,15 @@ use crate::{Failure, PoseArgs, RobotFile};
 
 /// Compute the robot's joints, singularities, degrees of freedom or rates at a pose
 ///
-/// Give the pose by its servo angles, or by the end points of head and tail; or give many
-/// poses as CSV on standard input: with the header theta1,theta4,theta8,theta5 (degrees,
-/// chassis frame, any order), or without a header in that order. A column named seconds is
-/// passed through, so that the output of `lizard gaits --trace` can be solved. A malformed
-/// line ends the run with its line and column, and exit code 2.
+/// The pose is given by its servo angles, or by the end points of head and tail. Many poses
+/// can be given as CSV on standard input: with the header theta1,theta4,theta8,theta5
+/// (degrees, chassis frame, any order), or without a header in this order. A column `seconds`
+/// is passed through, so that the output of `lizard gaits --trace` can be solved. A malformed
+/// line ends the run with an error message that names the line and column, and exit code 2.
 ///
-/// A pose is safe if it keeps the robot's limits and each servo's travel. If a pose is
-/// singular or cannot be reached, the reason is printed. For a point of head or tail, all four
-/// working modes are listed (each arm bent outward or inward), each with a note whether this
-/// robot can reach it.
+/// A pose is safe if it keeps the robot's limits and each servo's travel. For a singular or
+/// unreachable pose, the reason is printed. For an end point of head or tail, all four working
+/// modes are listed (each arm bent outward or inward), each marked as reachable or not.
 #[derive(clap::Args)]
 #[command(
     allow_negative_numbers = true,
@@ -41,7 +40,7 @@ pub struct Args {
           help_heading = "Pose", conflicts_with = "theta1")]
     tail: Option<Vec<f64>>,
     /// The subject to print; without a pose, `joints` reads poses from standard input, and the
-    /// others take the neutral pose
+    /// other subjects use the neutral pose
     #[arg(long, value_enum, default_value_t, conflicts_with_all = ["head", "tail"])]
     show: Subject,
     /// Print JSON; for poses from standard input, one object per line
@@ -56,7 +55,7 @@ pub struct Args {
 /// The part of the result to print.
 #[derive(clap::ValueEnum, Clone, Copy, Default)]
 enum Subject {
-    /// Every joint, the margins, and whether the pose is safe
+    /// Every joint, the margins, and the safety of the pose
     #[default]
     Joints,
     /// The velocity matrices K (8x4, derivatives of the loop equations with respect to the servo
@@ -64,7 +63,7 @@ enum Subject {
     /// nearest singularities
     Singularities,
     /// Degrees of freedom of body and legs, by counting and by the rank of the constraints, and
-    /// what can still move while the servos are locked
+    /// the parts that can still move while the servos are locked
     Freedoms,
     /// Rates and accelerations of the passive joints, each compared with finite differences
     Rates,
@@ -73,7 +72,7 @@ enum Subject {
 /// Computes the pose and prints it.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a pose that the robot cannot reach, an invalid line of the stream, or an output
+/// Fails for an invalid robot.toml, an unreachable pose, an invalid line of the stream, or an output
 /// that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;

@@ -1,16 +1,16 @@
-//! The output of `lizard pose` for one pose: a JSON object, a row of a table, or a page of text.
+//! The output of `lizard pose` for one pose: a JSON object, a table row, or a page of text.
 
 use std::fmt::Write as _;
 
-use lizard_kinematics::{Infeasible, Margins, Pose, Solution};
+use lizard_kinematics::{InfeasiblePose, Margins, Pose, Solution};
 use lizard_robot::{Robot, verdict};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::paper::poses::TimedPose;
 use crate::shared::number::round_decimals;
 
-/// A line of `lizard pose --json`. If the pose has no solution, the fields of the solution are null. `seconds` is
-/// present only if the stream has this column.
+/// A line of `lizard pose --json`; the field names are the JSON keys. If the pose has no solution, the solution's
+/// fields are null. `seconds` is present only if the stream has this column.
 #[derive(Default, serde::Serialize)]
 pub struct PoseLine {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -29,7 +29,7 @@ pub struct PoseLine {
     why: Vec<String>,
 }
 
-/// The passive joints of a slider: angle in degrees, travel in mm.
+/// A slider's passive joints: angle in degrees, travel in mm.
 #[derive(serde::Serialize)]
 struct SliderState {
     phi: f64,
@@ -45,14 +45,14 @@ struct Legs {
     lh: LegAngles,
 }
 
-/// The passive angles of a leg, degrees.
+/// A leg's passive angles, degrees.
 #[derive(serde::Serialize)]
 struct LegAngles {
     follower: f64,
     coupler: f64,
 }
 
-/// All margins, serialized as a map from a margin's name to its value.
+/// All margins, serialized as a map from margin names to values.
 struct MarginMap(Margins);
 
 impl Serialize for MarginMap {
@@ -67,11 +67,11 @@ impl Serialize for MarginMap {
 }
 
 impl PoseLine {
-    /// Creates the line of a pose, with or without a solution.
+    /// Creates a pose's line, with or without a solution.
     pub fn new(
         robot: &Robot,
         seconds: Option<f64>,
-        outcome: &Result<Solution, Infeasible>,
+        outcome: &Result<Solution, InfeasiblePose>,
     ) -> Self {
         let solution = match outcome {
             Ok(solution) => solution,
@@ -83,7 +83,7 @@ impl PoseLine {
                 };
             }
         };
-        let reasons = verdict::refusal_reasons(robot, solution);
+        let reasons = verdict::find_pose_violations(robot, solution);
         let (head, tail) = (solution.head_point(), solution.tail_point());
         let passive = solution.passive_joints();
         let [lf, rf, rh, lh] = solution.legs.map(|leg| LegAngles {
@@ -114,11 +114,11 @@ impl PoseLine {
     }
 }
 
-/// Formats the heading of the table, with the columns of [`format_row`].
-pub fn table_heading(has_time: bool) -> String {
+/// Formats the table heading for the columns of [`format_row`].
+pub fn format_heading(has_time: bool) -> String {
     let seconds = if has_time { " seconds |" } else { "" };
     format!(
-        "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or why not",
+        "{seconds} {:>8} {:>8} {:>8} {:>8} | {:>8} {:>8} {:>8} {:>8} | {:>17} {:>17} | {:>7} {:>7} | {:17} | safe, or reason",
         "theta1",
         "theta4",
         "theta8",
@@ -135,11 +135,11 @@ pub fn table_heading(has_time: bool) -> String {
     )
 }
 
-/// Formats a pose as one row of a table.
+/// Formats a pose as one table row.
 pub fn format_row(
     robot: &Robot,
     timed_pose: &TimedPose,
-    outcome: &Result<Solution, Infeasible>,
+    outcome: &Result<Solution, InfeasiblePose>,
 ) -> String {
     let angles = <[f64; 4]>::from(timed_pose.pose);
     let mut line = String::with_capacity(192);
@@ -179,7 +179,7 @@ pub fn format_row(
         round_decimals(solution.right.s, 2),
         round_decimals(least_margin, 4),
     );
-    match verdict::refusal_reasons(robot, solution).first() {
+    match verdict::find_pose_violations(robot, solution).first() {
         None => line.push_str("safe"),
         Some(reason) => line.push_str(reason),
     }
@@ -187,7 +187,11 @@ pub fn format_row(
 }
 
 /// Formats a pose as a page of text.
-pub fn format_page(robot: &Robot, pose: &Pose, outcome: &Result<Solution, Infeasible>) -> String {
+pub fn format_page(
+    robot: &Robot,
+    pose: &Pose,
+    outcome: &Result<Solution, InfeasiblePose>,
+) -> String {
     let limits = robot.limits();
     let round_3 = |value: f64| round_decimals(value, 3);
     let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(round_3);
@@ -250,7 +254,7 @@ margins  (0 is singular, 1 is best)  limits {} {} {}
         round_4(margins.leg[2]),
         round_4(margins.leg[3]),
     );
-    let reasons = verdict::refusal_reasons(robot, solution);
+    let reasons = verdict::find_pose_violations(robot, solution);
     if reasons.is_empty() {
         let (least_check, least_margin) = margins.min();
         let _ = writeln!(

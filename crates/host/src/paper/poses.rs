@@ -1,5 +1,5 @@
-//! A stream of poses as comma-separated values. Only one line is in memory at a time, so the length of the stream is
-//! not limited.
+//! A stream of poses as comma-separated values. Only one line is in memory at a time, so the stream may have any
+//! length.
 
 use std::io::{BufRead, Read};
 
@@ -8,10 +8,10 @@ use lizard_kinematics::Pose;
 use crate::Failure;
 use crate::shared::pose_args::{ANGLE_NAMES, NumberError, Quantity};
 
-/// Name of the optional column with the time, as in `lizard gaits --trace`.
+/// Name of the optional time column, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";
 
-/// A column of the stream: one of the four angles, or the time.
+/// A column of the stream: an angle or the time.
 #[derive(Clone, Copy, PartialEq)]
 enum Column {
     Angle(usize),
@@ -43,10 +43,10 @@ const DEFAULT_COLUMNS: [Column; 4] = [
     Column::Angle(3),
 ];
 
-/// Largest length of a line, bytes. A longer line is refused without reading it completely.
+/// Largest length of a line, bytes. A longer line is refused before it is read completely.
 const MAX_LINE_BYTES: u64 = 1024;
 
-/// A pose of the stream, with its time.
+/// A pose in the stream, with its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimedPose {
     /// Time, s; `None` if the stream has no column `seconds`.
@@ -55,8 +55,8 @@ pub struct TimedPose {
     pub pose: Pose,
 }
 
-/// Iterator over the poses of a CSV text. The first line may be a header that names the columns, in any order. Without
-/// a header the columns are A1, A2, A3, A4. Lines end in LF or CRLF. Blank lines and a byte order mark are ignored.
+/// Iterator over the poses in a CSV text. The first line may be a header that names the columns, in any order. Without
+/// a header, the columns are A1, A2, A3, A4. Lines end in LF or CRLF. Blank lines and a byte order mark are ignored.
 /// Names and numbers may be in double quotes.
 pub struct PoseReader<R> {
     input: R,
@@ -64,12 +64,12 @@ pub struct PoseReader<R> {
     line_number: usize,
     /// The column of each field of a line.
     columns: Vec<Column>,
-    /// True if the first line was read, is a pose instead of a header, and has not yet been returned.
+    /// True while the first line is a pose instead of a header and has not been returned.
     has_pending_line: bool,
 }
 
 impl<R: BufRead> PoseReader<R> {
-    /// Creates the iterator and reads the header, if there is one.
+    /// Creates the iterator and reads the header, if any.
     ///
     /// # Errors
     /// Fails if the input is empty or cannot be read, or if its header is invalid.
@@ -97,8 +97,8 @@ impl<R: BufRead> PoseReader<R> {
         let line_number = poses.line_number;
         let header_failure = |column: usize, problem: String| {
             Failure::Input(format!(
-                "line {line_number}, column {column}: {problem}; the header is {expected}, in any order, \
-                 and {SECONDS} if you like"
+                "line {line_number}, column {column}: {problem}; expected the header {expected} in any order, \
+                 optionally with {SECONDS}"
             ))
         };
         let mut columns = Vec::with_capacity(names.len());
@@ -107,7 +107,10 @@ impl<R: BufRead> PoseReader<R> {
                 return Err(header_failure(i + 1, format!("\"{name}\" is not a column")));
             };
             if columns.contains(&column) {
-                return Err(header_failure(i + 1, format!("\"{name}\" comes twice")));
+                return Err(header_failure(
+                    i + 1,
+                    format!("duplicate column \"{name}\""),
+                ));
             }
             columns.push(column);
         }
@@ -125,7 +128,7 @@ impl<R: BufRead> PoseReader<R> {
         Ok(poses)
     }
 
-    /// True if the lines have a column for the time.
+    /// True if the lines have a time column.
     pub fn has_time(&self) -> bool {
         self.columns.contains(&Column::Seconds)
     }
@@ -153,7 +156,7 @@ impl<R: BufRead> PoseReader<R> {
         }
     }
 
-    /// The text of the current line, without its line ending and without a byte order mark.
+    /// Returns the text of the current line, without its line ending and a byte order mark.
     fn line_text(&self) -> Result<&str, Failure> {
         std::str::from_utf8(&self.line_bytes)
             .map(|text| {
@@ -179,7 +182,7 @@ impl<R: BufRead> PoseReader<R> {
         let mut angles = [0.0; 4];
         let mut seconds = None;
         let mut value_count = 0;
-        let failure_at = |field: usize, problem: String| {
+        let field_failure = |field: usize, problem: String| {
             let name = match self.columns.get(field) {
                 Some(column) => format!(" ({})", column.name()),
                 None => String::new(),
@@ -193,16 +196,13 @@ impl<R: BufRead> PoseReader<R> {
         for (field, text) in self.line_text()?.split(',').enumerate() {
             let text = trim_quotes(text);
             let Some(&column) = self.columns.get(field) else {
-                return Err(failure_at(
-                    field,
-                    format!("\"{text}\" is one value too many"),
-                ));
+                return Err(field_failure(field, format!("unexpected value \"{text}\"")));
             };
             if text.is_empty() {
-                return Err(failure_at(field, "no value".to_string()));
+                return Err(field_failure(field, "no value".to_string()));
             }
             let number_failure =
-                |error: NumberError| failure_at(field, format!("\"{text}\" {error}"));
+                |error: NumberError| field_failure(field, format!("\"{text}\" {error}"));
             match column {
                 Column::Angle(servo) => {
                     angles[servo] = Quantity::ANGLE.parse(text).map_err(number_failure)?;
@@ -214,7 +214,7 @@ impl<R: BufRead> PoseReader<R> {
             value_count = field + 1;
         }
         if value_count < self.columns.len() {
-            return Err(failure_at(value_count, "no value".to_string()));
+            return Err(field_failure(value_count, "no value".to_string()));
         }
         Ok(TimedPose {
             seconds,
@@ -238,7 +238,7 @@ impl<R: BufRead> Iterator for PoseReader<R> {
     }
 }
 
-/// Removes surrounding white space and quotes from a field.
+/// Removes surrounding whitespace and quotes from a field.
 fn trim_quotes(field: &str) -> &str {
     let field = field.trim();
     field

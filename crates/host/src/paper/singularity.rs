@@ -1,4 +1,5 @@
-//! `lizard pose --show singularities`: the matrices K and K*, the factors of det K*, and the nearest singular poses.
+//! `lizard pose --show singularities`: prints the matrices K and K*, the factors of det K*, and the nearest
+//! singularities.
 
 use lizard_kinematics::{
     BlockDeterminants, End, FiveBar, SingularPose, Singularity, Solution, wrap,
@@ -12,7 +13,7 @@ use crate::shared::json;
 use crate::shared::number::round_decimals;
 use crate::shared::pose_args::ANGLE_NAMES;
 
-/// Names of the passive joints and slider travels, in the order of the columns of K*.
+/// Names of the passive joints and slider travels, in the order of the columns in K*.
 const PASSIVE_NAMES: [&str; 8] = [
     "theta2",
     "theta3",
@@ -24,7 +25,7 @@ const PASSIVE_NAMES: [&str; 8] = [
     "s_right",
 ];
 
-/// Names of the loop equations, in the order of the rows of K and K*.
+/// Names of the loop equations, in the order of the rows in K and K*.
 const LOOP_NAMES: [&str; 8] = [
     "head x", "head y", "tail x", "tail y", "left x", "left y", "right x", "right y",
 ];
@@ -57,7 +58,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // A value that is zero but for rounding errors is printed as a point.
+                // A value that is zero except for rounding errors is printed as a point.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", round_decimals(*value, 2)),
@@ -68,7 +69,7 @@ impl Matrix {
     }
 }
 
-/// The output, with the field names of `--json`.
+/// The output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct Report {
     /// Derivatives with respect to the servo angles, mm per radian.
@@ -80,7 +81,7 @@ struct Report {
     /// det K* as the product of the determinants of its diagonal blocks.
     factored: f64,
     blocks: Factors,
-    /// lg12 lg13 sin(theta_lg12 - theta_lg13) of each leg, in servo order.
+    /// lg12 lg13 sin(theta_lg12 - theta_lg13) for each leg, in servo order.
     leg_determinants: [f64; 4],
     nearest: Vec<NearestSingularity>,
 }
@@ -98,9 +99,9 @@ struct Factors {
 #[derive(Serialize)]
 struct NearestSingularity {
     what: String,
-    /// Euclidean distance in the servo angles, degrees.
+    /// Euclidean distance in servo angles, degrees.
     distance: f64,
-    /// Turn of each servo to the singular pose, in servo order, degrees.
+    /// Each servo's turn to the singular pose, in servo order, degrees.
     turn: [f64; 4],
 }
 
@@ -132,7 +133,7 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
             Singularity::LeftArm,
             Singularity::RightArm,
         ] {
-            if let Some((distance, pose)) = nearest_singularity(&five_bar, kind, angles) {
+            if let Some((distance, pose)) = find_nearest_singularity(&five_bar, kind, angles) {
                 let mut turn = [0.0; 4];
                 turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
                 turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
@@ -183,52 +184,53 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     }
 }
 
-/// Returns the singular pose of this kind whose crank angles are nearest to `angles`, and its distance in degrees;
-/// `None` if there is no such pose. Scans the singularity curves over all left crank angles, then repeats the scan
-/// around the nearest pose with smaller steps.
-pub fn nearest_singularity(
+/// Returns the singular pose of `kind` nearest to the crank angles `angles`, and its distance in degrees; `None` if
+/// there is no such pose. Scans the singularity curves over all left crank angles, then repeats the scan around the
+/// nearest pose with smaller steps.
+pub fn find_nearest_singularity(
     five_bar: &FiveBar,
     kind: Singularity,
     angles: [f64; 2],
 ) -> Option<(f64, SingularPose)> {
-    let with_distance = |pose: SingularPose| {
+    let add_distance = |pose: SingularPose| {
         let (left, right) = (
             wrap(pose.theta_left - angles[0]),
             wrap(pose.theta_right - angles[1]),
         );
         (left.hypot(right), pose)
     };
-    let nearer_of = |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
+    let choose_nearer =
+        |a: (f64, SingularPose), b: (f64, SingularPose)| if b.0 < a.0 { b } else { a };
     let scan = |centre: f64, half_range: f64, step: f64| {
         let step_count = (half_range / step).round() as i32;
         (-step_count..=step_count)
-            .flat_map(|i| five_bar.singular_poses_with(centre + f64::from(i) * step))
+            .flat_map(|i| five_bar.find_singular_poses(centre + f64::from(i) * step))
             .filter(|pose| pose.kind == kind)
-            .map(with_distance)
-            .reduce(nearer_of)
+            .map(add_distance)
+            .reduce(choose_nearer)
     };
     let mut best = scan(0.0, 180.0, 0.25);
     let mut step = 0.25;
     for _ in 0..4 {
         if let Some((_, pose)) = best {
             let finer_best = scan(pose.theta_left, 2.0 * step, step / 20.0);
-            best = best.into_iter().chain(finer_best).reduce(nearer_of);
+            best = best.into_iter().chain(finer_best).reduce(choose_nearer);
             step /= 20.0;
         }
     }
     let coinciding_poses = five_bar
-        .poses_with_coinciding_tips()
+        .find_coinciding_tip_poses()
         .filter(|_| kind == Singularity::Couplers);
     best.into_iter()
-        .chain(coinciding_poses.map(with_distance))
-        .reduce(nearer_of)
+        .chain(coinciding_poses.map(add_distance))
+        .reduce(choose_nearer)
 }
 
 fn format_text(report: &Report) -> String {
     let blocks = &report.blocks;
     let mut page = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
-         K*: the same rows, columns are the passive joints (mm per radian; by s, mm per mm)\n{}\n\
+         K*: the same rows, columns are the passive joints (mm per radian; for s, mm per mm)\n{}\n\
          det K* by elimination        {:+.9e}\n\
          det K* as a product          {:+.9e}\n\
          \x20 head   l2 l3 sin(theta2 - theta3)  {:+10.2} mm^2\n\
@@ -249,7 +251,7 @@ fn format_text(report: &Report) -> String {
             .map(|det| format!("{:+.1}", round_decimals(det, 1)))
             .join(" "),
     );
-    page += "nearest singularities, and how A1, A2, A3, A4 would have to turn to them\n";
+    page += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
     for singularity in &report.nearest {
         let turn = singularity
             .turn

@@ -1,4 +1,4 @@
-//! `lizard pose`: the forward solution of the whole robot, by Algorithm 1 of the paper.
+//! `lizard pose`: solves the whole robot forward with the paper's Algorithm 1.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::panic::resume_unwind;
@@ -13,16 +13,16 @@ use crate::Failure;
 use crate::paper::pose_line::{self, PoseLine};
 use crate::paper::poses::{PoseReader, TimedPose};
 
-/// Number of poses that are solved together, which limits the memory in use.
+/// Number of poses that are solved together, which limits memory use.
 const BATCH_SIZE: usize = 8192;
 
-/// Number of poses whose lines form a block.
+/// Number of poses in a block of lines.
 const BLOCK_SIZE: usize = BATCH_SIZE / 16;
 
 /// Number of blocks that may wait to be written.
 const MAX_WAITING_BLOCKS: usize = 32;
 
-/// Solves a pose and prints it. Without a pose, solves the poses of standard input.
+/// Solves a pose and prints it. Without a pose, solves the poses from standard input.
 ///
 /// # Errors
 /// Fails for an invalid pose or line of the stream, or an output that cannot be written.
@@ -30,7 +30,7 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Fa
     match pose {
         Some(pose) => Ok(io::stdout().write_all(&solve_pose(robot, pose, is_json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
-            "give a pose with --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
+            "a pose is required: --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
                 .to_string(),
         )),
         None => solve_stream(robot, is_json),
@@ -48,13 +48,13 @@ fn solve_pose(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Fail
     Ok(line)
 }
 
-/// Solves the poses of standard input in batches on all cores, and writes them in order. One batch is written while
-/// the next is solved. The poses before a malformed line are still solved and written.
+/// Solves the poses from standard input in batches on all cores and writes them in order. One batch is written while
+/// the next batch is solved. The poses before a malformed line are still solved and written.
 fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
     let mut poses = PoseReader::new(io::stdin().lock())?;
     let (sender, receiver) = mpsc::sync_channel::<Vec<u8>>(MAX_WAITING_BLOCKS);
     thread::scope(|scope| {
-        let heading = (!is_json).then(|| pose_line::table_heading(poses.has_time()));
+        let heading = (!is_json).then(|| pose_line::format_heading(poses.has_time()));
         let writer = scope.spawn(move || write_blocks(receiver, heading));
         let outcome = solve_all(robot, is_json, &mut poses, &sender);
         drop(sender);
@@ -64,7 +64,7 @@ fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
     })
 }
 
-/// Writes the blocks until the channel is closed.
+/// Writes blocks until the channel is closed.
 fn write_blocks(blocks: mpsc::Receiver<Vec<u8>>, heading: Option<String>) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     if let Some(heading) = heading {

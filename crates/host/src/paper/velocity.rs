@@ -1,4 +1,4 @@
-//! `lizard pose --show rates`: rates and accelerations of the passive joints, from those of the servos.
+//! `lizard pose --show rates`: computes the rates and accelerations of the passive joints from the servos' motion.
 
 use lizard_kinematics::{Derivatives, Lizard, Pose, ServoMotion, Solution, wrap};
 use serde::Serialize;
@@ -8,10 +8,10 @@ use crate::shared::json;
 use crate::shared::number::round_decimals;
 use crate::shared::pose_args::Quantity;
 
-/// Longest time step of the finite differences, s.
+/// Longest time step for finite differences, s.
 const MAX_STEP_S: f64 = 2e-4;
 
-/// Largest turn of a servo in one step of the finite differences, deg. Larger turns make the differences inaccurate.
+/// Largest servo turn in one step for finite differences, deg. Larger turns make the differences inaccurate.
 const MAX_STEP_TURN_DEG: f64 = 0.04;
 
 #[derive(clap::Args)]
@@ -43,7 +43,7 @@ pub struct ServoMotionArgs {
     alpha5: f64,
 }
 
-/// A joint or coordinate of the output.
+/// A joint or coordinate in the output; the field names are the JSON keys.
 #[derive(Clone, Serialize)]
 struct Row {
     joint: &'static str,
@@ -59,8 +59,8 @@ struct Row {
 impl From<ServoMotionArgs> for ServoMotion {
     fn from(args: ServoMotionArgs) -> Self {
         Self {
-            rate: [args.omega1, args.omega4, args.omega8, args.omega5],
-            acceleration: [args.alpha1, args.alpha4, args.alpha8, args.alpha5],
+            rates: [args.omega1, args.omega4, args.omega8, args.omega5],
+            accelerations: [args.alpha1, args.alpha4, args.alpha8, args.alpha5],
         }
     }
 }
@@ -68,7 +68,7 @@ impl From<ServoMotionArgs> for ServoMotion {
 /// Prints the rate and the acceleration of each passive joint.
 ///
 /// # Errors
-/// Fails for a type-2 singularity, at which the rates are not defined, or an output that cannot be written.
+/// Fails at a type-2 singularity, where the rates are undefined, or if the output cannot be written.
 pub fn print(
     lizard: &Lizard,
     solution: &Solution,
@@ -78,7 +78,7 @@ pub fn print(
     let type2_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
     if type2_margin < 1e-9 {
         return Err(Failure::Impossible(
-            "the couplers line up: rates do not follow from the servos'".to_string(),
+            "type-2 singularity: the couplers line up, so the rates are undefined".to_string(),
         ));
     }
     let rows = compute_rows(lizard, solution, servo_motion);
@@ -113,7 +113,7 @@ fn format_text(rows: &[Row]) -> String {
 }
 
 /// Lists the name, unit and value of each joint and coordinate.
-fn joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
+fn list_joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] {
     let (head, tail) = (solution.head_point(), solution.tail_point());
     [
         ("theta2", "deg", solution.theta2()),
@@ -131,8 +131,8 @@ fn joint_values(solution: &Solution) -> [(&'static str, &'static str, f64); 12] 
     ]
 }
 
-/// Lists the rate and acceleration of each joint and coordinate, in the order of [`joint_values`].
-fn joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
+/// Lists the rate and acceleration of each joint and coordinate, in the order of [`list_joint_values`].
+fn list_joint_rates(derivatives: &Derivatives) -> [(f64, f64); 12] {
     let rate_and_acceleration =
         |derivative: lizard_kinematics::Derivative<f64>| (derivative.rate, derivative.acceleration);
     [
@@ -161,24 +161,26 @@ fn compute_rows(lizard: &Lizard, solution: &Solution, servo_motion: &ServoMotion
     };
     // If the servos stand still, the quotients are infinite and do not limit the step.
     let step_s = MAX_STEP_S
-        .min(MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.rate))
-        .min((MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.acceleration)).sqrt());
-    let values_at = |steps: f64| {
+        .min(MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.rates))
+        .min((MAX_STEP_TURN_DEG / largest_magnitude(&servo_motion.accelerations)).sqrt());
+    let compute_values = |steps: f64| {
         let t = steps * step_s;
         let angles: [f64; 4] = std::array::from_fn(|i| {
-            start_angles[i] + servo_motion.rate[i] * t + servo_motion.acceleration[i] * t * t / 2.0
+            start_angles[i]
+                + servo_motion.rates[i] * t
+                + servo_motion.accelerations[i] * t * t / 2.0
         });
         lizard
             .solve(&Pose::from(angles))
             .ok()
-            .map(|solution| joint_values(&solution))
+            .map(|solution| list_joint_values(&solution))
     };
-    let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(values_at) {
+    let neighbours = match [-2.0, -1.0, 1.0, 2.0].map(compute_values) {
         [Some(a), Some(b), Some(c), Some(d)] => Some([a, b, c, d]),
         _ => None,
     };
-    let rates_and_accelerations = joint_rates(&solution.derivatives(servo_motion));
-    joint_values(solution)
+    let rates_and_accelerations = list_joint_rates(&solution.derivatives(servo_motion));
+    list_joint_values(solution)
         .into_iter()
         .zip(rates_and_accelerations)
         .enumerate()

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// The reason why a subcommand ended without a result.
+/// The error that ended a command without a result.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// An argument or a line of input is invalid.
@@ -14,14 +14,14 @@ pub enum Failure {
     /// The command is valid, but could not be carried out.
     #[error("{0}")]
     Impossible(String),
-    /// Standard input, standard output or the terminal failed. An error of a file or a port is not reported by this
-    /// variant, because its message must name the file or the port.
+    /// Standard input, standard output or the terminal failed. Errors of files and ports use another variant because
+    /// their messages must name the file or port.
     #[error("standard input or output: {0}")]
     Io(#[from] io::Error),
 }
 
 impl Failure {
-    /// The program's exit code: 2 for invalid input, 1 for everything else.
+    /// Returns the program's exit code: 2 for invalid input, 1 for everything else.
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Robot(_) => 2,
@@ -35,8 +35,8 @@ impl Failure {
     }
 }
 
-impl From<lizard_kinematics::Infeasible> for Failure {
-    fn from(infeasible: lizard_kinematics::Infeasible) -> Self {
+impl From<lizard_kinematics::InfeasiblePose> for Failure {
+    fn from(infeasible: lizard_kinematics::InfeasiblePose) -> Self {
         Self::Impossible(infeasible.to_string())
     }
 }

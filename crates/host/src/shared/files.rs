@@ -1,12 +1,11 @@
-//! Reading and writing the files of all commands.
+//! Functions that read and write files for all commands.
 //!
-//! A program that is killed during a write leaves an incomplete file. An incomplete image or calibration is worse than
-//! a missing file. So the bytes are first written to a file without a name, or to a temporary file if the file system
-//! does not support nameless files. The file gets its final name when it is complete.
+//! A program that is killed during a write leaves an incomplete file, and an incomplete image or calibration is worse
+//! than a missing file. The bytes are therefore first written to a file without a name, or to a temporary file if the
+//! file system does not support nameless files. The file gets its final name when it is complete.
 //!
-//! An output replaces only an ordinary file, because other programs need devices such as /dev/null. An output does not
-//! replace a robot's description or an input of the same command either: a mistyped name must not destroy a user's
-//! work.
+//! An output replaces only a regular file, because other programs need devices such as /dev/null. An output never
+//! replaces a robot file or an input of the same command: a mistyped name must not destroy a user's work.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Read, Write};
@@ -18,34 +17,34 @@ use crate::Failure;
 /// The files that this command has read.
 static INPUT_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Records a file that is about to be read, so that no output replaces it.
-pub fn note_input(path: &Path) -> &Path {
+/// Records an input file before it is read, so that no output replaces the file.
+pub fn record_input(path: &Path) -> &Path {
     let mut inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     inputs.push(path.to_owned());
     path
 }
 
-/// Reads the text of an input.
+/// Reads the text of an input file.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not valid UTF-8, or is longer than 256 MiB, for example an endless device.
+/// Fails if the file cannot be read, is not valid UTF-8, or is longer than 256 MiB, as an endless device is.
 pub fn read_text(path: &Path) -> Result<String, Failure> {
     const MAX_BYTES: u64 = 256 << 20;
     let mut text = String::new();
-    let outcome = File::open(note_input(path)).and_then(|file| {
+    let outcome = File::open(record_input(path)).and_then(|file| {
         match file.take(MAX_BYTES + 1).read_to_string(&mut text)? as u64 {
             0..=MAX_BYTES => Ok(()),
-            _ => Err(io::Error::other("it is longer than 256 MiB")),
+            _ => Err(io::Error::other("the file is longer than 256 MiB")),
         }
     });
     outcome.map_err(|error| Failure::Input(format!("cannot read {}: {error}", path.display())))?;
     Ok(text)
 }
 
-/// Checks that an output may be written to this path.
+/// Checks that an output may be written to `path`.
 ///
 /// # Errors
-/// Fails if the output would replace an input or a robot's description.
+/// Fails if the output would replace an input or a robot file.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
     let inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
@@ -57,12 +56,12 @@ pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
         return Ok(());
     };
     Err(Failure::Input(format!(
-        "{} would be overwritten, but {reason}; name another file for the output",
+        "the output must not overwrite {}: {reason}; choose another output file",
         path.display()
     )))
 }
 
-/// True for a file that is named robot.toml or has the table `[links]` of a robot, even if the rest of the file is
+/// True for a file that is called robot.toml or has a robot's table `[links]`, even if the rest of the file is
 /// invalid.
 fn is_robot_file(path: &Path) -> bool {
     if !path.is_file() {
@@ -82,7 +81,7 @@ fn is_robot_file(path: &Path) -> bool {
 /// symbolic link, and keeps its permissions. Writes directly to a stream, such as /dev/stdout or a pipe.
 ///
 /// # Errors
-/// Fails if the folder cannot be created or written to, if the path names neither an ordinary file nor a stream (for
+/// Fails if the folder cannot be created or written to, if the path names neither a regular file nor a stream (for
 /// example, a folder), or if the file is an input or a robot ([`check_replaceable`]).
 pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     check_replaceable(path)?;
@@ -98,10 +97,10 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     outcome.map_err(|error| write_failure(path, &error))
 }
 
-/// The failure for a path that cannot be written.
+/// Returns the failure for a path that cannot be written.
 pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let reason = error.to_string();
-    // tempfile appends the path of the temporary file, which the user does not know.
+    // tempfile appends the path of the temporary file, which means nothing to the user.
     let reason = reason
         .split_once(" at path ")
         .map_or(reason.as_str(), |(reason, _)| reason);
@@ -137,7 +136,7 @@ fn resolve_links(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
             Ok((path.canonicalize()?, Some(metadata.permissions())))
         }
         Ok(_) => Err(io::Error::other(
-            "it already exists and is not an ordinary file",
+            "it already exists and is not a regular file",
         )),
         Err(_) if path.is_symlink() => Err(io::Error::other("it is a broken symbolic link")),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok((path.to_owned(), None)),
@@ -145,7 +144,7 @@ fn resolve_links(path: &Path) -> io::Result<(PathBuf, Option<Permissions>)> {
     }
 }
 
-/// Writes the bytes to a nameless or temporary file in the same folder, and then gives that file its final path.
+/// Writes the bytes to a nameless or temporary file in the target's folder, and then gives that file its final path.
 fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let (path, permissions) = resolve_links(path)?;
     let folder = match path.parent() {
@@ -186,8 +185,8 @@ fn write_atomically(path: &Path, bytes: &[u8]) -> io::Result<()> {
     Ok(())
 }
 
-/// Creates a file without a name in this folder. The file disappears if the program is killed. Returns `None` if the
-/// file system does not support such files.
+/// Creates a file without a name in `folder`; it disappears if the program is killed. Returns `None` if the file system
+/// does not support nameless files.
 #[cfg(target_os = "linux")]
 fn create_nameless(folder: &Path) -> Option<File> {
     use rustix::fs::{Mode, OFlags, open};
@@ -217,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_is_replaced_and_nothing_else_is_left_in_its_folder() {
+    fn write_replaces_a_file_and_leaves_no_other() {
         let folder = tempfile::tempdir().expect("a temporary folder is created");
         let path = folder.path().join("new/folder/a");
         write(&path, b"old and longer").expect("a new file is written");
@@ -231,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn an_input_and_a_robot_are_not_replaced_under_any_name() {
+    fn write_refuses_inputs_and_robot_files_under_any_name() {
         let folder = tempfile::tempdir().expect("a temporary folder is created");
         let [input, other_name, robot, renamed_robot] =
             ["a.jsonl", "b", "robot.toml", "mine"].map(|name| folder.path().join(name));
@@ -239,15 +238,12 @@ mod tests {
         fs::write(&robot, "broken").expect("the file is written");
         fs::write(&renamed_robot, "# mine\n [links]\nl0 = x\n").expect("the file is written");
         fs::hard_link(&input, &other_name).expect("a hard link is created");
-        let _ = note_input(&folder.path().join("../").join(&input));
+        let _ = record_input(&folder.path().join("../").join(&input));
         for (path, reason) in [
-            (&input, "but this command reads it; name another file"),
-            (&other_name, "but this command reads it; name another file"),
-            (&robot, "but it describes a robot; name another file"),
-            (
-                &renamed_robot,
-                "but it describes a robot; name another file",
-            ),
+            (&input, ": this command reads it; choose another"),
+            (&other_name, ": this command reads it; choose another"),
+            (&robot, ": it describes a robot; choose another"),
+            (&renamed_robot, ": it describes a robot; choose another"),
         ] {
             let old_bytes = fs::read(path).expect("the file is readable");
             let message = write_error_text(path);
@@ -258,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_cannot_be_written_is_named() {
+    fn error_names_the_unwritable_file() {
         assert_eq!(
             write_error_text(Path::new("/dev/null/folder/a.toml")),
             "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
@@ -266,20 +262,20 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_is_not_replaced() {
+    fn write_refuses_a_folder() {
         let folder = tempfile::tempdir().expect("a temporary folder is created");
         let inner_folder = folder.path().join("inner");
         fs::create_dir(&inner_folder).expect("a folder is created");
         assert!(
             write_error_text(&inner_folder)
-                .ends_with("it already exists and is not an ordinary file")
+                .ends_with("it already exists and is not a regular file")
         );
         assert!(inner_folder.is_dir());
     }
 
     #[test]
     #[cfg(unix)]
-    fn writing_through_a_link_keeps_the_link_and_the_permissions_of_its_target() {
+    fn write_through_a_link_keeps_the_link_and_the_permissions() {
         use std::os::unix::fs::{PermissionsExt, symlink};
         let folder = tempfile::tempdir().expect("a temporary folder is created");
         let [file, link, broken_link] =
@@ -304,7 +300,7 @@ mod tests {
 
     #[test]
     #[cfg(unix)]
-    fn a_stream_gets_the_bytes_and_stays() {
+    fn write_to_a_stream_keeps_the_stream() {
         let folder = tempfile::tempdir().expect("a temporary folder is created");
         // The test uses a link, so that a bug replaces the link and not the device.
         let device = folder.path().join("device");
@@ -315,7 +311,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn in_a_read_only_folder_the_error_names_only_the_file() {
+    fn error_in_a_read_only_folder_names_only_the_file() {
         let message = write_error_text(Path::new("/proc/self/a.toml"));
         assert!(
             message.starts_with("cannot write /proc/self/a.toml: "),
@@ -326,7 +322,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn a_full_device_is_named() {
+    fn error_names_a_full_device() {
         let message = write(Path::new("/dev/full"), b"<svg/>")
             .expect_err("the full device must refuse the write");
         let message = message.to_string();

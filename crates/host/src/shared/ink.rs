@@ -4,7 +4,7 @@ use svg::node::Value;
 use svg::node::element::{Circle, Group, Line, Polyline, Rectangle, Text};
 use svg::{Document, Node};
 
-/// Colours of servos A1 to A4 and their legs: three of Okabe and Ito's colours and a purple of Tol's. Colour-blind
+/// Colours of servos A1 to A4 and their legs: three colours by Okabe and Ito, and a purple by Tol. Colour-blind
 /// people can distinguish them.
 pub const SERVO_COLOURS: [&str; 4] = ["#0072b2", "#d55e00", "#009e73", "#aa4499"];
 /// Positions of servos A1 to A4 on the robot.
@@ -21,13 +21,13 @@ pub const ORANGE: &str = "#e8930c";
 pub const RED: &str = "#e5383b";
 /// The colour of the ground wire; see [`ORANGE`].
 pub const BROWN: &str = "#3d2210";
-/// The colour of the backgrounds of panels.
+/// The background colour of panels.
 pub const PANEL_COLOUR: &str = "#f7f7f7";
 
 /// The fonts, in order of preference.
 const FONTS: &str = "Helvetica, Arial, 'DejaVu Sans', sans-serif";
 
-/// The part of a text that lies at its given point.
+/// The part of a text that lies at a given point.
 #[derive(Clone, Copy)]
 pub enum Anchor {
     /// The text begins at the point.
@@ -38,7 +38,7 @@ pub enum Anchor {
     End,
 }
 
-/// A line of text. `point` is on the text's baseline, at the part that `anchor` names.
+/// Returns a line of text. `point` is on the text's baseline, at the part that `anchor` names.
 pub fn text(content: &str, point: (f64, f64), size: f64, colour: &str, anchor: Anchor) -> Text {
     let anchor = match anchor {
         Anchor::Start => "start",
@@ -54,17 +54,17 @@ pub fn text(content: &str, point: (f64, f64), size: f64, colour: &str, anchor: A
         .set("text-anchor", anchor)
 }
 
-/// Dark text that starts at a point.
+/// Returns dark text that starts at a point.
 pub fn text_start(content: &str, point: (f64, f64), size: f64) -> Text {
     text(content, point, size, DARK, Anchor::Start)
 }
 
-/// Dark text centred on a point.
+/// Returns dark text centred on a point.
 pub fn text_middle(content: &str, point: (f64, f64), size: f64) -> Text {
     text(content, point, size, DARK, Anchor::Middle)
 }
 
-/// Dark text that ends at a point.
+/// Returns dark text that ends at a point.
 pub fn text_end(content: &str, point: (f64, f64), size: f64) -> Text {
     text(content, point, size, DARK, Anchor::End)
 }
@@ -76,8 +76,8 @@ pub fn add_title(group: Group, left: f64, heading: &str, note: &str) -> Group {
         .add(text(note, (left, 66.0), 15.0, GREY, Anchor::Start))
 }
 
-/// The SVG text of a picture on a white page.
-pub fn svg_page(size: (f64, f64), group: Group) -> String {
+/// Returns a picture on a white page as SVG text.
+pub fn render_svg(size: (f64, f64), group: Group) -> String {
     Document::new()
         .set("viewBox", (0.0, 0.0, size.0, size.1))
         .set("width", size.0)
@@ -87,7 +87,7 @@ pub fn svg_page(size: (f64, f64), group: Group) -> String {
         .to_string()
 }
 
-/// A diagonal cross, like the letter x.
+/// Returns a diagonal cross, like the letter x.
 pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> Group {
     let (x, y) = centre;
     Group::new()
@@ -105,7 +105,7 @@ pub fn cross(centre: (f64, f64), arm_length: f64, colour: &str, width: f64) -> G
         ))
 }
 
-/// A straight line.
+/// Returns a straight line.
 pub fn line(start: (f64, f64), end: (f64, f64), colour: &str, width: f64) -> Line {
     Line::new()
         .set("x1", round_hundredths(start.0))
@@ -117,7 +117,7 @@ pub fn line(start: (f64, f64), end: (f64, f64), colour: &str, width: f64) -> Lin
         .set("stroke-linecap", "round")
 }
 
-/// A rectangle by its upper left corner and its size.
+/// Returns a rectangle from its upper left corner and size.
 pub fn rectangle(corner: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle {
     Rectangle::new()
         .set("x", round_hundredths(corner.0))
@@ -127,7 +127,7 @@ pub fn rectangle(corner: (f64, f64), size: (f64, f64), fill: &str) -> Rectangle 
         .set("fill", fill)
 }
 
-/// A circle by its centre and radius.
+/// Returns a circle from its centre and radius.
 pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
     Circle::new()
         .set("cx", round_hundredths(centre.0))
@@ -136,14 +136,14 @@ pub fn circle(centre: (f64, f64), radius: f64, fill: &str) -> Circle {
         .set("fill", fill)
 }
 
-/// Gives a shape an outline of this colour and width.
-pub fn outlined<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
+/// Adds an outline to a shape.
+pub fn add_outline<T: Node>(mut shape: T, colour: &str, width: impl Into<Value>) -> T {
     shape.assign("stroke", colour);
     shape.assign("stroke-width", width);
     shape
 }
 
-/// An open curve through points.
+/// Returns an open curve through points.
 pub fn curve(points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
     let coordinates: Vec<String> = points
         .iter()
@@ -163,7 +163,7 @@ pub fn round_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-/// The name that is printed on an Arduino board beside a pin: D9 for pin 9, A0 for pin 14.
+/// Returns the name that an Arduino board shows next to a pin: D9 for pin 9, A0 for pin 14.
 pub fn pin_name(pin_number: u8) -> String {
     const A0: u8 = 14;
     match pin_number.checked_sub(A0) {

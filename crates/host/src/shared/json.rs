@@ -1,22 +1,22 @@
-//! Output as JSON, for `--json`.
+//! JSON output, for `--json`.
 
 use std::io::{self, Write};
 
 use serde::Serialize;
 
-/// Prints the value as a line of JSON if `is_json` is true, otherwise as the text that `text_of` returns.
+/// Prints the value as a line of JSON if `is_json` is true, otherwise the text that `format_text` returns.
 ///
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn print_json_or_text(
     is_json: bool,
     value: &impl Serialize,
-    text_of: impl FnOnce() -> String,
+    format_text: impl FnOnce() -> String,
 ) -> Result<(), crate::Failure> {
     let mut out = io::stdout().lock();
     match is_json {
         true => write_line(&mut out, value)?,
-        false => out.write_all(text_of().as_bytes())?,
+        false => out.write_all(format_text().as_bytes())?,
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Helpers of several commands: files, errors, the robot file, JSON, the colours and shapes of pictures, and
+//! Helpers that several commands share: files, errors, the robot file, JSON, the colours and shapes of drawings, and
 //! computations spread over machines.
 #![cfg_attr(
     not(all(

@@ -1,6 +1,6 @@
 //! Rounding and formatting of numbers for people.
 
-/// Rounds a value to this number of decimals, for printing. The result is never -0.0.
+/// Rounds a value to `decimals` decimals, for printing. The result is never -0.0.
 pub fn round_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding 0.0 turns -0.0 into 0.0.

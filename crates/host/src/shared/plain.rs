@@ -1,9 +1,9 @@
 //! Makes text from files and boards safe for a terminal.
 //!
-//! A terminal executes escape sequences. An escape sequence in the name of a robot or in a recorded line could move the
-//! cursor, change the window's title or hide text. So control characters from a file or a board are escaped.
+//! A terminal executes escape sequences. An escape sequence in a robot's name or in a recorded line could move the
+//! cursor, change the window's title or hide text. Control characters from a file or a board are therefore escaped.
 
-/// Returns the text with every control character as a Rust escape, such as `\u{1b}`.
+/// Returns the text with every control character replaced by a Rust escape such as `\u{1b}`.
 pub fn escape_controls(text: &str) -> String {
     let mut result = String::with_capacity(text.len());
     for character in text.chars() {
@@ -28,7 +28,7 @@ pub fn readable_lines(text: &str) -> String {
 
 /// Replaces the middle of a very long line with the number of omitted characters.
 fn shorten(line: &str) -> String {
-    /// Number of characters that remain on each side.
+    /// Number of characters that remain at each end.
     const SIDE_LENGTH: usize = 300;
     let char_count = line.chars().count();
     if char_count <= 3 * SIDE_LENGTH {
@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_line_too_long_to_read_loses_its_middle() {
+    fn very_long_line_loses_its_middle() {
         let [short_line, long_line] = [900, 901].map(|count| "ä".repeat(count));
         assert_eq!(readable_lines(&short_line), short_line);
         let side = "ä".repeat(300);
@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn control_characters_are_spelled_out_and_all_others_stay() {
+    fn only_control_characters_are_escaped() {
         assert_eq!(
             escape_controls("a\u{1b}]0;x\u{7}\u{9b}1m\t\r\n"),
             "a\\u{1b}]0;x\\u{7}\\u{9b}1m\\t\\r\\n"

@@ -1,4 +1,4 @@
-//! Parts of all charts: axes, maps in bands of colour, and colour scales.
+//! Parts that all charts share: axes, maps in colour bands, and colour scales.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -6,10 +6,10 @@ use std::fmt::Write as _;
 use svg::node::element::{Group, Path, Polyline};
 
 use crate::shared::ink::{
-    DARK, GRID_COLOUR, curve, line, outlined, rectangle, text_end, text_middle, text_start,
+    DARK, GRID_COLOUR, add_outline, curve, line, rectangle, text_end, text_middle, text_start,
 };
 
-/// Viridis in ten bands whose lightness increases evenly. They are legible in grey print and for colour-blind people.
+/// Viridis in ten bands of evenly increasing lightness, legible in grey print and for colour-blind people.
 pub const VIRIDIS: &[&str] = &[
     "#440154", "#482878", "#3e4989", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6ece58",
     "#b5de2b", "#fde725",
@@ -45,35 +45,35 @@ pub struct Axis<'a> {
 }
 
 impl<'a> Axis<'a> {
-    /// An axis with ticks at multiples of `tick_step`.
+    /// Creates an axis with ticks at multiples of `tick_step`.
     pub const fn new(tick_step: f64, name: &'a str) -> Self {
         Self { tick_step, name }
     }
 }
 
 impl Plot {
-    /// Converts a point from the plot's coordinates to its position on the page, px.
-    pub fn page_point(&self, x: f64, y: f64) -> (f64, f64) {
+    /// Converts a point in the plot's coordinates to its position on the page, px.
+    pub fn to_page_point(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x_range.0) / (self.x_range.1 - self.x_range.0),
             self.corner.1 + self.size.1 * (self.y_range.1 - y) / (self.y_range.1 - self.y_range.0),
         )
     }
 
-    /// Pixels per unit of x.
+    /// Returns the number of pixels per unit of x.
     pub fn scale(&self) -> f64 {
         self.size.0 / (self.x_range.1 - self.x_range.0)
     }
 
-    /// The lower right corner on the page.
+    /// Returns the lower right corner on the page.
     fn lower_right_corner(&self) -> (f64, f64) {
         (self.corner.0 + self.size.0, self.corner.1 + self.size.1)
     }
 
     /// Adds a grid in the background.
     pub fn draw_grid(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
-        for value in ticks(self.x_range, x_axis.tick_step) {
-            let page_x = self.page_point(value, 0.0).0;
+        for value in compute_ticks(self.x_range, x_axis.tick_step) {
+            let page_x = self.to_page_point(value, 0.0).0;
             group = group.add(line(
                 (page_x, self.corner.1),
                 (page_x, self.lower_right_corner().1),
@@ -81,8 +81,8 @@ impl Plot {
                 1.0,
             ));
         }
-        for value in ticks(self.y_range, y_axis.tick_step) {
-            let page_y = self.page_point(0.0, value).1;
+        for value in compute_ticks(self.y_range, y_axis.tick_step) {
+            let page_y = self.to_page_point(0.0, value).1;
             group = group.add(line(
                 (self.corner.0, page_y),
                 (self.lower_right_corner().0, page_y),
@@ -96,13 +96,13 @@ impl Plot {
     /// Adds the frame, and the ticks, numbers and names of both axes.
     pub fn draw_axes(&self, mut group: Group, x_axis: &Axis, y_axis: &Axis) -> Group {
         let (right, bottom) = self.lower_right_corner();
-        group = group.add(outlined(
+        group = group.add(add_outline(
             rectangle(self.corner, self.size, "none"),
             DARK,
             1.0,
         ));
-        for value in ticks(self.x_range, x_axis.tick_step) {
-            let page_x = self.page_point(value, 0.0).0;
+        for value in compute_ticks(self.x_range, x_axis.tick_step) {
+            let page_x = self.to_page_point(value, 0.0).0;
             group = group
                 .add(line((page_x, bottom), (page_x, bottom + 6.0), DARK, 1.0))
                 .add(text_middle(
@@ -111,8 +111,8 @@ impl Plot {
                     15.0,
                 ));
         }
-        for value in ticks(self.y_range, y_axis.tick_step) {
-            let page_y = self.page_point(0.0, value).1;
+        for value in compute_ticks(self.y_range, y_axis.tick_step) {
+            let page_y = self.to_page_point(0.0, value).1;
             group = group
                 .add(line(
                     (self.corner.0 - 6.0, page_y),
@@ -137,8 +137,8 @@ impl Plot {
     }
 
     /// Adds a map of coloured cells. `cell_counts` are the numbers of columns and rows. `colour_at` returns the colour
-    /// at the middle of a cell, or `None` for an empty cell. Each colour is one path. Neighbours of equal colour in a
-    /// row become one rectangle.
+    /// at a cell's centre, or `None` for an empty cell. Each colour is one path. Neighbouring cells with the same
+    /// colour in a row become one rectangle.
     pub fn draw_map(
         &self,
         mut group: Group,
@@ -150,14 +150,14 @@ impl Plot {
         let mut outlines: BTreeMap<&str, String> = BTreeMap::new();
         for row in 0..cell_counts.1 {
             let y = self.y_range.0 + row as f64 * height;
-            let left_of = |column: usize| self.x_range.0 + column as f64 * width;
-            let colour_of =
-                |column: usize| colour_at(left_of(column) + width / 2.0, y + height / 2.0);
+            let column_left = |column: usize| self.x_range.0 + column as f64 * width;
+            let cell_colour =
+                |column: usize| colour_at(column_left(column) + width / 2.0, y + height / 2.0);
             let mut first_column = 0;
-            let mut fill = colour_of(0);
+            let mut fill = cell_colour(0);
             for column in 1..=cell_counts.0 {
                 let next_fill = if column < cell_counts.0 {
-                    colour_of(column)
+                    cell_colour(column)
                 } else {
                     None
                 };
@@ -165,8 +165,8 @@ impl Plot {
                     continue;
                 }
                 if let Some(fill) = fill {
-                    let (left, top) = self.page_point(left_of(first_column), y + height);
-                    let (right, bottom) = self.page_point(left_of(column), y);
+                    let (left, top) = self.to_page_point(column_left(first_column), y + height);
+                    let (right, bottom) = self.to_page_point(column_left(column), y);
                     let (band_width, band_height) = (right - left, bottom - top);
                     let _ = write!(
                         outlines.entry(fill).or_default(),
@@ -183,15 +183,18 @@ impl Plot {
         group
     }
 
-    /// An open curve through points in the plot's coordinates.
+    /// Returns an open curve through points in the plot's coordinates.
     pub fn curve(&self, points: &[(f64, f64)], colour: &str, width: f64) -> Polyline {
-        let points: Vec<_> = points.iter().map(|&(x, y)| self.page_point(x, y)).collect();
+        let points: Vec<_> = points
+            .iter()
+            .map(|&(x, y)| self.to_page_point(x, y))
+            .collect();
         curve(&points, colour, width)
     }
 }
 
-/// The multiples of a step within a range.
-fn ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
+/// Returns the multiples of a step within a range.
+fn compute_ticks(range: (f64, f64), step: f64) -> impl Iterator<Item = f64> {
     let first = (range.0 / step - 1e-9).ceil() as i64;
     let last = (range.1 / step + 1e-9).floor() as i64;
     (first..=last).map(move |i| i as f64 * step)
@@ -205,7 +208,7 @@ fn format_tick(value: f64, step: f64) -> String {
     format!("{:.1$}", value + 0.0, decimals as usize)
 }
 
-/// A scale of colours for a quantity.
+/// A colour scale for a quantity.
 pub struct ColourScale {
     /// Value at the lower end of the first band.
     pub min: f64,
@@ -216,10 +219,10 @@ pub struct ColourScale {
 }
 
 impl ColourScale {
-    /// The colour of a value; a value outside the range gets the nearest band.
+    /// Returns the colour of a value; a value outside the range gets the nearest band.
     pub fn colour(&self, value: f64) -> &'static str {
         let fraction = (value - self.min) / (self.max - self.min);
-        // The small addend puts a value between two bands into the upper band, despite rounding.
+        // The small addend puts a value on the boundary of two bands into the upper band, despite rounding.
         let band_index = (fraction * self.colours.len() as f64 + 1e-9).max(0.0) as usize;
         self.colours[band_index.min(self.colours.len() - 1)]
     }

@@ -1,4 +1,4 @@
-//! The options for a pose, and the bounds of quantities on the command line. Beyond these bounds, an f64 has too few
+//! The options for a pose, and the bounds of quantities on the command line. Beyond the bounds, an f64 has too few
 //! digits for an exact result.
 
 use std::fmt;
@@ -8,7 +8,7 @@ use lizard_kinematics::Pose;
 /// The servo angles' names in servo order, A1 to A4. Columns, flags and keys are in this order everywhere.
 pub const ANGLE_NAMES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
 
-/// A physical quantity with the bounds of its numbers.
+/// A physical quantity with the largest absolute value allowed on the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     max: f64,
@@ -17,23 +17,23 @@ pub struct Quantity {
 
 impl Quantity {
     /// An angle, degrees; the bound is about 2800 turns.
-    pub const ANGLE: Self = Self::up_to(1e6, "degrees");
-    /// A speed of a servo, deg/s.
-    pub const RATE: Self = Self::up_to(1e6, "deg/s");
-    /// An acceleration of a servo, deg/s^2.
-    pub const ACCELERATION: Self = Self::up_to(1e9, "deg/s^2");
+    pub const ANGLE: Self = Self::with_max(1e6, "degrees");
+    /// A servo speed, deg/s.
+    pub const RATE: Self = Self::with_max(1e6, "deg/s");
+    /// A servo acceleration, deg/s^2.
+    pub const ACCELERATION: Self = Self::with_max(1e9, "deg/s^2");
     /// A time, s.
-    pub const TIME: Self = Self::up_to(1e9, "s");
+    pub const TIME: Self = Self::with_max(1e9, "s");
     /// A length in units of D.
-    pub const PROPORTION: Self = Self::up_to(1e6, "D");
+    pub const PROPORTION: Self = Self::with_max(1e6, "D");
     /// A coordinate or a length, mm.
-    pub const LENGTH: Self = Self::up_to(1e6, "mm");
+    pub const LENGTH: Self = Self::with_max(1e6, "mm");
 
-    const fn up_to(max: f64, unit: &'static str) -> Self {
+    const fn with_max(max: f64, unit: &'static str) -> Self {
         Self { max, unit }
     }
 
-    /// Returns a parser of this quantity for clap.
+    /// Returns a clap parser for this quantity.
     pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
         move |text| self.parse(text).map_err(|error| format!("it {error}"))
     }
@@ -52,7 +52,7 @@ impl Quantity {
     }
 }
 
-/// The reason why a typed number is refused. The message is the end of a sentence that begins with the number.
+/// An error in a number on the command line. The message completes a sentence that begins with the number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NumberError {
     /// The text is not a number.
@@ -69,7 +69,7 @@ impl fmt::Display for NumberError {
             Self::NotANumber => f.write_str("is not a number"),
             Self::NotFinite => f.write_str("is not a finite number"),
             Self::OutOfRange(Quantity { max, unit }) => {
-                write!(f, "is not within -{max} to {max} {unit}")
+                write!(f, "is not between -{max} and {max} {unit}")
             }
         }
     }
@@ -100,7 +100,7 @@ pub struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// The pose of the options; `None` without options. clap accepts only all four options or none.
+    /// Returns the pose; `None` without options. clap accepts only all four options or none.
     pub fn to_pose(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

@@ -8,18 +8,18 @@ use indicatif::{ProgressBar, ProgressStyle};
 ///
 /// # Panics
 /// Panics if the template is not well formed.
-pub fn progress_bar(length: usize, template: &str) -> ProgressBar {
+pub fn create_progress_bar(length: usize, template: &str) -> ProgressBar {
     let style = ProgressStyle::with_template(template).expect("the template is well formed");
     ProgressBar::new(length as u64).with_style(style)
 }
 
-/// A display of the elapsed time, for a computation without steps. The display disappears when the value is dropped.
+/// A display of the elapsed time, for a computation without steps. It disappears when the value is dropped.
 pub struct Spinner(ProgressBar);
 
 impl Spinner {
-    /// Starts to show this message, followed by the elapsed time.
+    /// Shows `message`, followed by the elapsed time.
     pub fn new(message: &'static str) -> Self {
-        let spinner = progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
+        let spinner = create_progress_bar(0, "{spinner} {msg}, {elapsed}").with_message(message);
         spinner.enable_steady_tick(Duration::from_millis(100));
         Self(spinner)
     }

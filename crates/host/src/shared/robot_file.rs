@@ -2,15 +2,16 @@
 
 use std::path::PathBuf;
 
-use lizard_robot::Robot;
+use lizard_robot::{CheckedGait, Robot};
 
 use crate::Failure;
-use crate::shared::files::{self, note_input};
+use crate::shared::files::{self, record_input};
+use crate::shared::suggestion::format_suggestion;
 
-/// The text of the source tree's robot.toml, which is used if no robot.toml is found.
+/// The text of the source tree's robot.toml, the default if no robot.toml is found.
 pub(crate) const DEFAULT_ROBOT_TOML: &str = include_str!("../../../../robot.toml");
 
-/// The robots of robots/, by their names.
+/// The robots of robots/ with their names.
 const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
     ("grain", include_str!("../../../../robots/grain.toml")),
     ("large", include_str!("../../../../robots/large.toml")),
@@ -22,12 +23,12 @@ const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
     ("unequal", include_str!("../../../../robots/unequal.toml")),
 ];
 
-/// The names of the built-in robots.
+/// Returns the names of the built-in robots.
 pub(crate) fn built_in_names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
     BUILT_IN_ROBOTS.map(|(name, _)| name)
 }
 
-/// A robot of robots/, for tests.
+/// Returns a robot of robots/, for tests.
 #[cfg(test)]
 pub fn built_in_robot(name: &str) -> Robot {
     let entry = BUILT_IN_ROBOTS
@@ -39,9 +40,9 @@ pub fn built_in_robot(name: &str) -> Robot {
 /// The option `--robot`.
 #[derive(clap::Args, Debug, Default)]
 pub struct RobotFile {
-    /// The robot's measurements and limits [default: robot.toml in this folder
-    /// or one above it, else the one this program was built with]; or the name of a robot
-    /// that the program has: grain, large, own-gaits, paper, unequal
+    /// A robot file, or the name of a built-in robot: grain, large, own-gaits, paper, unequal
+    /// [default: robot.toml in this folder or the nearest folder above it, else the built-in
+    /// robot.toml]
     #[arg(long = "robot", value_name = "FILE", help_heading = "Robot")]
     path: Option<PathBuf>,
     /// The robot's text, if it does not come from a file.
@@ -50,7 +51,7 @@ pub struct RobotFile {
 }
 
 impl RobotFile {
-    /// The robot with this text.
+    /// Creates a robot file from its text.
     pub(crate) fn with_text(text: String) -> Self {
         Self {
             path: None,
@@ -58,7 +59,7 @@ impl RobotFile {
         }
     }
 
-    /// The text of the robot file.
+    /// Returns the text of the robot file.
     ///
     /// # Errors
     /// Fails if the file is missing or is not valid UTF-8, or if the current folder was removed.
@@ -73,7 +74,7 @@ impl RobotFile {
         files::read_text(&path)
     }
 
-    /// The robot file at a path. With `None`, [`RobotFile::load`] searches for robot.toml.
+    /// Creates a robot file from its path. With `None`, [`RobotFile::load`] searches for robot.toml.
     pub fn from_path(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
     }
@@ -87,12 +88,12 @@ impl RobotFile {
             return Ok(Robot::parse(text)?);
         }
         Ok(match self.find_source()? {
-            RobotSource::File(path) => Robot::load(note_input(&path))?,
+            RobotSource::File(path) => Robot::load(record_input(&path))?,
             RobotSource::BuiltIn(text) => Robot::parse(text)?,
         })
     }
 
-    /// The name of the robot's source for messages.
+    /// Returns the name of the robot's source, for messages.
     ///
     /// # Errors
     /// Fails if the current folder was removed.
@@ -100,13 +101,11 @@ impl RobotFile {
         Ok(match (self.find_source()?, &self.path) {
             (RobotSource::File(path), _) => path.display().to_string(),
             (RobotSource::BuiltIn(_), Some(name)) => format!("the robot {}", name.display()),
-            (RobotSource::BuiltIn(_), None) => {
-                "the robot.toml that this program was built with".to_owned()
-            }
+            (RobotSource::BuiltIn(_), None) => "the built-in robot.toml".to_owned(),
         })
     }
 
-    /// Finds the robot's source. A file takes precedence over a built-in robot of the same name. Without `--robot`,
+    /// Finds the robot's source. A file takes precedence over a built-in robot with the same name. Without `--robot`,
     /// looks for robot.toml in the current folder and the folders above it.
     fn find_source(&self) -> Result<RobotSource, Failure> {
         if let Some(path) = &self.path {
@@ -129,17 +128,41 @@ impl RobotFile {
 enum RobotSource {
     /// A file at this path.
     File(PathBuf),
-    /// A robot inside the program, by its text.
+    /// The text of a built-in robot.
     BuiltIn(&'static str),
 }
 
-/// The current folder.
+/// Finds the gait called `name`.
+///
+/// # Errors
+/// Fails if the robot has no such gait, or if the gait moves no servo.
+pub(crate) fn find_moving_gait<'a>(
+    robot: &'a Robot,
+    name: &str,
+) -> Result<&'a CheckedGait, Failure> {
+    match robot.gait(name) {
+        Some(gait) if gait.has_movement() => Ok(gait),
+        Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
+        None => {
+            let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
+            let names: Vec<&str> = moving_gaits.map(CheckedGait::name).collect();
+            Err(Failure::Input(format!(
+                "robot.toml has no gait `{name}`; allowed values: {}{}",
+                names.join(", "),
+                format_suggestion(name, names)
+            )))
+        }
+    }
+}
+
+/// Returns the current folder.
 ///
 /// # Errors
 /// Fails if the folder was removed, or may not be read.
 pub(crate) fn current_folder() -> Result<PathBuf, Failure> {
-    std::env::current_dir()
-        .map_err(|error| Failure::Impossible(format!("this folder has no path: {error}")))
+    std::env::current_dir().map_err(|error| {
+        Failure::Impossible(format!("cannot determine the current folder: {error}"))
+    })
 }
 
 #[cfg(test)]
@@ -147,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_file_of_robots_is_built_in_under_its_name() {
+    fn every_file_in_robots_is_built_in_under_its_name() {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
         let entries = std::fs::read_dir(folder).expect("robots/ is readable");
         let mut names: Vec<_> = entries

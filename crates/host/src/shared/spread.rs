@@ -1,10 +1,10 @@
 //! Long computations spread over machines.
 //!
 //! `lizard prove --part 2/8` computes one of eight parts and prints its results as one line. `lizard merge` reads all
-//! eight lines and prints the same bytes as a single machine would. The bytes are the same because a computation is a
-//! list of independent pieces. A single machine computes all pieces, a part computes its own pieces, and a merge runs
-//! the same program on the pieces that it has read. A part's line contains the version, the options and the robot, so
-//! that parts of different computations cannot be mixed.
+//! eight lines and prints the same bytes as a single machine, because a computation is a list of independent pieces. A
+//! single machine computes all pieces, a part computes its own pieces, and a merge runs the same program on the pieces
+//! from its input. A part's line contains the version, the options and the robot, so that parts of different
+//! computations cannot be mixed.
 
 use std::collections::BTreeMap;
 use std::io;
@@ -24,7 +24,7 @@ const MAX_PARTS: u32 = 1_000_000;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub struct Part {
-    /// The number of this part, from 1.
+    /// The number of this part, starting at 1.
     pub(crate) number: u32,
     /// The total number of parts.
     pub(crate) part_count: u32,
@@ -34,8 +34,9 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parse_failure =
-            || format!("it must be as 2/8, from 1/8 to 8/8, of at most {MAX_PARTS}");
+        let parse_failure = || {
+            format!("expected K/N with K from 1 to N and N at most {MAX_PARTS}, for example 2/8")
+        };
         let (number, part_count) = text.split_once('/').ok_or_else(parse_failure)?;
         let (Ok(number), Ok(part_count)) = (number.parse(), part_count.parse()) else {
             return Err(parse_failure());
@@ -63,14 +64,14 @@ impl From<Part> for String {
 }
 
 impl Part {
-    /// True if the piece with this index belongs to this part. Neighbouring pieces belong to different parts, because
+    /// True if the piece with this index belongs to this part. Neighbouring pieces belong to different parts because
     /// slow pieces are often neighbours.
     fn has_piece(self, piece: usize) -> bool {
         piece % self.part_count as usize == self.number as usize - 1
     }
 
-    /// The number of this part's pieces, if all parts have `total_count` pieces.
-    pub fn piece_count(self, total_count: usize) -> usize {
+    /// Returns the number of this part's pieces if all parts together have `total_count` pieces.
+    pub fn count_pieces(self, total_count: usize) -> usize {
         (0..total_count)
             .filter(|piece| self.has_piece(*piece))
             .count()
@@ -80,7 +81,7 @@ impl Part {
     ///
     /// # Errors
     /// Fails if the robot cannot be read, or the output cannot be written.
-    pub fn print<C: Spreadable, T: Serialize>(
+    pub fn compute_and_print<C: Spreadable, T: Serialize>(
         self,
         command: &C,
         robot: &RobotFile,
@@ -123,24 +124,24 @@ pub trait Spreadable: Serialize + DeserializeOwned {
     /// The command's name.
     const COMMAND: &'static str;
 
-    /// The options `--robot` and `--part` of this command.
+    /// Returns the options `--robot` and `--part` of this command.
     fn spread_args(&mut self) -> &mut SpreadArgs;
 }
 
-/// The output of one part.
+/// The output of one part; the field names are the JSON keys.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PartOutput {
-    /// The version of the program.
+    /// The program's version.
     pub(crate) lizard: String,
     pub(crate) command: String,
     pub(crate) options: Value,
     /// The text of robot.toml.
     pub(crate) robot: String,
     pub(crate) part: Part,
-    /// The number of pieces of all parts.
+    /// The total number of pieces in all parts.
     pub(crate) pieces: usize,
-    /// The pieces of this part, by their indices.
+    /// The results of this part's pieces, by piece index.
     pub(crate) found: BTreeMap<usize, Value>,
 }
 
@@ -151,7 +152,7 @@ impl SpreadArgs {
         self.merged = Some(pieces);
     }
 
-    /// The part to compute; `None` without `--part`.
+    /// Returns the part to compute; `None` without `--part`.
     pub fn part(&self) -> Option<Part> {
         self.part
     }
@@ -180,12 +181,12 @@ impl SpreadArgs {
         pieces.map(Some).map_err(|_| mismatched_parts_failure())
     }
 
-    /// Returns all pieces in order. `compute_piece` computes a piece from its index; in a merge, the pieces are read
-    /// from the parts. With `--part`, prints the pieces of that part and returns `None`.
+    /// Returns all pieces in order. `compute_piece` computes a piece from its index; in a merge, the pieces come from
+    /// the parts. With `--part`, prints that part's pieces and returns `None`.
     ///
     /// # Errors
     /// Fails if the output cannot be written, or the parts belong to another computation.
-    pub fn all_pieces<T: Serialize + DeserializeOwned>(
+    pub fn run_pieces<T: Serialize + DeserializeOwned>(
         &self,
         command: &impl Spreadable,
         piece_count: usize,
@@ -193,7 +194,7 @@ impl SpreadArgs {
     ) -> Result<Option<Vec<T>>, Failure> {
         if let Some(part) = self.part {
             return part
-                .print(command, &self.robot, piece_count, compute_piece)
+                .compute_and_print(command, &self.robot, piece_count, compute_piece)
                 .map(|()| None);
         }
         let pieces = self.read_merged(piece_count)?;
@@ -202,19 +203,19 @@ impl SpreadArgs {
         })))
     }
 
-    /// The number of pieces that this run computes, for a progress bar.
-    pub fn own_piece_count(&self, total_count: usize) -> usize {
+    /// Returns the number of pieces that this run computes, for a progress bar.
+    pub fn count_own_pieces(&self, total_count: usize) -> usize {
         match (&self.merged, self.part) {
             (Some(_), _) => 0,
             (None, None) => total_count,
-            (None, Some(part)) => part.piece_count(total_count),
+            (None, Some(part)) => part.count_pieces(total_count),
         }
     }
 }
 
-/// The failure for parts that belong to another computation.
+/// Returns the failure for parts that belong to another computation.
 pub(crate) fn mismatched_parts_failure() -> Failure {
-    Failure::Input("the parts do not hold what this computation finds".to_owned())
+    Failure::Input("the parts belong to another computation".to_owned())
 }
 
 #[cfg(test)]
@@ -238,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn a_part_is_written_as_two_numbers() {
+    fn only_valid_parts_are_parsed() {
         assert_eq!(
             "2/8".parse(),
             Ok(Part {
@@ -259,7 +260,7 @@ mod tests {
         ] {
             let message = invalid_text.parse::<Part>().expect_err(invalid_text);
             assert!(
-                message.starts_with("it must be as 2/8"),
+                message.starts_with("expected K/N with K from 1 to N"),
                 "{invalid_text}: {message}"
             );
         }

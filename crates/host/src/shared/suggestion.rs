@@ -1,11 +1,11 @@
 //! Suggestions for a mistyped name.
 
-/// Smallest similarity, from 0 to 1, of a name that is suggested for a word. clap uses the same value for commands and
+/// Smallest similarity, from 0 to 1, between a word and a suggested name. clap uses the same value for commands and
 /// options.
 const MIN_SIMILARITY: f64 = 0.7;
 
-/// The text `; did you mean NAME?` with the name that is most similar to `word`; empty if no name is similar.
-pub fn suggestion_text<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
+/// Returns `; did you mean NAME?` with the name most similar to `word`; empty if no name is similar.
+pub fn format_suggestion<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> String {
     let candidates = names
         .into_iter()
         .map(|name| (strsim::jaro(word, name), name))
@@ -19,14 +19,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_most_similar_name_is_suggested_unless_all_are_dissimilar() {
+    fn suggests_the_most_similar_name_if_any_is_similar() {
         let names = ["stand", "walk", "arc-left", "arc-right"];
-        assert_eq!(suggestion_text("wlak", names), "; did you mean `walk`?");
+        assert_eq!(format_suggestion("wlak", names), "; did you mean `walk`?");
         assert_eq!(
-            suggestion_text("arc left", names),
+            format_suggestion("arc left", names),
             "; did you mean `arc-left`?"
         );
-        assert_eq!(suggestion_text("xyz", names), "");
-        assert_eq!(suggestion_text("walk", []), "");
+        assert_eq!(format_suggestion("xyz", names), "");
+        assert_eq!(format_suggestion("walk", []), "");
     }
 }

@@ -1,5 +1,5 @@
-//! A simulated UNO, used as if through a serial cable and an oscilloscope: power it on, send lines, read answers,
-//! measure the servos' pulses.
+//! A simulated UNO with a serial cable and an oscilloscope: switch its power on, send lines, read answers, measure the
+//! servos' pulses.
 
 use std::path::Path;
 
@@ -14,26 +14,28 @@ use crate::simulate::sim::frame::{
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
 
-/// The longest wait for an answer after its command has been sent, ms. The firmware answers much sooner.
+/// Longest wait for an answer after a command was sent, ms. The firmware answers much sooner.
 const ANSWER_TIMEOUT_MS: u64 = 200;
-/// The longest wait for the banner after power-on, ms.
+/// Longest wait for the banner after power-on, ms.
 pub(crate) const BANNER_TIMEOUT_MS: u64 = 500;
 /// Cycles of the UNO per byte on the serial line, rounded up.
 const CYCLES_PER_BYTE: u64 = 1400;
 
-/// The reason why an operation on a simulated board failed.
+/// An error in an operation on a simulated board.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// The firmware cannot be loaded.
     #[error(transparent)]
     Load(#[from] firmware::ReadError),
     /// The first line is not the firmware's banner.
-    #[error("no banner `# lizard ...` within {BANNER_TIMEOUT_MS} ms of power-on, but {0:?}")]
+    #[error(
+        "expected the banner `# lizard ...` within {BANNER_TIMEOUT_MS} ms of power-on, got {0:?}"
+    )]
     NoBanner(Option<String>),
     /// A command was not answered in time.
-    #[error("no answer to {line:?} within {ANSWER_TIMEOUT_MS} ms, only {notes:?}")]
+    #[error("no answer to {line:?} within {ANSWER_TIMEOUT_MS} ms, received {notes:?}")]
     NoAnswer {
-        /// The command that was sent.
+        /// The command.
         line: String,
         /// The information lines (`# ...`) received instead.
         notes: Vec<String>,
@@ -44,17 +46,17 @@ pub enum BoardError {
     /// The firmware ran into an invalid address.
     #[error("the firmware crashed: {0}")]
     Crashed(String),
-    /// The power has been cut.
+    /// The board has no power.
     #[error("the board has no power")]
     Off,
     /// The watchdog fired.
     #[error("the watchdog reset the firmware")]
     Reset,
-    /// The ELF has no function of this name, or more than one.
-    #[error("the ELF has no function {0}, or more than one")]
+    /// The ELF has no function with this name, or more than one.
+    #[error("the ELF must contain exactly one function {0}")]
     UnresolvedFunction(String),
-    /// The answer to `status` lacks a counter.
-    #[error("`{status}` has no {key}")]
+    /// A counter is missing from the answer to `status`.
+    #[error("{key} is missing from `{status}`")]
     MissingCounter {
         /// The answer to `status`.
         status: String,
@@ -70,7 +72,7 @@ impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         match error {
             BoardError::Load(_) => Self::Input(error.to_string()),
-            _ => Self::Impossible(format!("the firmware cannot be measured: {error}")),
+            _ => Self::Impossible(format!("cannot measure the firmware: {error}")),
         }
     }
 }
@@ -86,10 +88,10 @@ pub struct SimulatedBoard {
     bytes: Vec<SerialByte>,
     /// Every line that the firmware has sent since power-on.
     lines: Vec<Line>,
-    /// Number of lines that [`SimulatedBoard::next_line`] has returned.
-    returned_lines: usize,
-    /// The cycle at which some frame starts; the other frames start a multiple of 20 ms before or after it. `None`
-    /// while no pulse is known.
+    /// Number of lines that [`SimulatedBoard::next_line`] has returned so far.
+    returned_line_count: usize,
+    /// The start cycle of any frame; the other frames start a multiple of 20 ms before or after it. `None` while no
+    /// pulse is known.
     frame_anchor: Option<u64>,
 }
 
@@ -103,14 +105,14 @@ impl SimulatedBoard {
         Ok(Self::with_image(image, fidelity, robot))
     }
 
-    /// Powers on a board with an image that contains the robot already.
+    /// Powers on a board with an image that already contains the robot.
     pub fn with_image(image: Image, fidelity: Fidelity, robot: &Robot) -> Self {
         let mut uno = Uno::with_image(image, fidelity);
         supplies::connect(&mut uno, robot);
         Self::with_uno(uno, servo_pins(robot))
     }
 
-    /// Powers a board on and waits for the lizard's banner.
+    /// Powers on a board and waits for the lizard's banner.
     ///
     /// # Errors
     /// Fails as [`SimulatedBoard::power_on`] does, or if the banner is not the first line within 500 ms.
@@ -122,7 +124,7 @@ impl SimulatedBoard {
         }
     }
 
-    /// A board with a given UNO. `pins` are the pins of the servos A1 to A4.
+    /// Creates a board with a given UNO. `pins` are the pins of the servos A1 to A4.
     pub fn with_uno(uno: Uno, pins: [Pin; 4]) -> Self {
         Self {
             uno,
@@ -130,12 +132,12 @@ impl SimulatedBoard {
             reader: LineReader::default(),
             bytes: Vec::new(),
             lines: Vec::new(),
-            returned_lines: 0,
+            returned_line_count: 0,
             frame_anchor: None,
         }
     }
 
-    /// The pins of the servos A1 to A4.
+    /// Returns the pins of the servos A1 to A4.
     pub fn pins(&self) -> [Pin; 4] {
         self.pins
     }
@@ -144,17 +146,17 @@ impl SimulatedBoard {
     /// [`SimulatedBoard::lines`].
     ///
     /// # Errors
-    /// Fails if there is no answer within 200 ms after the line has been sent.
+    /// Fails if no answer arrives within 200 ms after the line was sent.
     pub fn say(&mut self, line: &str) -> Result<String, BoardError> {
         Ok(self.ask(line)?.1)
     }
 
-    /// Sends a line; returns the `#` lines before the answer, and the answer.
+    /// Sends a line; returns the `#` lines before the answer and the answer.
     ///
     /// # Errors
     /// See [`SimulatedBoard::say`].
     pub fn ask(&mut self, line: &str) -> Result<(Vec<String>, String), BoardError> {
-        self.returned_lines = self.lines().len();
+        self.returned_line_count = self.lines().len();
         self.send(line);
         let mut notes = Vec::new();
         while let Some(answer) = self.next_line(ANSWER_TIMEOUT_MS) {
@@ -173,16 +175,16 @@ impl SimulatedBoard {
         self.uno.send(b"\n");
     }
 
-    /// Returns the next line without its line end; `None` if no line arrives within `ms` after the last byte still to
-    /// be sent, or if the firmware stops.
+    /// Runs the board until the next line and returns the line without its line end; `None` if no line arrives within
+    /// `ms` after the last unsent byte, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
         let cycles_to_send = self.uno.bytes_unsent() as u64 * CYCLES_PER_BYTE;
         let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;
         loop {
-            let index = self.returned_lines;
+            let index = self.returned_line_count;
             if let Some(line) = self.lines().get(index) {
                 let text = line.text.clone();
-                self.returned_lines += 1;
+                self.returned_line_count += 1;
                 return Some(text);
             }
             if self.uno.cycle() >= end_cycle || *self.uno.state() != State::Alive {
@@ -192,13 +194,13 @@ impl SimulatedBoard {
         }
     }
 
-    /// Every line that the firmware has sent since power-on.
+    /// Returns every line that the firmware has sent since power-on.
     pub fn lines(&mut self) -> &[Line] {
         self.collect_output();
         &self.lines
     }
 
-    /// Every byte that the firmware has sent since power-on.
+    /// Returns every byte that the firmware has sent since power-on.
     pub fn bytes(&mut self) -> &[SerialByte] {
         self.collect_output();
         &self.bytes
@@ -211,10 +213,10 @@ impl SimulatedBoard {
         self.bytes.extend(bytes);
     }
 
-    /// Asks for `status` and returns one of its counters.
+    /// Reads a counter from the answer to `status`.
     ///
     /// # Errors
-    /// Fails as [`SimulatedBoard::say`] does, or if `status` has no such number.
+    /// Fails as [`SimulatedBoard::say`] does, or if the counter is missing.
     pub fn read_counter(&mut self, key: &str) -> Result<u64, BoardError> {
         let status = self.say("status")?;
         let value = status.split(' ').find_map(|pair| {
@@ -233,7 +235,7 @@ impl SimulatedBoard {
         self.run_until(self.uno.cycle() + ms * CYCLES_PER_MS)
     }
 
-    /// Runs the board until a cycle.
+    /// Runs the board until `cycle`.
     fn run_until(&mut self, cycle: u64) -> Result<(), BoardError> {
         let resets_before = self.uno.watchdog_resets();
         match self.uno.run_until_cycle(cycle) {
@@ -249,11 +251,11 @@ impl SimulatedBoard {
         }
     }
 
-    /// Runs the board for `ms` and times every call of a firmware function. The function is given by its path, such as
+    /// Runs the board for `ms` and times every call of a firmware function. `function` is the function's path, such as
     /// `Controller::compute_frame`.
     ///
     /// # Errors
-    /// Fails if the ELF has no such function, or more than one.
+    /// Fails unless the ELF has exactly one such function.
     pub fn time_calls(&mut self, function: &str, ms: u64) -> Result<Vec<Call>, BoardError> {
         let symbol = self.uno.image().function(function);
         let symbol = symbol.ok_or_else(|| BoardError::UnresolvedFunction(function.to_owned()))?;
@@ -261,7 +263,7 @@ impl SimulatedBoard {
         Ok(self.uno.time_calls(entry, ms * CYCLES_PER_MS))
     }
 
-    /// The cycles spent so far in the handlers of the vectors that `is_counted` accepts.
+    /// Returns the cycles spent so far in the handlers of the vectors that `is_counted` accepts.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
         let interrupts = self.uno.interrupts();
         let counted_interrupts = interrupts
@@ -270,18 +272,18 @@ impl SimulatedBoard {
         counted_interrupts.map(|interrupt| interrupt.cycles).sum()
     }
 
-    /// The cycle at which A1's first pulse starts among the recorded edges.
+    /// Returns the start cycle of A1's first pulse in the recorded edges.
     ///
     /// # Errors
-    /// Fails if the recorded edges contain no pulse of A1.
+    /// Fails if the recorded edges contain no A1 pulse.
     pub fn first_pulse_cycle(&self) -> Result<u64, BoardError> {
         let pulses = self.uno.pulses(self.pins[0]);
         let first_start = pulses.first().map(|pulse| pulse.start);
         first_start.ok_or(BoardError::NoPulse)
     }
 
-    /// Runs `count` complete frames, starting with the next one, and returns their pulses. Frames are aligned to A1's
-    /// latest pulse or, without one, to the current cycle. Edges recorded before these frames are dropped.
+    /// Runs `count` complete frames, starting with the next frame, and returns their pulses. Frames are aligned to A1's
+    /// latest pulse or, without a pulse, to the current cycle. Edges recorded before these frames are dropped.
     ///
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].

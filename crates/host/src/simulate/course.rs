@@ -1,4 +1,4 @@
-//! The servo angles that the firmware commands during a gait, for a physics engine to follow.
+//! The servo angles that the firmware commands during a gait, for a physics engine.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use lizard_twin::FRAME_S;
 use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
 
 use crate::shared::firmware;
+use crate::shared::robot_file::find_moving_gait;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
 use crate::{Failure, RobotFile};
 
-/// Records the servo targets during three cycles of a gait on the simulated UNO. `elf` is the firmware to run instead
-/// of the one inside this program.
+/// Records the servo targets during three cycles of a gait on the simulated UNO. `elf` replaces the built-in firmware.
 ///
 /// # Errors
 /// Fails if the gait is unknown, if the firmware is missing or was built for another robot, or if the simulation
@@ -24,26 +24,26 @@ pub fn record_course(
     gait: &str,
     elf: Option<&Path>,
 ) -> Result<Course, Failure> {
-    let gait = twin::moving_gait(robot, gait)?;
+    let gait = find_moving_gait(robot, gait)?;
     let image = firmware::select_firmware(elf, robot_file, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
-    let script = twin::walk_script(robot, &[gait.name()]);
+    let script = twin::build_walk_script(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
     let log = &recording.frames;
     let stop_ms = script.steps.last().map_or(script.end_ms, |step| step.ms);
     let end_s = log.index_at(stop_ms as f64 / 1000.0) as f64 * FRAME_S;
     Ok(Course {
         gait: gait.name().to_owned(),
-        frames: target_sweeps(robot, log),
+        frames: compute_target_sweeps(robot, log),
         measure_start: end_s - gait.period(),
         period: gait.period(),
         measured_cycles: 1,
     })
 }
 
-/// Each frame's servo targets, read from the pulses, as sweeps from neutral in degrees. A servo without a pulse keeps
-/// its previous target.
-fn target_sweeps(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
+/// Returns each frame's servo targets, computed from the pulses, as sweeps from neutral in degrees. A servo without a
+/// pulse keeps its previous target.
+fn compute_target_sweeps(robot: &Robot, log: &FrameLog) -> Vec<[f64; 4]> {
     let mut targets = [0.0; 4];
     let frames = log.widths.iter().map(|widths| {
         for (servo, width) in widths.iter().enumerate() {
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_servo_without_a_pulse_keeps_its_previous_target() {
+    fn servo_without_a_pulse_keeps_its_previous_target() {
         let robot = crate::shared::robot_file::built_in_robot("unequal");
         let log = FrameLog {
             widths: vec![
@@ -72,7 +72,7 @@ mod tests {
             ],
             ..FrameLog::default()
         };
-        let sweeps = target_sweeps(&robot, &log);
+        let sweeps = compute_target_sweeps(&robot, &log);
         assert_eq!(sweeps[0], [0.0; 4]);
         assert_eq!(sweeps[1], [0.0; 4]);
         assert!(

@@ -1,5 +1,5 @@
-//! Commands that run the firmware on a simulated UNO and report its servo pulses, the robot's path, and the
-//! execution times of its functions.
+//! Commands that run the firmware on a simulated UNO and report the servo pulses, the robot's path, and the execution
+//! times of functions.
 
 pub mod bench;
 pub mod board;

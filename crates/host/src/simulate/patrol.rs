@@ -1,6 +1,6 @@
-//! Adds a routine that uses a button, a nose contact and up to nine gaits, for measurements and random tests.
+//! Adds a routine with a button, a nose contact and up to nine gaits, for measurements and random tests.
 
-use lizard_robot::{Error, Robot, command_of};
+use lizard_robot::{Error, Robot, to_command};
 
 use super::sim::tour;
 
@@ -10,16 +10,16 @@ pub const PATROL: &str = "patrol";
 /// The largest number of gaits that follow the first gait of a patrol.
 const MAX_OTHER_GAITS: usize = 8;
 
-/// The Arduino pins that are tried for a missing input, in this order. A1 to A4 are analogue pins here, not servos.
+/// The candidate Arduino pins for a missing input, in order. A1 to A4 are analogue pins here, not servos.
 const CANDIDATE_PINS: [&str; 8] = ["A1", "A2", "A3", "A4", "A5", "D12", "D8", "D7"];
 
 /// Adds a button, a nose contact and the routine [`PATROL`] to the robot file `text`. The routine waits for the button,
 /// walks with the first gait until the nose touches something, continues with up to eight other gaits, and ends with
-/// `last_steps`. A robot that already has a routine of this name is returned unchanged.
+/// `last_steps`. A robot that already has a routine with this name is returned unchanged.
 ///
 /// # Errors
 /// Fails if the text is not a valid robot file, or has no room for the inputs or the routine.
-pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
+pub fn add_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
     let robot = Robot::parse(text)?;
     if robot.routine(PATROL).is_some() {
         return Ok(robot);
@@ -33,16 +33,16 @@ pub fn with_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         {
             continue;
         }
-        let with_input = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
+        let add_input = |pin: &str| format!("{text}\n[input.{name}]\npin = \"{pin}\"\n");
         let free_pin = CANDIDATE_PINS
             .iter()
-            .find(|pin| Robot::parse(&with_input(pin)).is_ok());
-        // If no pin is free, the first pin is used although it is occupied, so that the last `parse` reports the error.
-        text = with_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
+            .find(|pin| Robot::parse(&add_input(pin)).is_ok());
+        // If no pin is free, the occupied first pin is used, so that the last `parse` reports the error.
+        text = add_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
-    let gaits: Vec<String> = tour::moving_gaits(&robot)
+    let gaits: Vec<String> = tour::list_moving_gaits(&robot)
         .iter()
-        .map(|name| command_of(name))
+        .map(|name| to_command(name))
         .collect();
     let first_gait = gaits.first().map_or("stand 1 s", String::as_str);
     let mut steps = vec!["wait button".to_owned(), format!("{first_gait} until nose")];
@@ -60,8 +60,8 @@ mod tests {
     use crate::shared::robot_file;
 
     #[test]
-    fn a_patrol_adds_a_button_and_a_nose_that_its_routine_uses() {
-        let robot = with_patrol(robot_file::DEFAULT_ROBOT_TOML, &[])
+    fn patrol_adds_a_button_and_a_nose_for_its_routine() {
+        let robot = add_patrol(robot_file::DEFAULT_ROBOT_TOML, &[])
             .expect("the built-in robot has room for a patrol");
         let inputs: Vec<&str> = robot.inputs().named_pins().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);

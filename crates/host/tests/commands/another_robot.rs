@@ -1,4 +1,4 @@
-//! Tests that commands refuse an image that was built for a robot other than the selected one.
+//! Tests that commands refuse an image that was built for another robot than the selected robot.
 
 use std::path::PathBuf;
 
@@ -8,35 +8,34 @@ fn release_folder() -> PathBuf {
     repo_root().join("target/avr-atmega328p/release")
 }
 
-/// Returns the robot's name and hash from the first line of a report of `lizard gaits` or of the firmware's build.
-fn name_and_hash_in(report: &str) -> String {
+/// Parses the robot's name and hash from the first line of a report of `lizard gaits` or of the firmware's build.
+fn parse_name_and_hash(report: &str) -> String {
     let first_line = report.lines().next().expect("the report has a line");
     let parts = first_line.split_once("robot ");
     parts.expect("the line names a robot").1.to_owned()
 }
 
-/// The name and hash of the robot in the image that `make firmware` built.
-fn robot_of_image() -> String {
+/// Reads the name and hash of the robot in the image that `make firmware` has built.
+fn read_image_robot() -> String {
     let gaits = std::fs::read_to_string(release_folder().join("gaits.txt"));
-    name_and_hash_in(&gaits.expect("`make firmware` has been run"))
+    parse_name_and_hash(&gaits.expect("`make firmware` has been run"))
 }
 
-/// The path of a robot that is not in the image, and that robot's name and hash.
-fn robot_outside_image() -> (String, String) {
+/// Returns the path, and the name and hash, of a robot that is not in the image.
+fn find_other_robot(image_robot: &str) -> (String, String) {
     let robots = ["unequal", "large"].map(|name| {
         let path = robot_path(name);
         let report = run(&["gaits", "--robot", &path]).expect_success();
-        (path, name_and_hash_in(&report))
+        (path, parse_name_and_hash(&report))
     });
-    let image_robot = robot_of_image();
-    let other_robot = robots.into_iter().find(|(_, robot)| *robot != image_robot);
+    let other_robot = robots.into_iter().find(|(_, robot)| robot != image_robot);
     other_robot.expect("at most one of two robots is in the image")
 }
 
 #[test]
 fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
-    let (selected_path, selected_robot) = robot_outside_image();
-    let image_robot = robot_of_image();
+    let image_robot = read_image_robot();
+    let (selected_path, selected_robot) = find_other_robot(&image_robot);
     let elf = release_folder().join("lizard.elf").display().to_string();
     for command in [
         &["sim"][..],
@@ -50,8 +49,8 @@ fn every_command_that_runs_an_image_refuses_an_elf_of_another_robot() {
         assert_eq!(
             run(&[command, &options].concat()).expect_refusal(),
             format!(
-                "lizard: {elf} has the robot {image_robot} in it, and not {selected_path}, which is {selected_robot}; \
-                 without --elf, the firmware inside this program runs with any robot"
+                "lizard: {elf} contains the robot {image_robot}, expected {selected_path}, which is {selected_robot}; \
+                 omit --elf to run the built-in firmware with any robot"
             ),
             "{command:?}"
         );

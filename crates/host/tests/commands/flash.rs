@@ -15,11 +15,11 @@ const HEX: &str = "\
 
 /// Address of the robot in flash.
 const ROBOT_START: usize = 0x6e00;
-/// Address of the boot loader, where the space of the robot ends.
+/// Address of the boot loader, where the robot's space ends.
 const BOOT_LOADER_START: usize = 0x7e00;
 
 #[test]
-fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
+fn flash_without_built_firmware_fails_only_because_the_port_is_missing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for options in [&[][..], &["--only-robot"], &["--robot", "large"]] {
         let arguments = [&["flash", "/dev/no-such-port"], options].concat();
@@ -28,18 +28,15 @@ fn flash_needs_no_built_firmware_and_fails_only_at_the_missing_port() {
 }
 
 #[test]
-fn an_image_of_any_robot_is_made_in_an_empty_folder() {
+fn flash_image_writes_the_image_of_any_robot_in_an_empty_folder() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options) in [("large", &[][..]), ("unequal", &["--only-robot"])] {
         let file_arguments = ["flash", "image", "--robot", name, "--output", "x.hex"];
         let arguments = [&file_arguments, options].concat();
         let start = Instant::now();
         let outcome = run_in(folder.path(), &arguments, "");
-        assert!(
-            start.elapsed() < Duration::from_secs(20),
-            "{:?}",
-            start.elapsed()
-        );
+        let duration = start.elapsed();
+        assert!(duration < Duration::from_secs(20), "{duration:?}");
         assert_eq!(outcome.stderr, "");
         let output = outcome.expect_success();
         assert!(
@@ -50,7 +47,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
         let pipe_arguments = [&["flash", "image", "--robot", name], options].concat();
         let piped_text = run_in(folder.path(), &pipe_arguments, "").expect_success();
         assert!(piped_text == text, "the piped image equals the file");
-        // The file is read by the simulator's loader, which shares no code with the writer.
+        // The simulator's HEX reader shares no code with the writer.
         let image = simulated_uno::Image::parse_hex(&text).expect("the image is Intel HEX");
         let robot = Robot::load(robot_path(name)).expect("the robot file is valid");
         let flash = image.flash();
@@ -61,7 +58,7 @@ fn an_image_of_any_robot_is_made_in_an_empty_folder() {
 }
 
 #[test]
-fn the_summary_of_an_image_is_printed_as_json() {
+fn flash_image_prints_its_summary_as_json() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["flash", "image", "--robot", "large", "--output", "x.hex"];
     let summary = run_in(folder.path(), &[&arguments[..], &["--json"]].concat(), "").expect_json();
@@ -81,7 +78,7 @@ fn the_summary_of_an_image_is_printed_as_json() {
 }
 
 #[test]
-fn an_invalid_robot_gives_no_image() {
+fn flash_image_refuses_an_invalid_robot_and_writes_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("x.toml"), "[servo]\n").expect("the file is written");
     let arguments = ["flash", "image", "--robot", "x.toml", "--output", "x.hex"];
@@ -91,24 +88,24 @@ fn an_invalid_robot_gives_no_image() {
 
 #[cfg(unix)]
 #[test]
-fn a_missing_port_is_named() {
+fn the_refusal_of_a_missing_port_names_the_port() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     fs::write(folder.path().join("a.hex"), HEX).expect("the file is written");
     let arguments = ["flash", "/dev/no-such-port", "--image", "a.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
     let expected_start =
-        "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ";
+        "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ";
     assert!(message.starts_with(expected_start), "{message}");
 }
 
 #[test]
-fn a_file_that_is_not_an_image_is_refused_before_any_port_is_opened() {
+fn an_invalid_image_is_refused_before_a_port_is_opened() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    fs::write(folder.path().join("half.hex"), &HEX[..60]).expect("the file is written");
-    let arguments = ["flash", "/dev/no-such-port", "--image", "half.hex"];
+    fs::write(folder.path().join("partial.hex"), &HEX[..60]).expect("the file is written");
+    let arguments = ["flash", "/dev/no-such-port", "--image", "partial.hex"];
     let message = run_in(folder.path(), &arguments, "").expect_refusal();
     assert!(
-        message.starts_with("lizard: half.hex: line 2 is not Intel HEX"),
+        message.starts_with("lizard: partial.hex: line 2 is not Intel HEX"),
         "{message}"
     );
     for conflicting_options in [&["--robot", "robot.toml"][..], &["--only-robot"]] {

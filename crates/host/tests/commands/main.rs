@@ -1,5 +1,4 @@
-//! Tests of the commands of `lizard` as a user runs them: the program itself, its exit codes, and the files and pages
-//! that it writes.
+//! Tests of the `lizard` commands as a user runs them: output, exit codes, and written files and pages.
 
 mod another_robot;
 mod draw;

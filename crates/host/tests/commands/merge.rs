@@ -1,24 +1,23 @@
 //! Tests of long computations that are split into parts: independent processes compute the parts, and `lizard merge`
-//! prints the output of one process that computes all. `make parallel-test` tests this with GNU parallel and longer
-//! commands.
+//! prints the output of a single process. `make parallel-test` repeats this with GNU parallel and longer commands.
 
 use crate::program::{run_line, with_paper};
 
 /// Computes all parts and returns their output, the last part first.
 fn compute_parts(arguments: &str, part_count: usize) -> String {
-    let output_of_part = |number| {
+    let compute_part = |number| {
         run_line(&format!("{arguments} --part {number}/{part_count}"), "").expect_success()
     };
-    (1..=part_count).rev().map(output_of_part).collect()
+    (1..=part_count).rev().map(compute_part).collect()
 }
 
 #[test]
-fn parts_together_print_byte_for_byte_what_one_process_prints() {
+fn merge_prints_the_output_of_a_single_process() {
     for (arguments, part_count) in [
         ("prove --one-in 30000", 3),
         ("prove --one-in 30000 --json", 2),
         ("design --search --step 0.05", 2),
-        // More parts than there are items to compute.
+        // There are more parts than items to compute.
         ("design --search --step 0.1 --top 3 --json", 5),
     ] {
         let arguments = with_paper(arguments);
@@ -31,7 +30,7 @@ fn parts_together_print_byte_for_byte_what_one_process_prints() {
 }
 
 #[test]
-fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
+fn merge_refuses_parts_that_are_not_one_complete_computation() {
     let arguments = with_paper("design --search --step 0.1");
     let parts = compute_parts(&arguments, 2);
     let (last_part, first_part) = parts.split_once('\n').expect("the parts are two lines");
@@ -50,17 +49,17 @@ fn a_merge_refuses_parts_that_are_not_one_complete_computation() {
     let other_step =
         run_line(&with_paper("design --search --step 0.2 --part 1/2"), "").expect_success();
     merge_with_last_part(&other_step).expect_refusal_with("different options");
-    // A job that was killed leaves half a line.
-    let half_line = &first_part[..first_part.len() / 2];
-    let refusal = merge_with_last_part(half_line).expect_refusal();
+    // A killed job leaves a partial line.
+    let partial_line = &first_part[..first_part.len() / 2];
+    let refusal = merge_with_last_part(partial_line).expect_refusal();
     let expected = "lizard: standard input: line 2 is not a part: ";
     assert!(refusal.starts_with(expected), "{refusal}");
-    run_line("merge", "").expect_refusal_with("there are no parts");
+    run_line("merge", "").expect_refusal_with("no parts given");
     run_line("merge no-such-part", "").expect_refusal_with("cannot read no-such-part: ");
 }
 
 #[test]
-fn a_part_needs_a_valid_number_and_a_command_that_can_be_split() {
-    run_line("prove --part 3/2", "").expect_refusal_with("it must be as 2/8, from 1/8 to 8/8");
-    run_line(&with_paper("design --part 1/2"), "").expect_refusal_with("--part goes with --search");
+fn the_option_part_needs_a_valid_number_and_a_command_that_can_be_split() {
+    run_line("prove --part 3/2", "").expect_refusal_with("expected K/N with K from 1 to N");
+    run_line(&with_paper("design --part 1/2"), "").expect_refusal_with("--part requires --search");
 }

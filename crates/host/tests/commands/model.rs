@@ -1,4 +1,4 @@
-//! Tests of `lizard model` as a user runs it.
+//! Tests of `lizard model`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -13,7 +13,7 @@ fn unused_path(name: &str) -> PathBuf {
 }
 
 #[test]
-fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
+fn a_mujoco_file_has_servos_feet_and_one_home_pose() {
     let file = unused_path("robot.xml");
     let path = file.display().to_string();
     run(&["model", &path]).expect_success();
@@ -32,31 +32,31 @@ fn the_file_holds_a_robot_with_four_servos_and_four_feet() {
 
 #[test]
 #[cfg(unix)]
-fn a_stream_gets_the_file_and_nothing_else() {
+fn standard_output_as_file_gets_only_the_model() {
     let text = run(&["model", "/dev/stdout", "--long-foot", "LH=-0.5"]).expect_success();
     assert!(text.starts_with("<mujoco ") && text.ends_with("</mujoco>\n"));
 }
 
 #[test]
-fn invalid_input_is_refused_with_a_message_and_no_file_is_written() {
+fn model_refuses_invalid_input_and_writes_no_file() {
     let file = unused_path("wrong.xml");
     let path = file.display().to_string();
-    let refusal_of =
+    let run_and_refuse =
         |arguments: &[&str]| run(&[&["model", &path], arguments].concat()).expect_refusal();
-    let message = refusal_of(&["--drive", "wolk"]);
+    let message = run_and_refuse(&["--drive", "wolk"]);
     assert_contains(&message, "robot.toml has no gait `wolk`");
     assert!(message.ends_with("did you mean `walk`?"), "{message}");
-    let message = refusal_of(&["--drive", "stand"]);
+    let message = run_and_refuse(&["--drive", "stand"]);
     assert_eq!(message, "lizard: the gait `stand` moves no servo");
-    let message = refusal_of(&["--long-foot", "LF=5.1"]);
-    assert_contains(&message, "at most 5 mm either way");
-    let message = refusal_of(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
+    let message = run_and_refuse(&["--long-foot", "LF=5.1"]);
+    assert_contains(&message, "must be between -5 and 5 mm, but is 5.1 mm");
+    let message = run_and_refuse(&["--long-foot", "LF=1", "--long-foot", "lf=0"]);
     assert_eq!(message, "lizard: --long-foot LF is given twice");
     assert!(!file.exists());
 }
 
 #[test]
-fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
+fn model_writes_the_meshes_named_in_a_urdf_or_sdf() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for extension in ["urdf", "sdf"] {
         let file = folder.path().join(format!("new/my.{extension}"));
@@ -81,19 +81,19 @@ fn a_urdf_or_sdf_comes_with_the_meshes_that_it_names() {
 }
 
 #[test]
-fn options_that_a_format_does_not_support_are_refused_and_nothing_is_written() {
+fn model_refuses_options_that_a_format_does_not_support_and_writes_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     for (name, options, expected) in [
-        ("a.urfd", &[][..], "the ending decides the format"),
+        ("a.urfd", &[][..], "unknown file extension"),
         (
             "a.urdf",
             &["--drive", "walk"],
-            "--drive is for MuJoCo's file",
+            "--drive requires a MuJoCo file",
         ),
         (
             "a.xml",
             &["--mesh-address", "x"],
-            "--mesh-address is for .urdf and .sdf",
+            "--mesh-address requires .urdf or .sdf",
         ),
     ] {
         let file = folder.path().join(name).display().to_string();

@@ -1,10 +1,10 @@
-//! Tests of the files that commands write: no input is overwritten, and a killed command leaves no file.
+//! Tests that commands overwrite no input, and that a killed command leaves no file.
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 
 use crate::program::{Outcome, read_file, run_in};
 
@@ -58,7 +58,7 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
         let error = outcome.stderr;
         assert_eq!(outcome.code, Some(2), "{line}: {error}");
         assert!(
-            error.contains(protected_file) && error.contains("; name another file for the output"),
+            error.contains(protected_file) && error.contains("; choose another output file"),
             "{line}: {error}"
         );
     }
@@ -71,7 +71,7 @@ fn no_command_overwrites_its_input_or_a_robot_file() {
 }
 
 #[test]
-fn a_new_robot_file_has_a_gait_and_replaces_no_file() {
+fn new_writes_a_valid_robot_file_and_replaces_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let output = run_line_in(folder_path, "new my.toml").expect_success();
@@ -87,7 +87,7 @@ fn a_new_robot_file_has_a_gait_and_replaces_no_file() {
     let refusal = run_line_in(folder_path, "new my.toml").expect_refusal();
     assert_eq!(
         refusal,
-        "lizard: my.toml already exists and is left as it is; name a new file"
+        "lizard: my.toml already exists; choose another name"
     );
     let current_text = fs::read_to_string(&file).expect("the file is readable");
     assert_eq!(current_text, "mine");
@@ -96,7 +96,7 @@ fn a_new_robot_file_has_a_gait_and_replaces_no_file() {
 }
 
 #[test]
-fn flash_image_creates_the_folders_of_its_output() {
+fn flash_image_creates_missing_folders() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let line = "flash image --robot large --output new/folder/x.hex";
     run_line_in(folder.path(), line).expect_success();
@@ -105,14 +105,14 @@ fn flash_image_creates_the_folders_of_its_output() {
 
 #[test]
 #[cfg(target_os = "linux")]
-fn a_command_that_is_killed_while_it_writes_leaves_no_file() {
+fn a_command_killed_while_writing_leaves_no_file() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     // The system kills a program that writes more than 8 KiB into a file.
     let script = "ulimit -c 0 -f 8; exec \"$0\" flash image --robot large --output x.hex";
     let mut bash = Command::new("bash");
     bash.args(["-c", script, env!("CARGO_BIN_EXE_lizard")])
         .current_dir(folder.path());
-    let output = LIMIT.output(&mut bash, b"").expect("bash runs");
+    let output = TIME_LIMIT.run_command(&mut bash, b"").expect("bash runs");
     assert_eq!(output.status.code(), None, "no signal: {output:?}");
     let remaining_files = fs::read_dir(folder.path()).expect("the folder is readable");
     assert_eq!(remaining_files.count(), 0);

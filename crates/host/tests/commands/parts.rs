@@ -1,4 +1,4 @@
-//! Tests of `lizard parts` as a user runs it.
+//! Tests of `lizard parts`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn unused_path(name: &str) -> PathBuf {
     folder
 }
 
-/// Writes a changed copy of the paper's robot to a file of this name, and returns its path.
+/// Writes a changed copy of the paper's robot file; returns its path.
 fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String {
     let file = scratch_folder().join(name);
     fs::write(&file, change(read_file("robots/paper.toml"))).expect("the file is written");
@@ -25,7 +25,7 @@ fn write_changed_paper(name: &str, change: impl Fn(String) -> String) -> String 
 }
 
 #[test]
-fn a_folder_holds_everything_to_build_the_robot() {
+fn parts_writes_all_files_needed_to_build_the_robot() {
     let folder = unused_path("parts-all");
     make_parts(&folder, &["--robot", &robot_path("paper")]).expect_success();
     for file in [
@@ -49,7 +49,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
     }
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
     assert_contains(&guide, "## 9. Struts\n");
-    assert_contains(&guide, "Instead of the struts, 4 x strut,");
+    assert_contains(&guide, ", print 4 x strut,");
     assert!(
         !guide.contains("hook of the spring") && !guide.contains("tension"),
         "{guide}"
@@ -62,7 +62,7 @@ fn a_folder_holds_everything_to_build_the_robot() {
 }
 
 #[test]
-fn one_corner_can_be_printed_first() {
+fn the_option_corner_writes_only_the_parts_of_one_corner() {
     let folder = unused_path("parts-corner");
     let options = ["--robot", &robot_path("paper"), "--corner", "--json"];
     let list = make_parts(&folder, &options).expect_json();
@@ -87,23 +87,23 @@ fn one_corner_can_be_printed_first() {
 }
 
 #[test]
-fn a_wrong_weight_is_reported_with_the_correct_one() {
+fn a_wrong_mass_is_reported_with_the_correct_mass() {
     let light_robot = write_changed_paper("light.toml", |text| {
         text.replace("mass = 435.0", "mass = 280.0")
     });
-    let summary_of =
+    let make_summary =
         |robot: &str| make_parts(&unused_path("parts-light"), &["--robot", robot]).expect_success();
-    let light_summary = summary_of(&light_robot);
+    let light_summary = make_summary(&light_robot);
     assert!(
         light_summary.contains("The parts weigh 435 g")
             && light_summary.ends_with("\n[body]\nmass = 435.0\n"),
         "{light_summary}"
     );
-    assert_eq!(summary_of(&robot_path("paper")).lines().count(), 1);
+    assert_eq!(make_summary(&robot_path("paper")).lines().count(), 1);
 }
 
 #[test]
-fn struts_may_have_springs() {
+fn parts_for_struts_with_springs_include_rigid_struts() {
     let folder = unused_path("parts-strut");
     let robot = write_changed_paper("strut.toml", |text| {
         text + "\n[leg.drive]\nkind = \"strut\"\nforce = 4.0\nrate = 0.4\n"
@@ -119,7 +119,7 @@ fn struts_may_have_springs() {
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
     for phrase in [
         "## 9. Struts and springs",
-        "Instead of the struts, 4 x rigid strut,",
+        ", print 4 x rigid strut,",
         "hook",
         "tension",
         "pulls 4.0 N (0.40 N/mm)",
@@ -130,7 +130,7 @@ fn struts_may_have_springs() {
 }
 
 #[test]
-fn a_robot_whose_parts_overlap_is_refused_and_nothing_is_written() {
+fn parts_refuses_a_robot_whose_parts_overlap_and_writes_no_file() {
     let folder = unused_path("parts-refused");
     let robot = write_changed_paper("wide.toml", |text| text + "\n[parts]\nbar = 24.0\n");
     let outcome = make_parts(&folder, &["--robot", &robot]);

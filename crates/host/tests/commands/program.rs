@@ -1,14 +1,14 @@
-//! Runs of `lizard`, and the files that the tests use.
+//! Runs `lizard`, and provides the tests' files.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 
 /// The result of a run of `lizard`.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The exit code; `None` if a signal ended the program.
+    /// The exit code; `None` if a signal terminated the program.
     pub code: Option<i32>,
     pub stdout: String,
     pub stderr: String,
@@ -35,7 +35,7 @@ impl Outcome {
             .expect("the output is JSON")
     }
 
-    /// Checks that the run refused its input and wrote nothing to standard output, and returns its message.
+    /// Checks that the run refused its input and printed nothing to standard output; returns the message.
     pub fn expect_refusal(self) -> String {
         assert_eq!(self.code, Some(2), "{}", self.stderr);
         assert_eq!(self.stdout, "", "output before the refusal");
@@ -49,13 +49,16 @@ impl Outcome {
     }
 }
 
-/// Checks that a text contains another.
+/// Checks that `text` contains `expected`.
 #[track_caller]
 pub fn assert_contains(text: &str, expected: &str) {
-    assert!(text.contains(expected), "no {expected:?} in: {text}");
+    assert!(
+        text.contains(expected),
+        "expected {expected:?}, got: {text}"
+    );
 }
 
-/// Creates an empty folder of this name in the scratch folder.
+/// Creates an empty folder in the scratch folder.
 pub fn new_folder(name: &str) -> PathBuf {
     let folder = scratch_folder().join(name);
     let _ = std::fs::remove_dir_all(&folder);
@@ -68,42 +71,42 @@ pub fn repo_root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The text of a file of the repository.
+/// Reads a file of the repository.
 pub fn read_file(path: &str) -> String {
     std::fs::read_to_string(repo_root().join(path))
         .unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The scratch folder, which all tests share.
+/// The scratch folder of all tests.
 pub fn scratch_folder() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// The path of a file of robots/.
+/// The path of a file in robots/.
 pub fn robot_path(name: &str) -> String {
     let path = repo_root().join("robots").join(name).with_extension("toml");
     path.display().to_string()
 }
 
-/// Adds the option for the paper's robot to a command line, for tests that check the paper's figures.
+/// Adds the option for the paper's robot to a command line, for tests of the paper's values.
 pub fn with_paper(args: &str) -> String {
     format!("{args} --robot robots/paper.toml")
 }
 
-/// A temporary robot file for one test, which `drop` removes.
+/// A temporary robot file, which `drop` removes.
 pub struct RobotFile(PathBuf);
 
 impl RobotFile {
-    /// Copies the paper's robot with some lines changed.
+    /// Copies the paper's robot file with some changes.
     pub fn from_paper(name: &str, changes: &[(&str, &str)]) -> Self {
         Self::from_file("robots/paper.toml", name, changes)
     }
 
-    /// Copies a file of the repository with some lines changed.
-    pub fn from_file(file: &str, name: &str, changes: &[(&str, &str)]) -> Self {
-        let mut text = read_file(file);
+    /// Copies a file of the repository with some changes.
+    pub fn from_file(source_path: &str, name: &str, changes: &[(&str, &str)]) -> Self {
+        let mut text = read_file(source_path);
         for (old, new) in changes {
-            assert!(text.contains(old), "{file} has no {old:?}");
+            assert!(text.contains(old), "{source_path} has no {old:?}");
             text = text.replacen(old, new, 1);
         }
         let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
@@ -112,7 +115,7 @@ impl RobotFile {
     }
 
     /// Adds the option for this robot file to a command line.
-    pub fn add_option_to(&self, args: &str) -> String {
+    pub fn add_option(&self, args: &str) -> String {
         format!("{args} --robot {}", self.0.display())
     }
 }
@@ -123,7 +126,7 @@ impl Drop for RobotFile {
     }
 }
 
-/// Runs a command line in the repository's root with this standard input.
+/// Runs a command line in the repository's root with the given standard input.
 pub fn run_line(line: &str, input: impl AsRef<[u8]>) -> Outcome {
     let arguments: Vec<&str> = line.split_whitespace().collect();
     run_in(&repo_root(), &arguments, input)
@@ -134,18 +137,12 @@ pub fn run(arguments: &[&str]) -> Outcome {
     run_in(scratch_folder(), arguments, "")
 }
 
-/// Runs the program, which must refuse its input, in the scratch folder; returns its message.
-#[track_caller]
-pub fn refusal_of(arguments: &[&str]) -> String {
-    run(arguments).expect_refusal()
-}
-
-/// Runs the program in a folder with this standard input.
+/// Runs the program in a folder with the given standard input.
 pub fn run_in(folder: &Path, arguments: &[&str], input: impl AsRef<[u8]>) -> Outcome {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments).current_dir(folder);
-    // A program that stops at bad input closes its standard input early, which is not an error here.
-    let output = LIMIT.output(&mut command, input.as_ref());
+    // A program that stops at invalid input closes its standard input early, which is not an error here.
+    let output = TIME_LIMIT.run_command(&mut command, input.as_ref());
     let output = output.expect("lizard runs and exits");
     Outcome {
         code: output.status.code(),

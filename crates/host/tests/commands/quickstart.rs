@@ -1,11 +1,11 @@
-//! Tests that docs/quickstart.md shows the firmware's real answers to the lines of its examples.
+//! Tests that docs/quickstart.md shows the firmware's actual answers and messages.
 
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::Robot;
 
 use crate::program::read_file;
 
-/// True if a line is as the page shows it; `...` at the end of a page's line stands for any text.
+/// Returns true if a line matches the page's line, in which a final `...` stands for any text.
 fn matches_page(line: &str, page_line: &str) -> bool {
     page_line
         .strip_suffix("...")
@@ -13,9 +13,9 @@ fn matches_page(line: &str, page_line: &str) -> bool {
 }
 
 #[test]
-fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
+fn every_example_line_of_the_quickstart_gets_the_answer_on_the_page() {
     let page = read_file("docs/quickstart.md");
-    // The paper's robot on a 5 V supply, with an EEPROM that was never written.
+    // The board has the paper's robot, a 5 V supply, and a blank EEPROM.
     let robot = Robot::parse(&read_file("robots/paper.toml")).expect("the robot file is valid");
     let mut board = RunningRobot::power_on(*robot.firmware());
     let greeting = board.run_frames(50);
@@ -32,23 +32,23 @@ fn every_line_of_the_quickstart_is_answered_as_the_page_shows() {
             let line = page_lines.next().expect("a line follows the prompt");
             let page_lines: Vec<&str> = page_lines.collect();
             let mut answer = board.send(format!("{line}\r").as_bytes());
-            // After 100 frames all motion has ended.
+            // After 100 frames, all motion has ended.
             answer.extend(board.run_frames(100));
             let mut line_pairs = answer.iter().zip(&page_lines);
             let is_as_shown = answer.len() == page_lines.len()
                 && line_pairs.all(|(answer, page_line)| matches_page(answer, page_line));
             assert!(
                 is_as_shown,
-                "{line}\n  is answered by {answer:#?}\n  but shown as {page_lines:#?}"
+                "{line}\n  expected {page_lines:#?}\n  got {answer:#?}"
             );
             line_count += 1;
         }
     }
-    assert!(line_count > 20, "{line_count}");
+    assert!(line_count > 20, "{line_count} lines");
 }
 
 #[test]
-fn every_message_in_the_troubleshooting_table_is_printed_by_the_firmware() {
+fn the_firmware_prints_every_message_of_the_troubleshooting_table() {
     let (page, messages) = (
         read_file("docs/quickstart.md"),
         read_file("crates/core/src/console/text.rs"),
@@ -71,13 +71,16 @@ fn every_message_in_the_troubleshooting_table_is_printed_by_the_firmware() {
             };
             for phrase in answer.split("...") {
                 let phrase = phrase.trim_matches([' ', ',']);
-                assert!(messages.contains(phrase), "nothing prints {phrase:?}");
+                assert!(
+                    messages.contains(phrase),
+                    "the firmware does not print {phrase:?}"
+                );
             }
         }
     }
-    assert!(row_count > 17, "{row_count}");
+    assert!(row_count > 17, "{row_count} rows");
     assert!(
         !codes[0] && codes[1..].iter().all(|is_listed| *is_listed),
-        "{codes:?}"
+        "codes in the table: {codes:?}"
     );
 }

@@ -1,42 +1,39 @@
-//! Tests of `lizard sim` and `lizard draw`: invalid input, inputs of a routine, and the picture in docs/.
+//! Tests of `lizard sim` and `lizard draw`: invalid input, the inputs of a routine, and the drawing in docs/.
 
-use crate::program::{read_file, refusal_of, robot_path, run, scratch_folder};
+use crate::program::{read_file, robot_path, run, scratch_folder};
 
 #[test]
-fn a_missing_firmware_is_named() {
+fn the_refusal_of_a_missing_elf_file_names_the_file() {
     assert_eq!(
-        refusal_of(&["sim", "--elf", "no/such.elf"]),
-        "lizard: there is no firmware at no/such.elf; without --elf, the one inside this program \
-         is used"
+        run(&["sim", "--elf", "no/such.elf"]).expect_refusal(),
+        "lizard: no/such.elf does not exist; omit --elf to run the built-in firmware"
     );
 }
 
 #[test]
-fn a_file_that_is_not_firmware_is_refused() {
+fn sim_refuses_an_elf_file_of_another_processor() {
     let program_path = env!("CARGO_BIN_EXE_lizard");
     let refusal = run(&["sim", "--elf", program_path]).expect_refusal();
-    let expected = format!("lizard: {program_path}: not an ELF file of an AVR");
+    let expected = format!("lizard: {program_path}: not an AVR ELF file");
     assert!(refusal.starts_with(&expected), "{refusal}");
 }
 
 #[test]
-fn the_refusal_of_an_invalid_script_names_file_and_line() {
+fn the_refusal_of_an_invalid_script_names_the_file_and_line() {
     let path = scratch_folder().join("wrong-script.txt");
     std::fs::write(&path, "100 walk\nsoon stop\n").expect("the script is written");
     let path = path.display().to_string();
-    let message = refusal_of(&["sim", "--script", &path]);
+    let message = run(&["sim", "--script", &path]).expect_refusal();
     assert_eq!(
         message,
-        format!(
-            "lizard: {path}: line 2: it begins with `soon`, not with a time in whole milliseconds"
-        )
+        format!("lizard: {path}: line 2: expected a time in whole milliseconds, got `soon`")
     );
 }
 
 #[test]
-fn a_script_that_never_ends_is_refused() {
+fn sim_refuses_an_endless_script() {
     assert_eq!(
-        refusal_of(&["sim", "--script", "/dev/zero"]),
+        run(&["sim", "--script", "/dev/zero"]).expect_refusal(),
         "lizard: cannot read /dev/zero: it is longer than 256 MiB"
     );
 }
@@ -44,11 +41,11 @@ fn a_script_that_never_ends_is_refused() {
 #[test]
 fn the_refusal_of_an_unknown_gait_lists_the_gaits_of_the_robot() {
     run(&["sim", "--robot", &robot_path("paper"), "--gait", "gallop"])
-        .expect_refusal_with("no gait `gallop`; it has stand, walk, trot");
+        .expect_refusal_with("no gait `gallop`; allowed values: stand, walk, trot");
 }
 
 #[test]
-fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
+fn a_routine_continues_when_its_inputs_are_pressed() {
     let [patrol_path, script, svg] = ["patrol.toml", "patrol.txt", "patrol.svg"]
         .map(|name| scratch_folder().join(name).display().to_string());
     let gaits = read_file("docs/gaits.md");
@@ -65,7 +62,7 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
         arguments.extend(presses.iter().flat_map(|press| ["--press", press]));
         run(&arguments).expect_json()
     };
-    let wait_times_ms_of = |report: &serde_json::Value, input: &str| -> Vec<f64> {
+    let find_wait_times_ms = |report: &serde_json::Value, input: &str| -> Vec<f64> {
         let lines = report["dialogue"].as_array().expect("there are lines");
         let text = format!("# waiting for {input}");
         let input_lines = lines.iter().filter(|line| line["text"] == text.as_str());
@@ -74,10 +71,10 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
             .collect()
     };
     let pressed_report = simulate(&["button@2", "nose@3-3.5"]);
-    let wait_starts_ms = wait_times_ms_of(&pressed_report, "nose");
+    let wait_starts_ms = find_wait_times_ms(&pressed_report, "nose");
     assert!(
         matches!(wait_starts_ms[..], [start_ms] if (2_040.0..2_100.0).contains(&start_ms)),
-        "{wait_starts_ms:?}"
+        "waits start at {wait_starts_ms:?} ms"
     );
     assert_eq!(
         pressed_report["servos"][0]["width_error"], 0,
@@ -86,9 +83,10 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
     );
     let report_without_presses = simulate(&[]);
     let wait_counts =
-        ["button", "nose"].map(|input| wait_times_ms_of(&report_without_presses, input).len());
+        ["button", "nose"].map(|input| find_wait_times_ms(&report_without_presses, input).len());
     assert_eq!(wait_counts, [1, 0]);
-    let message = refusal_of(&["sim", "--robot", &robot_path("paper"), "--press", "nose@1"]);
+    let message =
+        run(&["sim", "--robot", &robot_path("paper"), "--press", "nose@1"]).expect_refusal();
     assert_eq!(
         message,
         "lizard: robot.toml has no [input.nose] for --press"
@@ -96,7 +94,7 @@ fn a_routine_continues_when_its_inputs_are_pressed_and_the_core_agrees() {
 }
 
 #[test]
-fn times_out_of_range_are_refused() {
+fn sim_refuses_a_duration_out_of_range() {
     for duration in ["0", "-3", "nan", "1e9", "soon"] {
         run(&["sim", &format!("--duration={duration}")]).expect_refusal_with("--duration");
     }
@@ -104,7 +102,7 @@ fn times_out_of_range_are_refused() {
 }
 
 #[test]
-fn the_picture_in_docs_is_up_to_date() {
-    let picture = run(&["draw", "--robot", &robot_path("paper")]).expect_success();
-    assert!(read_file("docs/lizard.svg") == picture, "run `make docs`");
+fn the_drawing_in_docs_is_up_to_date() {
+    let drawing = run(&["draw", "--robot", &robot_path("paper")]).expect_success();
+    assert!(read_file("docs/lizard.svg") == drawing, "run `make docs`");
 }

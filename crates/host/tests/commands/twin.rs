@@ -1,50 +1,50 @@
-//! Tests of `lizard twin`: routines, the speeds stated in docs/gaits.md, and invalid input.
+//! Tests of `lizard twin`: routines, the speeds in docs/gaits.md, and invalid input.
 
 use serde_json::Value;
 
 use crate::program::{RobotFile, read_file, run_line, with_paper};
 
-/// Runs a command and returns the printed JSON object in which `key` is `name`.
+/// Runs a command; returns the printed JSON object in which `key` is `name`.
 fn find_object(line: &str, key: &str, name: &str) -> Value {
     let mut objects = run_line(line, "").expect_json_lines().into_iter();
     objects.find(|object| object[key] == name).expect(line)
 }
 
 #[test]
-fn a_round_of_a_routine_moves_the_robot_as_lizard_gaits_predicts_for_the_same_servos() {
+fn a_round_of_a_routine_matches_the_prediction_of_lizard_gaits() {
     const ROUTINES: &str = "[routine.tour]\nsteps = [\"walk 2\", \"rest 1 s\", \"left 2\", \"trot 1\", \"arc-left 2\"]\n\
          [routine.gaze]\nsteps = [\"look 1\"]\n[gait.stand]";
     let robot = RobotFile::from_paper("routines", &[("[gait.stand]", ROUTINES)]);
     let run_twin = |routine: &str, servo: &str| {
         let line = format!("twin --json --gait {routine} --servo {servo}");
         let command = format!("{routine} 1");
-        find_object(&robot.add_option_to(&line), "command", &command)
+        find_object(&robot.add_option(&line), "command", &command)
     };
-    let tour = find_object(&robot.add_option_to("gaits --json"), "routine", "tour");
-    let component_of = |path: &Value, name: &str| path[name].as_f64().expect(name);
+    let tour = find_object(&robot.add_option("gaits --json"), "routine", "tour");
+    let component = |path: &Value, name: &str| path[name].as_f64().expect(name);
     for (servo, prediction) in [("own", "by_servos"), ("ideal", "predicted")] {
         let report = run_twin("tour", servo);
         assert_eq!(report["round"], tour[prediction], "{servo}");
         for name in ["forward", "left", "turn"] {
-            let error = component_of(&report["way"], name) - component_of(&tour[prediction], name);
+            let error = component(&report["way"], name) - component(&tour[prediction], name);
             assert!(error.abs() < 0.2, "{servo}, {name}: {error}");
         }
     }
     let lost_turn_deg =
-        component_of(&tour["predicted"], "turn") - component_of(&tour["by_servos"], "turn");
+        component(&tour["predicted"], "turn") - component(&tour["by_servos"], "turn");
     assert!(
         lost_turn_deg > 1.0,
-        "real servos must turn the robot less than ideal servos: {lost_turn_deg}"
+        "real servos turn the robot by only {lost_turn_deg} deg less than ideal servos"
     );
-    // Two feet pull against the other two, so the distance is undetermined, and neither command may state a distance.
-    let gaze = find_object(&robot.add_option_to("gaits --json"), "routine", "gaze");
+    // Two feet pull against the other two, so the distance is undetermined, and neither command may print a distance.
+    let gaze = find_object(&robot.add_option("gaits --json"), "routine", "gaze");
     for path in [&run_twin("gaze", "own")["way"], &gaze["by_servos"]] {
         assert!(path["forward"].is_null() && path["turn"].is_f64(), "{path}");
     }
 }
 
 #[test]
-fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
+fn robots_with_grained_pads_walk_and_turn_as_fast_as_docs_state() {
     let page = read_file("docs/gaits.md");
     for (name, servo, friction, is_fast) in [
         ("SG-90", "model = \"SG-90\"", "0.7", true),
@@ -54,23 +54,23 @@ fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
             "1.0",
             true,
         ),
-        // The only servo with which `run` stays below 90 mm/s.
+        // With this servo, `run` stays below 90 mm/s.
         ("digital", "model = \"digital\"", "0.7", false),
     ] {
         let servo = format!("[servo]\n{servo}\n[servo.A1]");
         let friction_key = format!("friction = {friction}");
         let changes = [("[servo.A1]", &*servo), ("# friction = 0.7", &friction_key)];
         let robot = RobotFile::from_file("robots/grain.toml", "grain", &changes);
-        let rows = run_line(&robot.add_option_to("twin --json"), "").expect_json_lines();
-        let figure_of = |gait: &str, pointer: &str| {
+        let rows = run_line(&robot.add_option("twin --json"), "").expect_json_lines();
+        let find_value = |gait: &str, pointer: &str| {
             let row = rows.iter().find(|row| row["command"] == gait);
-            let figure = row.and_then(|row| row.pointer(pointer));
-            figure.and_then(Value::as_f64).expect(gait)
+            let value = row.and_then(|row| row.pointer(pointer));
+            value.and_then(Value::as_f64).expect(gait)
         };
-        let run_speed = figure_of("run", "/cycle/speed");
-        let back_mm = figure_of("back", "/cycle/way/forward");
+        let run_speed = find_value("run", "/cycle/speed");
+        let back_mm = find_value("back", "/cycle/way/forward");
         let [left_deg, arc_deg] =
-            ["left", "arc left"].map(|gait| figure_of(gait, "/cycle/way/turn"));
+            ["left", "arc left"].map(|gait| find_value(gait, "/cycle/way/turn"));
         let row = format!(
             "| {name} | {friction} | {run_speed:.0} | {left_deg:.1} | {arc_deg:.1} | {back_mm:.1} |\n"
         );
@@ -78,17 +78,17 @@ fn the_firmware_runs_at_90_mm_a_second_on_pads_with_a_grain_and_still_turns() {
         assert_eq!(run_speed >= 90.0, is_fast, "{name}: {run_speed} mm/s");
         assert!(
             left_deg > 9.0 && arc_deg > 6.0,
-            "{name} turns by only {left_deg} and {arc_deg} deg"
+            "{name}: `left` turns by {left_deg} deg, `arc left` by {arc_deg} deg"
         );
     }
 }
 
 #[test]
-fn an_unknown_gait_is_refused_with_a_list_of_the_gaits() {
+fn the_refusal_of_an_unknown_gait_lists_the_gaits() {
     for (gait, expected) in [
         (
             "jump",
-            "lizard: robot.toml has no gait `jump`; those that move are walk, trot, crawl, back, \
+            "lizard: robot.toml has no gait `jump`; allowed values: walk, trot, crawl, back, \
              left, right, arc-left, arc-right, look",
         ),
         ("stand", "lizard: the gait `stand` moves no servo"),

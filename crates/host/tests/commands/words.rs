@@ -1,32 +1,32 @@
-//! Tests of the words of the command line: commands, aliases, suggestions, completions and manual pages.
+//! Tests of the command line: help, aliases, suggestions, completions and manual pages.
 
 use std::path::Path;
 use std::process::Command;
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 
 use crate::program::{assert_contains, repo_root, robot_path, run, scratch_folder};
 
-fn output_of(arguments: &[&str]) -> String {
+fn run_successfully(arguments: &[&str]) -> String {
     run(arguments).expect_success()
 }
 
-/// The first words of the lines under a heading of `lizard --help`.
-fn first_words_under(help: &str, heading: &str) -> Vec<String> {
+/// Returns the first words of the lines under a heading of `lizard --help`.
+fn find_first_words(help: &str, heading: &str) -> Vec<String> {
     let (_, rest) = help.split_once(&format!("\n{heading}:\n")).expect(heading);
     let (section, _) = rest.split_once("\n\n").expect(heading);
-    let first_word_of = |line: &str| line.split_whitespace().next().expect(heading).to_owned();
-    section.lines().map(first_word_of).collect()
+    let first_word = |line: &str| line.split_whitespace().next().expect(heading).to_owned();
+    section.lines().map(first_word).collect()
 }
 
 #[test]
-fn help_groups_all_commands_by_purpose_with_those_of_an_owner_first() {
-    let help = output_of(&["--help"]);
+fn help_groups_all_commands_by_purpose() {
+    let help = run_successfully(&["--help"]);
     let headings = [
         "Drive the robot",
         "Simulate it",
         "Build it",
-        "Change its gaits and measures",
+        "Change its gaits and dimensions",
         "The paper, computed",
         "For scripts and development",
         "Options",
@@ -36,26 +36,26 @@ fn help_groups_all_commands_by_purpose_with_those_of_an_owner_first() {
     assert!(help.contains("\n  merge, completions\n"), "{help}");
     let command_counts = headings[..5]
         .iter()
-        .map(|heading| first_words_under(&help, heading).len());
+        .map(|heading| find_first_words(&help, heading).len());
     // Two more commands, `merge` and `completions`, are for scripts.
     assert!(command_counts.sum::<usize>() + 2 <= 20, "{help}");
-    assert!(first_words_under(&help, "Drive the robot").contains(&"console".to_owned()));
-    assert_eq!(output_of(&["help"]), help);
+    assert!(find_first_words(&help, "Drive the robot").contains(&"console".to_owned()));
+    assert_eq!(run_successfully(&["help"]), help);
 }
 
 #[test]
-fn terms_of_robotics_are_aliases_of_the_commands() {
+fn monitor_is_an_alias_of_console() {
     assert_eq!(
-        output_of(&["monitor", "--help"]),
-        output_of(&["console", "--help"])
+        run_successfully(&["monitor", "--help"]),
+        run_successfully(&["console", "--help"])
     );
-    let help = output_of(&["help"]);
+    let help = run_successfully(&["help"]);
     let line = help.lines().find(|line| line.contains(" console "));
     assert!(line.is_some_and(|line| line.contains("[also: monitor]")));
 }
 
 #[test]
-fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
+fn a_deprecated_command_prints_the_same_output_and_names_the_new_command() {
     for (old, new) in [
         ("fk --help", "pose --help"),
         ("inverse --head 5 120", "pose --head 5 120"),
@@ -73,15 +73,18 @@ fn a_command_of_the_previous_version_still_works_and_names_the_new_one() {
     ] {
         let [old, new] = [old, new].map(|line| run(&line.split(' ').collect::<Vec<_>>()));
         assert!(old.stdout == new.stdout, "{old:?}");
-        assert_contains(&old.stderr, "` now; the next version will not know");
+        assert_contains(
+            &old.stderr,
+            "` is deprecated and will be removed in the next version; use `lizard ",
+        );
         assert_eq!(new.stderr, "");
     }
     run(&["spring", "--wire", "0.6"])
-        .expect_refusal_with("no command `spring` any more; a spring's force");
+        .expect_refusal_with("the command `spring` was removed; a spring's force");
 }
 
 #[test]
-fn a_word_of_20_000_letters_is_not_repeated_in_full() {
+fn a_message_about_a_very_long_word_shows_only_its_start() {
     let long_word = "x".repeat(20_000);
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let robot = folder.path().join("x.toml");
@@ -102,7 +105,7 @@ fn a_word_of_20_000_letters_is_not_repeated_in_full() {
 }
 
 #[test]
-fn a_mistyped_word_is_answered_with_a_suggestion() {
+fn the_refusal_of_a_mistyped_word_suggests_the_correct_word() {
     let paper = &robot_path("paper");
     for (arguments, expected) in [
         (&["claibrate"][..], "'calibrate'"),
@@ -130,10 +133,9 @@ fn a_mistyped_word_is_answered_with_a_suggestion() {
     }
 }
 
-/// Runs the completion script in bash, without bash's own completions, and returns the offers for the word at
-/// `index`.
+/// Runs the completion script in bash without bash's own completions; returns the completions of the word at `index`.
 #[cfg(unix)]
-fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String> {
+fn complete_in_bash(script: &Path, typed_line: &str, index: usize) -> Vec<String> {
     let line = format!(
         ". {}; COMP_WORDS=({typed_line}); COMP_CWORD={index}; COMP_LINE='{typed_line}'; \
          _lizard lizard \"${{COMP_WORDS[{index}]}}\" \"${{COMP_WORDS[{}]}}\"; \
@@ -143,7 +145,7 @@ fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String
     );
     let mut bash = Command::new("bash");
     bash.args(["--norc", "-c", &line]);
-    let output = LIMIT.output(&mut bash, b"").expect("bash runs");
+    let output = TIME_LIMIT.run_command(&mut bash, b"").expect("bash runs");
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{error}");
     let text = String::from_utf8_lossy(&output.stdout);
@@ -154,10 +156,11 @@ fn bash_completions(script: &Path, typed_line: &str, index: usize) -> Vec<String
 #[cfg(unix)]
 fn bash_completes_commands_and_options() {
     let script = scratch_folder().join("lizard.bash");
-    std::fs::write(&script, output_of(&["completions", "bash"])).expect("the file is written");
+    std::fs::write(&script, run_successfully(&["completions", "bash"]))
+        .expect("the file is written");
     let root = repo_root().display().to_string();
     let files = [format!("{root}/robot.toml"), format!("{root}/robots/")];
-    for (line, index, offers) in [
+    for (line, index, expected) in [
         ("lizard calib", 1, &["calibrate"][..]),
         ("lizard twin --ro", 2, &["--robust", "--robot"]),
         ("lizard sim --fidelity sto", 3, &["stock"]),
@@ -167,16 +170,16 @@ fn bash_completes_commands_and_options() {
             3,
             &files.each_ref().map(String::as_str),
         ),
-        // No files are offered for a gait.
+        // A gait has no file completions.
         ("lizard sim --gait ", 3, &[""]),
     ] {
-        assert_eq!(bash_completions(&script, line, index), offers, "{line}");
+        assert_eq!(complete_in_bash(&script, line, index), expected, "{line}");
     }
-    for (shell, offer) in [
+    for (shell, expected) in [
         ("zsh", ":_files -g \"*.toml\"' "),
         ("fish", " -r -k -xa \"(__fish_complete_suffix .toml) grain "),
     ] {
-        assert_contains(&output_of(&["completions", shell]), offer);
+        assert_contains(&run_successfully(&["completions", shell]), expected);
     }
 }
 
@@ -184,38 +187,38 @@ fn bash_completes_commands_and_options() {
 fn every_command_has_a_manual_page_that_names_its_options() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let pages = folder.path().join("man1");
-    output_of(&["completions", "man", &pages.display().to_string()]);
-    let help = output_of(&["--help"]);
-    let mut count = 0;
+    run_successfully(&["completions", "man", &pages.display().to_string()]);
+    let help = run_successfully(&["--help"]);
+    let mut page_count = 0;
     for heading in [
         "Drive the robot",
         "Simulate it",
         "Build it",
         "The paper, computed",
     ] {
-        for name in first_words_under(&help, heading) {
+        for name in find_first_words(&help, heading) {
             let page = std::fs::read_to_string(pages.join(format!("lizard-{name}.1")));
             let page = page.expect("the manual page is readable");
             assert!(page.contains(&format!(".TH lizard-{name} 1")), "{page}");
-            // In a manual page a hyphen that is to be typed is written `\-`.
+            // In a manual page, a literal hyphen is written `\-`.
             assert!(page.contains(r"\-\-help"), "{page}");
-            count += 1;
+            page_count += 1;
         }
     }
     for subcommand in ["calibrate-backup", "flash-image", "sim-bench"] {
         let page = pages.join(format!("lizard-{subcommand}.1"));
         assert!(page.is_file(), "{subcommand}");
     }
-    assert!(count > 13, "{count}");
+    assert!(page_count > 13, "{page_count} pages");
     let main_page = std::fs::read_to_string(pages.join("lizard.1")).expect("the file is readable");
     assert!(main_page.contains("lizard\\-console(1)"), "{main_page}");
 }
 
 #[test]
-fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
+fn info_ports_prints_a_list_as_json_and_as_text() {
     let ports = run(&["info", "ports", "--json"]).expect_json();
     let ports = ports.as_array().expect("the value is an array");
-    let text = output_of(&["info", "ports"]);
+    let text = run_successfully(&["info", "ports"]);
     assert_eq!(
         text.contains("no USB serial port"),
         ports.is_empty(),
@@ -225,7 +228,7 @@ fn ports_are_listed_for_scripts_and_for_people_even_if_there_are_none() {
 }
 
 #[test]
-fn bench_without_a_build_says_what_is_missing_and_how_to_get_it() {
+fn the_refusal_of_bench_without_a_build_suggests_how_to_build() {
     let message = run(&["sim", "bench"]).expect_refusal();
     assert_contains(&message, "`make firmware`");
     assert_contains(&message, "lizard sim bench --elf ");

@@ -9,18 +9,19 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, TryRecvError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use rustix::pty::{OpenptFlags, openpt, ptsname, unlockpt};
 use rustix::termios::{Winsize, tcsetwinsize};
 
-/// The path of the simulated board's robot, as in the other tests: that in `LIZARD_ROBOT`, relative to the repository's
-/// root, or robot.toml.
+/// Returns the path of the simulated board's robot file, as in the other tests: `LIZARD_ROBOT` (relative to the
+/// repository's root) or robot.toml.
 fn robot_path() -> PathBuf {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let environment_path = std::env::var_os("LIZARD_ROBOT").filter(|path| !path.is_empty());
     root.join(environment_path.unwrap_or_else(|| "robot.toml".into()))
 }
 
+/// Prepares a run of `lizard`, with the robot under test if the board is simulated.
 pub fn lizard_command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_lizard"));
     command.args(arguments);
@@ -34,21 +35,22 @@ pub fn lizard_command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// Runs `lizard` and returns standard output, standard error and the exit code.
+/// Runs `lizard`; returns standard output, standard error and the exit code.
 pub fn run(folder: &Path, arguments: &[&str], input: &str) -> (String, String, Option<i32>) {
     let Output {
         status,
         stdout,
         stderr,
-    } = LIMIT
-        .output(&mut lizard_command(folder, arguments), input.as_bytes())
+    } = TIME_LIMIT
+        .run_command(&mut lizard_command(folder, arguments), input.as_bytes())
         .expect("the program ends");
-    let text_of = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
-    (text_of(stdout), text_of(stderr), status.code())
+    let [stdout, stderr] =
+        [stdout, stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
+    (stdout, stderr, status.code())
 }
 
-/// The first gait of the robot under test that moves.
-pub fn moving_gait(folder: &Path) -> String {
+/// Returns the first gait of the robot under test that moves.
+pub fn find_moving_gait(folder: &Path) -> String {
     let help = run(folder, &["console", "--sim"], "help\n").0;
     let mut lines = help.lines();
     let gaits = lines.find_map(|line| line.strip_prefix("# gaits: "));
@@ -56,7 +58,7 @@ pub fn moving_gait(folder: &Path) -> String {
     gait.expect("the robot has a gait that moves").to_owned()
 }
 
-/// A board simulated by `lizard sim --pty`; its EEPROM is lost when it ends.
+/// A board simulated by `lizard sim --pty`. The contents of its EEPROM are lost when it ends.
 pub struct Uno {
     child: Child,
     link: PathBuf,
@@ -80,7 +82,7 @@ impl Uno {
             .spawn()
             .expect("the program starts");
         let mut uno = Self { child, link };
-        LIMIT.expect("a board of `lizard sim --pty`, or its end", || {
+        TIME_LIMIT.wait_for("a board of `lizard sim --pty`, or its end", || {
             uno.link.exists() || uno.has_ended()
         });
         assert!(!uno.has_ended(), "no board, run `make firmware`");
@@ -99,7 +101,7 @@ impl Uno {
 impl Drop for Uno {
     fn drop(&mut self) {
         let _ = self.child.kill();
-        let _ = LIMIT.wait_for_exit(&mut self.child);
+        let _ = TIME_LIMIT.wait_for_exit(&mut self.child);
         let _ = fs::remove_file(&self.link);
     }
 }
@@ -119,9 +121,9 @@ pub fn open_terminal() -> (File, OwnedFd, PathBuf) {
     (File::from(test_side), program_side.into(), path)
 }
 
-/// Starts a program in its own pseudo terminal, 100 columns wide; returns the test's side of the terminal and the
+/// Starts `lizard` in its own pseudo terminal, 100 columns wide; returns the test's side of the terminal and the
 /// program.
-pub fn spawn_in_terminal(mut command: Command) -> (File, Child) {
+pub fn spawn_in_terminal(folder: &Path, arguments: &[&str]) -> (File, Child) {
     let (test_side, program_side, _) = open_terminal();
     let size = Winsize {
         ws_row: 30,
@@ -131,7 +133,7 @@ pub fn spawn_in_terminal(mut command: Command) -> (File, Child) {
     };
     tcsetwinsize(&program_side, size).expect("the size is set");
     let copy_stdio = || Stdio::from(program_side.try_clone().expect("the clone succeeds"));
-    let child = command
+    let child = lizard_command(folder, arguments)
         .stdin(copy_stdio())
         .stdout(copy_stdio())
         .stderr(copy_stdio())
@@ -139,18 +141,18 @@ pub fn spawn_in_terminal(mut command: Command) -> (File, Child) {
     (test_side, child.expect("the program starts"))
 }
 
-/// A program in its own pseudo terminal, 100 columns wide.
+/// A run of `lizard` in its own pseudo terminal, 100 columns wide.
 pub struct TerminalSession {
     pub child: Child,
     pub keys: File,
     output: Receiver<Vec<u8>>,
-    /// The output after the text of the last `wait_for`.
+    /// The output after the text of the previous `wait_for`.
     pub new_text: String,
 }
 
 impl TerminalSession {
-    pub fn start(command: Command) -> Self {
-        let (test_side, child) = spawn_in_terminal(command);
+    pub fn start(folder: &Path, arguments: &[&str]) -> Self {
+        let (test_side, child) = spawn_in_terminal(folder, arguments);
         let mut screen_reader = test_side.try_clone().expect("the clone succeeds");
         let (sender, receiver) = mpsc::channel();
         std::thread::spawn(move || {
@@ -184,34 +186,34 @@ impl TerminalSession {
         }
     }
 
-    /// Waits until the program has printed this text after that of the previous wait. Panics if the program ends first
+    /// Waits until the program prints `expected` after the text of the previous wait. Panics if the program ends first
     /// or the time limit passes.
     pub fn wait_for(&mut self, expected: &str) {
         let (mut position, mut has_ended) = (None, false);
-        LIMIT.wait_for(|| {
+        TIME_LIMIT.poll(|| {
             has_ended = self.read_output();
             position = self.new_text.find(expected);
             position.is_some() || has_ended
         });
         let Some(start) = position else {
             panic!(
-                "waited up to {LIMIT} for `{expected}`, but the program printed {:?}",
+                "waited up to {TIME_LIMIT} for `{expected}`, but the program printed {:?}",
                 self.new_text
             );
         };
         self.new_text.drain(..start + expected.len());
     }
 
-    /// Waits for the program to exit and returns its exit code.
-    pub fn exit_code(mut self) -> Option<i32> {
-        LIMIT
+    /// Waits for the program to exit, and returns the exit code.
+    pub fn wait_for_exit(mut self) -> Option<i32> {
+        TIME_LIMIT
             .wait_for_exit(&mut self.child)
             .expect("the program exits")
             .code()
     }
 }
 
-/// A device that is not a simulated board; it has a pseudo terminal and its own thread.
+/// A simulated device other than a board, with a pseudo terminal and its own thread.
 pub struct Device {
     pub port: String,
     stop_sender: mpsc::Sender<()>,
@@ -219,7 +221,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// Starts a device that calls `act` repeatedly with its own side of the terminal.
+    /// Starts a device that calls `act` repeatedly with the device's side of the terminal.
     pub fn start(mut act: impl FnMut(&mut File) + Send + 'static) -> Self {
         let (mut test_side, program_side, path) = open_terminal();
         // An open program side would keep the port in use.
@@ -242,7 +244,7 @@ impl Device {
     /// Stops the device and waits for the end of its thread.
     pub fn stop(self) {
         drop(self.stop_sender);
-        let join_result = LIMIT.within("the end of the device", || self.thread.join());
+        let join_result = TIME_LIMIT.run("the end of the device", || self.thread.join());
         join_result.expect("the device does not panic");
     }
 }

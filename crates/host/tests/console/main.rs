@@ -1,5 +1,5 @@
-//! Tests of `lizard console` and the other commands for a board as a user runs them, with a simulated UNO at a pseudo
-//! terminal. The tests run in real time, so each takes a few seconds.
+//! Tests of `lizard console` and the other commands for a board, with a simulated UNO at a pseudo terminal. The tests
+//! run in real time, so each test takes a few seconds.
 #![cfg(target_os = "linux")]
 
 mod by_radio;
@@ -10,21 +10,23 @@ use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Child, Stdio};
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 use rustix::process::{Pid, Signal, kill_process};
 use rustix::termios::{LocalModes, tcgetattr};
 
-use fixture::{Device, TerminalSession, Uno, lizard_command, moving_gait, run, spawn_in_terminal};
+use fixture::{
+    Device, TerminalSession, Uno, find_moving_gait, lizard_command, run, spawn_in_terminal,
+};
 
 #[test]
-fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
+fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
     let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
-    assert_eq!(code, Some(1), "code of a refused line: {error}");
+    assert_eq!(code, Some(1), "exit code after a refused line: {error}");
     assert!(
         error.ends_with(
-            "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command, \
+            "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command; \
              send help for the list\n"
         ),
         "{error}"
@@ -35,7 +37,7 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
         answers,
         [
             "ok cal",
-            "err 1 unknown command, send help for the list",
+            "err 1 unknown command; send help for the list",
             "ok stop"
         ]
     );
@@ -43,16 +45,16 @@ fn a_script_on_standard_input_gets_the_banner_and_its_answers_in_order() {
     assert!(error.contains("(a simulated UNO)"), "no port name: {error}");
 
     let (_, error, code) = run(folder.path(), &arguments, "cal\nstop\n");
-    assert_eq!(code, Some(0), "code of accepted lines: {error}");
+    assert_eq!(code, Some(0), "exit code after accepted lines: {error}");
 }
 
 #[test]
-fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_changes_nothing() {
+fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
     let port = uno.port();
-    let backup_to = |file: &str| {
+    let back_up = |file: &str| {
         let (_, error, code) = run(folder_path, &["calibrate", "backup", file, &port], "");
         assert_eq!(code, Some(0), "{error}");
         fs::read_to_string(folder_path.join(file)).expect("the file is readable")
@@ -61,12 +63,12 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
         fs::write(folder_path.join(file), text).expect("the file is written");
         run(folder_path, &["calibrate", "restore", file, &port], "")
     };
-    let first_text = backup_to("a.toml");
+    let first_text = back_up("a.toml");
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
     let (out, error, code) = restore("b.toml", &changed_text);
     assert_eq!(code, Some(0), "{error}");
     assert!(
-        out.ends_with("has accepted and saved the calibration of b.toml\n"),
+        out.ends_with("has accepted and saved the calibration from b.toml\n"),
         "{out}"
     );
 
@@ -81,12 +83,12 @@ fn a_calibration_is_saved_to_a_file_and_restored_and_a_refused_calibration_chang
     );
     assert_eq!(out, "");
 
-    let saved_text = backup_to("d.toml");
+    let saved_text = back_up("d.toml");
     assert_eq!(saved_text, changed_text, "the calibration after a reset");
 }
 
 #[test]
-fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
+fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let uno = Uno::start(folder_path);
@@ -110,14 +112,13 @@ fn info_reports_the_firmware_and_the_settings_of_a_board_and_changes_nothing() {
 }
 
 #[test]
-fn a_session_at_a_terminal_has_line_editing_and_survives_an_unplugged_board() {
+fn a_terminal_session_has_line_editing_and_reconnects_to_an_unplugged_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
-    let mut session =
-        TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
+    let mut session = TerminalSession::start(folder.path(), &["console", &uno.port()]);
     session.wait_for("# lizard ");
     session.wait_for("no fault");
-    // Ctrl-A moves to the start of the line, where the forgotten letter is added.
+    // Ctrl-A moves the cursor to the start of the line, where the missing letter is inserted.
     session.press("top\x01s\r");
     session.wait_for("> stop");
     session.wait_for("ok stop");
@@ -128,20 +129,20 @@ fn a_session_at_a_terminal_has_line_editing_and_survives_an_unplugged_board() {
     session.wait_for("the port is gone: the board was unplugged, or its cable is loose");
     session.wait_for("waiting for the board");
     let _uno = Uno::start(folder.path());
-    session.wait_for("is back: # lizard ");
+    session.wait_for("is connected again: # lizard ");
     session.press("stand\r");
     session.wait_for("ok stand");
     session.press("\x04");
-    assert_eq!(session.exit_code(), Some(0));
+    assert_eq!(session.wait_for_exit(), Some(0));
     let history = fs::read_to_string(folder.path().join("lizard/history"));
     assert_eq!(history.expect("the history is readable"), "stop\nstand\n");
 }
 
 #[test]
-fn calibrate_advances_a_step_per_key_and_leaves_a_cancelled_calibration_unchanged() {
+fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["calibrate", "--sim"];
-    let mut session = TerminalSession::start(lizard_command(folder.path(), &arguments));
+    let mut session = TerminalSession::start(folder.path(), &arguments);
     session.wait_for("before you begin");
     for (key, expected) in [
         ("\r", "fit the horns"),
@@ -153,11 +154,11 @@ fn calibrate_advances_a_step_per_key_and_leaves_a_cancelled_calibration_unchange
         session.press(key);
         session.wait_for(expected);
     }
-    assert_eq!(session.exit_code(), Some(0));
+    assert_eq!(session.wait_for_exit(), Some(0));
 }
 
 #[test]
-fn a_recorded_session_is_drawn_and_summarized() {
+fn replay_draws_and_summarizes_a_recorded_session() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let mut child = lizard_command(folder_path, &["console", "--record", "a.jsonl", "--sim"])
@@ -170,30 +171,32 @@ fn a_recorded_session_is_drawn_and_summarized() {
     let lines = b"speed 50\nfly\n";
     stdin.write_all(lines).expect("the program reads its input");
     let file = folder_path.join("a.jsonl");
-    LIMIT.expect("a refusal and a second of poses in the file", || {
+    TIME_LIMIT.wait_for("a refusal and a second of poses in the file", || {
         let recording = fs::read_to_string(&file).unwrap_or_default();
         recording.contains(r#""answer":"err "#) && recording.matches(r#""pose":"#).count() > 50
     });
     drop(stdin);
-    let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
-    assert_eq!(status.code(), Some(1), "code for a refused line");
+    let status = TIME_LIMIT
+        .wait_for_exit(&mut child)
+        .expect("the program exits");
+    assert_eq!(status.code(), Some(1), "exit code after a refused line");
 
     let arguments = ["console", "replay", "a.jsonl", "--svg", "a.svg"];
     let (out, error, code) = run(folder_path, &arguments, "");
     assert_eq!(code, Some(0), "{error}");
     for line in [
         " > speed 50\n",
-        "commands    2, of these refused: 1\n",
-        "trouble     none\n",
+        "commands    2, 1 refused\n",
+        "problem     none\n",
     ] {
         assert!(out.contains(line), "{line}: {out}");
     }
-    let picture = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
-    // If the machine pauses for a second, all four curves have a gap.
-    let curves = picture.matches("<polyline").count();
+    let drawing = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
+    // If the machine pauses for a second, all four servos' curves have a gap.
+    let curve_count = drawing.matches("<polyline").count();
     assert!(
-        curves >= 4 && curves.is_multiple_of(4),
-        "{curves}: a curve for each servo"
+        curve_count >= 4 && curve_count.is_multiple_of(4),
+        "{curve_count} curves"
     );
 
     let arguments = ["console", "--record", "a.jsonl", "--sim"];
@@ -203,11 +206,10 @@ fn a_recorded_session_is_drawn_and_summarized() {
 }
 
 #[test]
-fn a_port_that_another_program_has_open_is_refused() {
+fn a_command_refuses_a_port_that_another_program_has_open() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
-    let mut other_session =
-        TerminalSession::start(lizard_command(folder.path(), &["console", &uno.port()]));
+    let mut other_session = TerminalSession::start(folder.path(), &["console", &uno.port()]);
     other_session.wait_for("# lizard ");
     let arguments = ["calibrate", "backup", "a.toml", &uno.port()];
     let (_, error, code) = run(folder.path(), &arguments, "");
@@ -219,7 +221,7 @@ fn a_port_that_another_program_has_open_is_refused() {
 }
 
 #[test]
-fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
+fn the_error_for_a_board_without_lizard_firmware_shows_its_output() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let device = Device::start(|terminal| {
         // Writing fails while no program has the port open.
@@ -229,14 +231,14 @@ fn a_board_that_is_not_a_lizard_is_reported_with_its_output() {
     let (_, error, code) = run(folder.path(), &arguments, "");
     device.stop();
     assert_eq!(code, Some(1), "{error}");
-    let expected = "this is not a lizard: it says `Grbl 1.1h ['$' for help]`";
+    let expected = "this is not a lizard: expected `# lizard ...`, got `Grbl 1.1h ['$' for help]`";
     assert!(error.contains(expected), "{error}");
     // No incomplete file remains.
     assert!(!folder.path().join("a.toml").exists());
 }
 
 #[test]
-fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
+fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let mut received_bytes: Vec<u8> = Vec::new();
     let device = Device::start(move |terminal| {
@@ -257,7 +259,7 @@ fn the_unanswered_lines_of_a_board_that_falls_silent_are_counted() {
 }
 
 #[test]
-fn invalid_input_is_refused_with_a_message() {
+fn commands_refuse_invalid_input_with_a_message() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     fs::write(folder_path.join("no.toml"), "trim: 5\n").expect("the file is written");
@@ -265,11 +267,11 @@ fn invalid_input_is_refused_with_a_message() {
     for (arguments, expected) in [
         (
             &["console", "/dev/no-such-port"][..],
-            "lizard: there is no /dev/no-such-port; USB serial ports of this machine: ",
+            "lizard: /dev/no-such-port does not exist; USB serial ports of this machine: ",
         ),
         (
             &["calibrate", "restore", "no.toml"],
-            "lizard: no.toml:1: this is not TOML: ",
+            "lizard: no.toml:1: invalid TOML: ",
         ),
         (
             &["calibrate", "restore", "other.toml"],
@@ -281,11 +283,11 @@ fn invalid_input_is_refused_with_a_message() {
         ),
         (
             &["console", "replay", "other.toml"],
-            "lizard: other.toml: this is not a session of `lizard console --record`: its first line has no",
+            "lizard: other.toml: this is not a session of `lizard console --record`: \"lizard record 1\" is missing",
         ),
         (
             &["calibrate", "/dev/no-such-port"],
-            "lizard: calibrate asks for single keys; run it in a terminal",
+            "lizard: calibrate reads single keys; run it in a terminal",
         ),
     ] {
         let (out, error, code) = run(folder_path, arguments, "");
@@ -295,7 +297,7 @@ fn invalid_input_is_refused_with_a_message() {
 }
 
 #[test]
-fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_board() {
+fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
@@ -311,43 +313,46 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_is_removed_with_the_
         Path::new("a-file")
     );
 
-    // A killed run leaves a broken link behind.
+    // A killed run leaves a broken link, which a new run replaces.
     std::os::unix::fs::symlink("/dev/pts/999999", &board_link).expect("the link is created");
     let name = board_link.display().to_string();
     let mut child = lizard_command(folder.path(), &["sim", "--pty", &name])
         .stdout(Stdio::null())
         .spawn()
         .expect("the program starts");
-    LIMIT.expect("a port at the end of the link", || board_link.exists());
+    TIME_LIMIT.wait_for("a port at the end of the link", || board_link.exists());
     send_signal(&child, Signal::TERM);
-    let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
+    let status = TIME_LIMIT
+        .wait_for_exit(&mut child)
+        .expect("the program exits");
     let signal = std::os::unix::process::ExitStatusExt::signal(&status);
     assert_eq!(signal, Some(15), "not ended by SIGTERM");
     assert!(!board_link.is_symlink(), "the link must be removed");
 }
 
 #[test]
-fn a_picture_is_not_printed_to_a_terminal() {
+fn draw_refuses_to_print_a_drawing_to_a_terminal() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
-    let mut session = TerminalSession::start(lizard_command(folder.path(), &["draw", "--wiring"]));
-    session.wait_for("lizard: the picture is SVG, which a terminal does not show; --output");
+    let mut session = TerminalSession::start(folder.path(), &["draw", "--wiring"]);
+    session
+        .wait_for("lizard: standard output is a terminal; write the SVG to a file with --output");
     assert!(!session.new_text.contains("<svg"));
-    assert_eq!(session.exit_code(), Some(2));
+    assert_eq!(session.wait_for_exit(), Some(2));
 }
 
 fn send_signal(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).expect("the process exists");
 }
 
-/// The state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
-fn process_state(child: &Child) -> char {
+/// Reads the state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
+fn read_process_state(child: &Child) -> char {
     let path = format!("/proc/{}/stat", child.id());
     let stat = fs::read_to_string(path).expect("the process exists");
     let (_, rest) = stat.rsplit_once(") ").expect("a state follows the name");
     rest.chars().next().expect("the state is a letter")
 }
 
-/// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
+/// Returns true if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
 fn is_cooked(terminal: &File) -> bool {
     let modes = tcgetattr(terminal).expect("the terminal has modes");
     modes
@@ -356,7 +361,7 @@ fn is_cooked(terminal: &File) -> bool {
 }
 
 #[test]
-fn control_z_restores_the_terminal_and_fg_continues() {
+fn control_z_restores_the_terminal_and_the_program_can_continue() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
     let port = uno.port();
@@ -364,66 +369,69 @@ fn control_z_restores_the_terminal_and_fg_continues() {
         ("console", "no fault", "stop\r", "ok stop"),
         ("calibrate", "before you begin", "\r", "fit the horns"),
     ] {
-        let mut session = TerminalSession::start(lizard_command(folder.path(), &[command, &port]));
+        let mut session = TerminalSession::start(folder.path(), &[command, &port]);
         session.wait_for(first_text);
         assert!(!is_cooked(&session.keys), "{command}");
         session.press("\x1a");
-        LIMIT.expect("a stopped program", || process_state(&session.child) == 'T');
+        TIME_LIMIT.wait_for("a stopped program", || {
+            read_process_state(&session.child) == 'T'
+        });
         assert!(is_cooked(&session.keys), "{command}");
         send_signal(&session.child, Signal::CONT);
-        LIMIT.expect("keys one by one", || !is_cooked(&session.keys));
+        TIME_LIMIT.wait_for("keys one by one", || !is_cooked(&session.keys));
         session.press(keys);
         session.wait_for(next_text);
         session.press(if command == "console" { "\x04" } else { "q" });
-        assert_eq!(session.exit_code(), Some(0), "{command}");
+        assert_eq!(session.wait_for_exit(), Some(0), "{command}");
     }
 }
 
 #[test]
-fn a_program_whose_terminal_is_closed_ends() {
+fn a_program_ends_when_its_terminal_is_closed() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let uno = Uno::start(folder.path());
     let port = uno.port();
     for (command, first_text) in [("console", "no fault"), ("calibrate", "before you begin")] {
-        let (mut test_side, mut child) =
-            spawn_in_terminal(lizard_command(folder.path(), &[command, &port]));
-        let printed_text = LIMIT.within(first_text, move || {
+        let (mut test_side, mut child) = spawn_in_terminal(folder.path(), &[command, &port]);
+        let printed_text = TIME_LIMIT.run(first_text, move || {
             let (mut text, mut bytes) = (String::new(), [0; 4096]);
             while !text.contains(first_text) {
                 let count = test_side.read(&mut bytes).expect("output is readable");
                 text.push_str(&String::from_utf8_lossy(&bytes[..count]));
             }
-            // Closes the terminal: no other process has the test's side open.
+            // This closes the terminal, since no other process has the test's side open.
             drop(test_side);
             text
         });
         assert!(printed_text.contains(first_text));
-        let status = LIMIT.wait_for_exit(&mut child).expect("the program exits");
+        let status = TIME_LIMIT
+            .wait_for_exit(&mut child)
+            .expect("the program exits");
         assert_eq!(status.code(), Some(0), "{command}");
     }
 }
 
 #[test]
-fn a_simulated_robot_that_has_ended_is_not_reported_as_continuing() {
+fn console_does_not_report_an_ended_simulated_robot_as_continuing() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
-    let mut session = TerminalSession::start(lizard_command(folder.path(), &arguments));
+    let mut session = TerminalSession::start(folder.path(), &arguments);
     session.wait_for("no fault");
-    let gait = moving_gait(folder.path());
+    let gait = find_moving_gait(folder.path());
     session.press(&format!("{gait}\r"));
     session.wait_for(&format!("ok {gait}"));
     session.wait_for(&format!("{gait}  "));
     session.press("\x04");
-    LIMIT.expect("the end of the program", || {
+    TIME_LIMIT.wait_for("the end of the program", || {
         let status = session.child.try_wait();
         status.expect("the wait succeeds").is_some()
     });
-    LIMIT.wait_for(|| {
+    TIME_LIMIT.poll(|| {
         session.read_output();
         session.new_text.contains("\x1b[?2004l")
     });
     let text = &session.new_text;
-    assert!(!text.contains("goes on"), "{text:?}");
+    assert!(!text.contains("continues its gait"), "{text:?}");
 }
 
 #[test]

@@ -1,18 +1,19 @@
-//! Tests of the choice of the keys and of their errors. A formula takes the place of the simulated robot.
+//! Tests of the choice of keys and of their errors. A formula replaces the simulated robot.
 
 use fastrand::Rng;
 
 use super::*;
+use crate::card::Card;
 use crate::key::{PLAY_INDEX, TWIST_INDEX};
 use crate::problem::MODEL_ERROR;
 
 /// Number of gaits.
 const GAIT_COUNT: usize = 8;
-/// Standard error of each measured mean, mm and deg.
+/// Standard error of each measured mean, mm or deg.
 const MEAN_ERROR: f64 = 0.05;
 
-/// A model whose movements are curved functions of the keys, with other coefficients for each gait.
-fn model_travels(values: &Values) -> Vec<Travel> {
+/// Computes movements that are curved functions of the keys, with different coefficients for each gait.
+fn compute_travels(values: &Values) -> Vec<Travel> {
     let mut rng = Rng::with_seed(5);
     let mut next_component = || {
         let mut component = 0.0;
@@ -30,20 +31,20 @@ fn model_travels(values: &Values) -> Vec<Travel> {
     (0..GAIT_COUNT).map(&mut next_travel).collect()
 }
 
-/// An approximately normal deviate: the sum of twelve uniform deviates.
+/// Returns an approximately normal deviate: the sum of twelve uniform deviates.
 fn random_deviate(rng: &mut Rng) -> f64 {
     (0..12).map(|_| rng.f64() - 0.5).sum()
 }
 
-/// The values of a hypothetical robot.toml: zero, or the smallest possible value of the key if that is larger.
-fn file_values() -> Values {
+/// Returns the values of a hypothetical robot.toml: zero, or the key's smallest possible value if it is larger.
+fn default_file_values() -> Values {
     std::array::from_fn(|i| KEYS[i].min_value.max(0.0))
 }
 
-/// The movements of a robot as a camera measures them: with this mounting error of the card, and with random errors.
+/// Simulates a camera's measurement of a robot, with a mounting error of the card and with random errors.
 fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMovement> {
-    let movement_of = |travel: Travel| {
-        let card_travel = card.card_travel(travel);
+    let movements = compute_travels(values).into_iter().map(|travel| {
+        let card_travel = card.convert_travel(travel);
         let components = [card_travel.forward, card_travel.left, card_travel.turn];
         MeasuredMovement {
             gait: "walk".to_owned(),
@@ -52,8 +53,8 @@ fn measure_robot(values: &Values, card: Card, rng: &mut Rng) -> Vec<MeasuredMove
                 .map(|component| component + MEAN_ERROR.hypot(MODEL_ERROR) * random_deviate(rng)),
             error: [MEAN_ERROR; 3],
         }
-    };
-    model_travels(values).into_iter().map(movement_of).collect()
+    });
+    movements.collect()
 }
 
 fn random_card(rng: &mut Rng) -> Card {
@@ -62,12 +63,8 @@ fn random_card(rng: &mut Rng) -> Card {
         .into()
 }
 
-fn verdicts_of(result: &Identified) -> Vec<Verdict> {
-    result.keys.iter().map(|key| key.verdict).collect()
-}
-
 #[test]
-fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_stay() {
+fn changed_keys_are_found_within_two_standard_errors_in_95_percent_and_correct_keys_stay() {
     let (
         mut hit_count,
         mut changed_count,
@@ -78,7 +75,7 @@ fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_st
     const ROBOT_COUNT: u64 = 300;
     for seed in 0..ROBOT_COUNT {
         let mut rng = Rng::with_seed(seed);
-        let mut true_values = file_values();
+        let mut true_values = default_file_values();
         let is_changed: [bool; KEY_COUNT] = std::array::from_fn(|_| rng.bool());
         for i in (0..KEY_COUNT).filter(|&i| is_changed[i]) {
             true_values[i] += KEYS[i].prior_error()
@@ -90,11 +87,12 @@ fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_st
         }
         let card = random_card(&mut rng);
         let movements = measure_robot(&true_values, card, &mut rng);
-        let result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
+        let result =
+            solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
         explained_count += f64::from(u8::from(result.goodness.is_explained));
         for i in 0..KEY_COUNT {
             let key = &result.keys[i];
-            assert!(key.verdict != Verdict::Undetermined, "{seed} {key:?}");
+            assert!(key.verdict != Verdict::Undetermined, "seed {seed}: {key:?}");
             if is_changed[i] {
                 changed_count += 1.0;
                 hit_count += f64::from(u8::from(
@@ -109,73 +107,72 @@ fn changed_keys_are_within_two_standard_errors_in_95_percent_and_correct_keys_st
             assert!(distance == 0.0 || distance >= 2.0 * key.error);
         }
     }
-    let share = hit_count / changed_count;
+    let hit_fraction = hit_count / changed_count;
     assert!(
-        (0.93..=0.985).contains(&share),
-        "{share} of {changed_count}"
+        (0.93..=0.985).contains(&hit_fraction),
+        "{hit_count} of {changed_count} changed keys are within two standard errors"
     );
     assert!(
         false_change_count / unchanged_count < 0.05,
-        "{} of {unchanged_count}",
-        false_change_count / unchanged_count
+        "{false_change_count} of {unchanged_count} correct keys changed"
     );
     assert!(
         explained_count / ROBOT_COUNT as f64 > 0.97,
-        "{explained_count}"
+        "{explained_count} of {ROBOT_COUNT} robots are explained"
     );
 }
 
 #[test]
-fn at_a_fold_of_the_model_the_error_is_that_of_the_flatter_side() {
-    /// Twist below which the foot carries no load, mm, so that an even shorter foot has no further effect.
+fn at_a_fold_of_the_model_the_error_follows_the_flatter_side() {
+    /// Twist below which the foot carries no load and an even shorter foot has no further effect, mm.
     const FOLD: f64 = -0.5;
     let folded_model = |values: &Values| {
         let mut values = *values;
         values[TWIST_INDEX] = values[TWIST_INDEX].max(FOLD);
-        model_travels(&values)
+        compute_travels(&values)
     };
-    let mut true_values = file_values();
+    let mut true_values = default_file_values();
     true_values[TWIST_INDEX] = FOLD;
     let mut movements = measure_robot(&true_values, Card::default(), &mut Rng::with_seed(1));
-    for (movement, travel) in movements.iter_mut().zip(model_travels(&true_values)) {
+    for (movement, travel) in movements.iter_mut().zip(compute_travels(&true_values)) {
         movement.mean = [travel.forward, travel.left, travel.turn];
     }
-    let twist_error_of = |model: &dyn Fn(&Values) -> Vec<Travel>| {
-        solve(&movements, file_values(), model)
+    let find_twist_error = |model: &dyn Fn(&Values) -> Vec<Travel>| {
+        solve(&movements, default_file_values(), model)
             .expect("the fit converges")
             .keys[TWIST_INDEX]
             .error
     };
-    let [folded_error, smooth_error] = [
-        twist_error_of(&folded_model),
-        twist_error_of(&model_travels),
-    ];
+    let folded_error = find_twist_error(&folded_model);
+    let smooth_error = find_twist_error(&compute_travels);
     assert!(
         folded_error > 1.2 * smooth_error,
-        "{folded_error} {smooth_error}"
+        "folded model: {folded_error}, smooth model: {smooth_error}"
     );
 }
 
 #[test]
-fn a_key_without_influence_keeps_its_value_and_is_undetermined() {
+fn a_key_without_effect_keeps_its_value_and_is_undetermined() {
     let model_without_key_5 = |values: &Values| {
         let mut values = *values;
         values[5] = 0.7;
-        model_travels(&values)
+        compute_travels(&values)
     };
-    let mut true_values = file_values();
+    let mut true_values = default_file_values();
     (true_values[0], true_values[5]) = (8.0, 1.1);
     let mut rng = Rng::with_seed(1);
     let card = random_card(&mut rng);
     let mut movements = measure_robot(&true_values, card, &mut rng);
     for (movement, travel) in movements.iter_mut().zip(model_without_key_5(&true_values)) {
-        let card_travel = card.card_travel(travel);
+        let card_travel = card.convert_travel(travel);
         movement.mean = [card_travel.forward, card_travel.left, card_travel.turn];
     }
-    let result = solve(&movements, file_values(), &model_without_key_5).expect("the fit converges");
+    let result =
+        solve(&movements, default_file_values(), &model_without_key_5).expect("the fit converges");
     let mut expected = vec![Verdict::Unchanged; KEY_COUNT];
     (expected[0], expected[5]) = (Verdict::Changed, Verdict::Undetermined);
-    assert_eq!(verdicts_of(&result), expected);
+    let verdicts: Vec<Verdict> = result.keys.iter().map(|key| key.verdict).collect();
+    assert_eq!(verdicts, expected);
     assert_eq!(result.keys[5].new_value, result.keys[5].file_value);
     assert!(
         result.keys[5].error > 0.9 * KEYS[5].prior_error(),
@@ -191,11 +188,12 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
         let sum = values[2] + values[3];
         values[2] = sum + 0.02 * values[3];
         values[3] = 0.0;
-        model_travels(&values)
+        compute_travels(&values)
     };
     let mut rng = Rng::with_seed(1);
-    let movements = measure_robot(&file_values(), Card::default(), &mut rng);
-    let result = solve(&movements, file_values(), &equal_effect_model).expect("the fit converges");
+    let movements = measure_robot(&default_file_values(), Card::default(), &mut rng);
+    let result =
+        solve(&movements, default_file_values(), &equal_effect_model).expect("the fit converges");
     let [(a, b, correlation)] = result.correlated_pairs[..] else {
         panic!("{:?}", result.correlated_pairs);
     };
@@ -203,17 +201,19 @@ fn two_keys_with_the_same_effect_are_reported_as_correlated() {
         (a.full_name(), b.full_name()),
         (KEYS[2].full_name(), KEYS[3].full_name())
     );
-    assert!(correlation < -0.9, "{correlation}");
+    assert!(correlation < -0.9, "correlation {correlation}");
 }
 
 #[test]
-fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
+fn a_movement_that_no_key_explains_is_reported_and_enlarges_the_errors() {
     let mut rng = Rng::with_seed(2);
-    let mut movements = measure_robot(&file_values(), Card::default(), &mut rng);
-    let good_result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
+    let mut movements = measure_robot(&default_file_values(), Card::default(), &mut rng);
+    let good_result =
+        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
     assert!(good_result.goodness.is_explained && good_result.goodness.error_factor == 1.0);
     movements[3].mean[0] += 4.0;
-    let bad_result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
+    let bad_result =
+        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
     let GoodnessOfFit {
         is_explained,
         error_factor,
@@ -229,31 +229,32 @@ fn a_movement_that_no_key_explains_is_reported_and_widens_the_errors() {
     for (bad_key, good_key) in bad_result.keys.iter().zip(&good_result.keys) {
         assert!(
             bad_key.error > 4.0 * good_key.error,
-            "{bad_key:?} {good_key:?}"
+            "bad fit: {bad_key:?}, good fit: {good_key:?}"
         );
     }
 }
 
 #[test]
-fn a_play_below_zero_is_impossible_and_keeps_the_value_of_the_file() {
+fn a_negative_play_is_impossible_and_keeps_the_file_value() {
     let mut rng = Rng::with_seed(3);
-    let mut movements = measure_robot(&file_values(), Card::default(), &mut rng);
-    let travels_with_play = |play: f64| {
-        let mut values = file_values();
+    let mut movements = measure_robot(&default_file_values(), Card::default(), &mut rng);
+    let compute_with_play = |play: f64| {
+        let mut values = default_file_values();
         values[PLAY_INDEX] = play;
-        model_travels(&values)
+        compute_travels(&values)
     };
-    // The movements shift by the opposite of the effect of a play of 0.5 deg, so that the fit asks for -0.5 deg.
+    // The movements are shifted opposite to the effect of 0.5 deg of play, so that the best fit is at -0.5 deg.
     for ((movement, base_travel), play_travel) in movements
         .iter_mut()
-        .zip(travels_with_play(0.0))
-        .zip(travels_with_play(0.5))
+        .zip(compute_with_play(0.0))
+        .zip(compute_with_play(0.5))
     {
         movement.mean[0] -= play_travel.forward - base_travel.forward;
         movement.mean[1] -= play_travel.left - base_travel.left;
         movement.mean[2] -= play_travel.turn - base_travel.turn;
     }
-    let result = solve(&movements, file_values(), &model_travels).expect("the fit converges");
+    let result =
+        solve(&movements, default_file_values(), &compute_travels).expect("the fit converges");
     let play_key = &result.keys[PLAY_INDEX];
     assert_eq!(play_key.new_value, 0.0);
     assert!(

@@ -1,5 +1,5 @@
 //! The generator of the polynomials' coefficients in `src/angle.rs`. A test compares the
-//! coefficients there with the generated ones, and prints the latter if they differ.
+//! coefficients there with the generated ones, and prints both if they differ.
 //!
 //! Each polynomial interpolates a smooth function of the squared argument at Chebyshev nodes,
 //! which keeps its largest error within a few percent of the least possible for its degree.
@@ -13,8 +13,8 @@ type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
 const PRECISION_BITS: usize = 256;
-/// Fraction by which the interval of the nodes extends beyond the square of the largest argument,
-/// because rounding may push an argument beyond its limit.
+/// Fraction by which the nodes' interval extends beyond the square of the largest argument, because
+/// rounding may push an argument beyond its limit.
 const INTERVAL_MARGIN: f64 = 1e-4;
 /// Number of points at which an error is measured.
 const SAMPLE_COUNT: u32 = 2000;
@@ -76,7 +76,7 @@ fn number_from_f64(value: f64) -> Number {
 
 impl Polynomial {
     /// Computes the coefficients of P, the constant first.
-    pub fn coefficients(&self) -> Vec<f64> {
+    pub fn compute_coefficients(&self) -> Vec<f64> {
         let max_argument = (self.max_argument)();
         let max_square =
             &max_argument * &max_argument * (number_from(1) + number_from_f64(INTERVAL_MARGIN));
@@ -114,9 +114,8 @@ impl Polynomial {
             .collect()
     }
 
-    /// The largest error of the approximation with these coefficients, relative
-    /// to the function, for arguments up to the largest.
-    pub fn error(&self, coefficients: &[f64]) -> f64 {
+    /// Computes the largest relative error of the approximation with these coefficients.
+    pub fn compute_max_error(&self, coefficients: &[f64]) -> f64 {
         let max_argument = (self.max_argument)();
         (1..=SAMPLE_COUNT)
             .map(|i| {
@@ -126,8 +125,8 @@ impl Polynomial {
                     .iter()
                     .rev()
                     .fold(number_from(0), |sum, c| sum * &z + number_from_f64(*c));
-                let relative_error = (sum - self.target_value(&x)) * power_of(&x, self.exponent)
-                    / (self.function)(&x);
+                let relative_error =
+                    (sum - self.target_value(&x)) * power(&x, self.exponent) / (self.function)(&x);
                 relative_error.to_f64().value().abs()
             })
             .fold(0.0, f64::max)
@@ -135,11 +134,11 @@ impl Polynomial {
 
     /// The exact value, at an argument x, that the polynomial P approximates.
     fn target_value(&self, x: &Number) -> Number {
-        ((self.function)(x) - (self.leading_terms)(x)) / power_of(x, self.exponent)
+        ((self.function)(x) - (self.leading_terms)(x)) / power(x, self.exponent)
     }
 }
 
-/// x^n, for n of at least 1.
-fn power_of(x: &Number, n: i32) -> Number {
+/// Returns x^n for n >= 1.
+fn power(x: &Number, n: i32) -> Number {
     (1..n).fold(x.clone(), |power, _| power * x)
 }

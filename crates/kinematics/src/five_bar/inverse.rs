@@ -69,8 +69,8 @@ impl FiveBar {
     /// crank's angle is free, [`Fault::NotFinite`] if the input is not finite or overflows.
     pub fn inverse(&self, point: Vector) -> Result<[InverseSolution; 4], Fault> {
         let arms = self.solve_arms(point)?;
-        let solution_of = |working_mode: WorkingMode| {
-            let (left, right, assembly_mode) = arms.directions_in(working_mode);
+        let solution_in_mode = |working_mode: WorkingMode| {
+            let (left, right, assembly_mode) = arms.directions_in_mode(working_mode);
             InverseSolution {
                 working_mode,
                 assembly_mode,
@@ -78,7 +78,7 @@ impl FiveBar {
                 theta_right: right.angle(),
             }
         };
-        Ok(WorkingMode::ALL.map(solution_of))
+        Ok(WorkingMode::ALL.map(solution_in_mode))
     }
 
     /// The pose with the end point at a point (mm, own frame) and both elbows outward; cheaper than
@@ -87,7 +87,9 @@ impl FiveBar {
     /// # Errors
     /// Fails as [`FiveBar::inverse`] and [`FiveBar::forward`] do.
     pub fn pose_at_point(&self, point: Vector) -> Result<FiveBarPose, Fault> {
-        let (left, right, mode) = self.solve_arms(point)?.directions_in(WorkingMode::OUTWARD);
+        let (left, right, mode) = self
+            .solve_arms(point)?
+            .directions_in_mode(WorkingMode::OUTWARD);
         self.close(mode, left, right)
     }
 
@@ -137,7 +139,7 @@ struct Arms {
 impl Arms {
     /// The directions (length one) of the left and the right crank in a working mode, and the
     /// assembly mode.
-    fn directions_in(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
+    fn directions_in_mode(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
         // Outward is to the left of the line from the left shaft to the point,
         // and to the right of the line from the right shaft.
         let left = match mode.left {
@@ -172,8 +174,8 @@ fn crank_directions(
         return Err(Fault::NotFinite);
     }
     // A point that the caller computed to lie on the edge of the reach may be outside by rounding.
-    let slack = max_reach * 4.0 * f64::EPSILON;
-    if distance > max_reach + slack || distance < min_reach - slack {
+    let rounding_tolerance = max_reach * 4.0 * f64::EPSILON;
+    if distance > max_reach + rounding_tolerance || distance < min_reach - rounding_tolerance {
         return Err(Fault::OutOfReach {
             is_left,
             distance,
@@ -181,7 +183,7 @@ fn crank_directions(
             max_reach,
         });
     }
-    if distance <= slack {
+    if distance <= rounding_tolerance {
         return Err(Fault::OnShaft);
     }
     // The components of the crank's direction, relative to the line to the point, scaled by twice the product of crank

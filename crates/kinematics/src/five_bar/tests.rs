@@ -13,11 +13,11 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_loop_that_closes_does_so_within_a_billionth_of_a_millimetre(
+    fn closed_loops_close_within_a_billionth_of_a_millimetre(
         five_bar in any_five_bar(), left in -720.0..720.0f64, right in -720.0..720.0f64,
     ) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
-            if let Ok(pose) = five_bar.forward_in(mode, left, right) {
+            if let Ok(pose) = five_bar.forward_in_mode(mode, left, right) {
                 let [x, y] = loop_residuals(
                     &five_bar,
                     [left, pose.theta_left_coupler(), pose.theta_right_coupler(), right],
@@ -45,7 +45,7 @@ proptest! {
     }
 
     #[test]
-    fn newtons_method_from_a_perturbed_start_returns_to_the_closed_form(
+    fn newtons_method_converges_to_the_closed_form_from_a_perturbed_start(
         five_bar in any_five_bar(), left in -180.0..180.0f64, right in -180.0..180.0f64,
         perturbation in [-2.0..2.0, -2.0..2.0f64],
     ) {
@@ -54,7 +54,7 @@ proptest! {
             let start = [expected[0] + perturbation[0], expected[1] + perturbation[1]];
             let angles = solve_by_newton(&five_bar, [left, right], start).expect("Newton's method converges");
             for (a, b) in expected.iter().zip(angles) {
-                prop_assert!(wrap(a - b).abs() < 1e-9, "{expected:?} {angles:?}");
+                prop_assert!(wrap(a - b).abs() < 1e-9, "{angles:?}, expected {expected:?}");
             }
         }
     }
@@ -65,10 +65,10 @@ proptest! {
     ) {
         if let Ok(pose) = five_bar.forward(left, right) {
             let (t2, t3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
-            let sine_of = |degrees: f64| degrees.to_radians().sin();
-            prop_assert!((pose.type2 - sine_of(t3 - t2)).abs() < 1e-7);
-            prop_assert!((pose.type1_left() - sine_of(left - t2)).abs() < 1e-9);
-            prop_assert!((pose.type1_right() - sine_of(t3 - right)).abs() < 1e-9);
+            let sine = |degrees: f64| degrees.to_radians().sin();
+            prop_assert!((pose.type2 - sine(t3 - t2)).abs() < 1e-7);
+            prop_assert!((pose.type1_left() - sine(left - t2)).abs() < 1e-9);
+            prop_assert!((pose.type1_right() - sine(t3 - right)).abs() < 1e-9);
         }
     }
 
@@ -79,7 +79,7 @@ proptest! {
         let point = Vector::new(x, y);
         if let Ok(solutions) = five_bar.inverse(point) {
             for solution in solutions {
-                let pose = five_bar.forward_in(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
+                let pose = five_bar.forward_in_mode(solution.assembly_mode, solution.theta_left, solution.theta_right).unwrap();
                 // The end point is badly determined if the crank tips nearly coincide, and if the
                 // couplers nearly line up.
                 let stiffness = (pose.gap.length() / 1e3).min(pose.type2.abs());
@@ -101,9 +101,9 @@ proptest! {
             // If the end point lies on a shaft, the angle of that shaft's crank is free.
             prop_assume!((pose.end_point - five_bar.left_shaft()).length() > 1.0);
             prop_assume!((pose.end_point - five_bar.right_shaft()).length() > 1.0);
-            let elbow_of = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
+            let elbow_for = |margin: f64| if margin > 0.0 { Elbow::Outward } else { Elbow::Inward };
             let solution = five_bar.inverse(pose.end_point).unwrap().into_iter()
-                .find(|s| s.working_mode.left == elbow_of(left_margin) && s.working_mode.right == elbow_of(right_margin)).unwrap();
+                .find(|s| s.working_mode.left == elbow_for(left_margin) && s.working_mode.right == elbow_for(right_margin)).unwrap();
             prop_assert_eq!(solution.assembly_mode, AssemblyMode::Ahead);
             prop_assert!(wrap(solution.theta_left - left).abs() < 1e-9, "{:?}", solution);
             prop_assert!(wrap(solution.theta_right - right).abs() < 1e-9, "{:?}", solution);
@@ -112,7 +112,7 @@ proptest! {
 }
 
 #[test]
-fn the_papers_head_returns_from_point_to_angles_to_point_over_its_whole_workspace() {
+fn forward_after_inverse_returns_to_every_reachable_point_of_the_papers_head() {
     let (mut max_error, mut reachable_count) = (0.0_f64, 0);
     for i in -90..=90 {
         for j in 0..=90 {
@@ -121,7 +121,7 @@ fn the_papers_head_returns_from_point_to_angles_to_point_over_its_whole_workspac
                 continue;
             };
             let (left, right) = (solution.theta_left, solution.theta_right);
-            let pose = PAPER_HEAD.forward_in(solution.assembly_mode, left, right);
+            let pose = PAPER_HEAD.forward_in_mode(solution.assembly_mode, left, right);
             max_error = max_error.max((pose.unwrap().end_point - point).length());
             reachable_count += 1;
         }
@@ -148,38 +148,37 @@ fn coinciding_crank_tips_give_a_fault_or_a_finite_singular_pose() {
 #[test]
 fn the_loop_closes_near_the_poses_at_which_the_papers_a_vanishes() {
     // A = (d^2 - 2 K2 l3) / 2 = 0 where the right coupler points along -x.
-    let mut min_magnitude_of_double_a = f64::INFINITY;
+    let mut min_double_a = f64::INFINITY;
     for step in 0..=1800 {
         let theta4 = f64::from(step) / 10.0;
         for theta1 in [100.0, 120.0, 138.59, 150.0] {
             let Ok(pose) = PAPER_HEAD.forward(theta1, theta4) else {
                 continue;
             };
-            min_magnitude_of_double_a = min_magnitude_of_double_a
-                .min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
+            min_double_a = min_double_a.min((pose.gap.length_squared() - 100.0 * pose.gap.x).abs());
             let (theta2, theta3) = (pose.theta_left_coupler(), pose.theta_right_coupler());
             let gap = loop_residuals(&PAPER_HEAD, [theta1, theta2, theta3, theta4]);
             assert!(gap[0].hypot(gap[1]) < 1e-12);
         }
     }
     assert!(
-        min_magnitude_of_double_a < 10.0,
-        "no pose is near A = 0: {min_magnitude_of_double_a}"
+        min_double_a < 10.0,
+        "no pose is near A = 0: the smallest |2A| is {min_double_a}"
     );
 }
 
 #[test]
-fn the_messages_of_faults_state_the_distances_and_limits() {
+fn fault_messages_state_the_distances_and_limits() {
     for (x, y, message) in [
         (
             0.0,
             90.0,
-            "the point is 90.554 mm from the left shaft, which reaches 20.000 to 80.000 mm",
+            "the point is 90.554 mm from the left shaft, but must be between 20.000 and 80.000 mm away",
         ),
         (
             10.0,
             5.0,
-            "the point is 5.000 mm from the right shaft, which reaches 20.000 to 80.000 mm",
+            "the point is 5.000 mm from the right shaft, but must be between 20.000 and 80.000 mm away",
         ),
         (f64::NAN, 5.0, "a value is not a finite number"),
     ] {
@@ -190,12 +189,12 @@ fn the_messages_of_faults_state_the_distances_and_limits() {
         (
             [10.0, 15.0],
             [180.0, 0.0],
-            "80.000 mm apart, the couplers reach 25.000 mm",
+            "80.000 mm apart, but the couplers reach only 25.000 mm",
         ),
         (
             [80.0, 50.0],
             [90.0, 90.0],
-            "20.000 mm apart, the couplers need 30.000 mm",
+            "20.000 mm apart, but the couplers need at least 30.000 mm",
         ),
     ] {
         let five_bar = FiveBar::new([20.0, 30.0, couplers[0], couplers[1], 30.0]);

@@ -15,9 +15,8 @@ fn sine_between(a: Vector, b: Vector) -> f64 {
     (a.x * b.y - a.y * b.x) / (a.x.hypot(a.y) * b.x.hypot(b.y))
 }
 
-/// The values of all conditions by name, in the chassis frame; `None` if a loop does not
-/// close.
-fn expected_values_of(
+/// Computes the values of all conditions by name, in the chassis frame; `None` if a loop does not close.
+fn compute_expected_values(
     robot: &Lizard,
     [t1, t4, t8, t5]: [f64; 4],
 ) -> Option<BTreeMap<&'static str, f64>> {
@@ -30,7 +29,7 @@ fn expected_values_of(
     // Crank tips.
     let (p1, p4) = (a1 + cis(t1) * l.l1, a2 + cis(t4) * l.l4);
     let (p8, p5) = (a3 + cis(t8) * l.l9, a4 + cis(t5) * l.l6);
-    // The head point is to the left of the line from p1 to p4, the tail point to the right of that from p5 to p8.
+    // The head point is to the left of the line from p1 to p4, the tail point to the left of the line from p8 to p5.
     let head = circle_intersection(p1, l.l2, p4, l.l3)?;
     let tail = circle_intersection(p8, l.l8, p5, l.l7)?;
     // Vectors along the sliders.
@@ -73,7 +72,7 @@ fn any_limits() -> impl Strategy<Value = Limits> {
 }
 
 /// The smallest and the largest safe value of a condition, found by the first word of its name.
-fn safe_range_of(limits: &Limits, name: &str) -> (f64, f64) {
+fn find_safe_range(limits: &Limits, name: &str) -> (f64, f64) {
     match name.split('_').next().unwrap() {
         "type2" => (limits.type2, f64::INFINITY),
         "type1" => (limits.type1, f64::INFINITY),
@@ -87,12 +86,12 @@ proptest! {
     #![proptest_config(config_with_cases(4096))]
 
     #[test]
-    fn every_condition_of_a_robot_without_symmetry_has_the_value_of_its_formula(
+    fn conditions_of_asymmetrical_robots_match_their_formulas(
         robot in any_lizard(), pose in any_pose(), turns in -2..=2i32,
     ) {
         let pose = pose.map(|angle| angle + 360.0 * f64::from(turns));
         let solution = robot.solve(&pose.into()).ok();
-        let Some(expected_values) = expected_values_of(&robot, pose) else {
+        let Some(expected_values) = compute_expected_values(&robot, pose) else {
             prop_assert!(solution.is_none_or(|s| s.head.type2.min(s.tail.type2) < 1e-6));
             return Ok(());
         };
@@ -106,7 +105,7 @@ proptest! {
         prop_assert_eq!(conditions.len(), 14);
         for (name, expected) in &expected_values {
             let actual = conditions[name];
-            prop_assert!((actual - expected).abs() < 1e-7, "{name} {actual} {expected}");
+            prop_assert!((actual - expected).abs() < 1e-7, "{name} is {actual}, expected {expected}");
         }
         // The margins and the conditions of each end give the same values.
         for (check, value) in solution.margins.iter() {
@@ -122,12 +121,12 @@ proptest! {
     }
 
     #[test]
-    fn a_violation_is_reported_for_exactly_the_conditions_out_of_range(
+    fn violations_are_exactly_the_conditions_out_of_range(
         (_, _, solution) in any_solved_robot(), limits in any_limits(),
     ) {
         let mut expected = Vec::new();
         for (check, value) in solution.conditions() {
-            let (min, max) = safe_range_of(&limits, check.name());
+            let (min, max) = find_safe_range(&limits, check.name());
             if value < min {
                 let is_crossing = Check::UNCROSSED.contains(&check);
                 expected.push((check, value, if is_crossing { 0.0 } else { min }));
@@ -138,7 +137,7 @@ proptest! {
         let violations: Vec<_> = limits.violations(&solution).map(|v| (v.check, v.value, v.limit)).collect();
         prop_assert_eq!(limits.is_safe(&solution), violations.is_empty());
         prop_assert_eq!(&violations, &expected);
-        // The violations of each end alone are the same, except for those of the sliders.
+        // Each end alone reports the same violations, except those of the sliders.
         let violations_of_end = |end: End| limits.end_violations(end, solution.end(end));
         let names_of_ends = End::ALL.into_iter().flat_map(violations_of_end).map(|v| v.check.name());
         let expected_names = expected.iter().map(|(check, ..)| check);
@@ -156,19 +155,19 @@ proptest! {
         ];
         for (checks, min) in limits_of_kinds {
             for &check in checks {
-                prop_assert_eq!(limits.violation_of(check, min), None);
-                let violation = limits.violation_of(check, min.next_down()).unwrap();
+                prop_assert_eq!(limits.find_violation(check, min), None);
+                let violation = limits.find_violation(check, min.next_down()).unwrap();
                 prop_assert_eq!((violation.check, violation.limit), (check, min));
             }
         }
         for check in Check::STROKE {
-            prop_assert_eq!(limits.violation_of(check, limits.stroke_max), None);
-            let violation = limits.violation_of(check, limits.stroke_max.next_up()).unwrap();
+            prop_assert_eq!(limits.find_violation(check, limits.stroke_max), None);
+            let violation = limits.find_violation(check, limits.stroke_max.next_up()).unwrap();
             prop_assert_eq!(violation.limit, limits.stroke_max);
         }
         for check in Check::UNCROSSED {
-            prop_assert!(limits.violation_of(check, 0.0).is_some());
-            prop_assert_eq!(limits.violation_of(check, f64::MIN_POSITIVE), None);
+            prop_assert!(limits.find_violation(check, 0.0).is_some());
+            prop_assert_eq!(limits.find_violation(check, f64::MIN_POSITIVE), None);
         }
     }
 
@@ -178,33 +177,33 @@ proptest! {
     ) {
         prop_assume!(solution.head.type2.min(solution.tail.type2) > 1e-3);
         let l = &robot.links;
-        let distance_of = |a: Vector, b: Vector| (a - b).length();
+        let distance = |a: Vector, b: Vector| (a - b).length();
         let ([p1, p4, p8, p5], [a1, a2, a3, a4]) = (solution.crank_tips(), robot.shafts());
         for (tip, shaft, theta, length) in [
             (p1, a1, pose[0], l.l1), (p4, a2, pose[1], l.l4),
             (p8, a3, pose[2], l.l9), (p5, a4, pose[3], l.l6),
         ] {
-            prop_assert!(distance_of(tip, shaft + cis(theta) * length) < 1e-9);
+            prop_assert!(distance(tip, shaft + cis(theta) * length) < 1e-9);
         }
         for (end, tips, couplers) in [
             (End::Head, [p1, p4], [l.l2, l.l3]), (End::Tail, [p5, p8], [l.l7, l.l8]),
         ] {
             let point = solution.point(end);
             for i in 0..2 {
-                prop_assert!(distance_of(tips[i] + solution.couplers(end)[i] * couplers[i], point) < 1e-9);
+                prop_assert!(distance(tips[i] + solution.coupler_directions(end)[i] * couplers[i], point) < 1e-9);
             }
-            prop_assert!(distance_of(robot.to_end(end, point), solution.end(end).end_point) < 1e-9);
+            prop_assert!(distance(robot.to_end(end, point), solution.end(end).end_point) < 1e-9);
         }
         // The arm tips are relative to the rear shafts.
         let [left, right] = Side::ALL.map(|side| solution.side(side));
-        prop_assert!(distance_of(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
-        prop_assert!(distance_of(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
-        prop_assert!(distance_of(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
-        prop_assert!(distance_of(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
+        prop_assert!(distance(a4 + left.rear_tip, a4 + cis(pose[3] - 90.0) * l.l11) < 1e-9);
+        prop_assert!(distance(a4 + left.front_tip, a1 + cis(pose[0] + 90.0) * l.l14) < 1e-9);
+        prop_assert!(distance(a3 + right.rear_tip, a3 + cis(pose[2] + 90.0) * l.l16) < 1e-9);
+        prop_assert!(distance(a3 + right.front_tip, a2 + cis(pose[1] - 90.0) * l.l19) < 1e-9);
     }
 
     #[test]
-    fn the_angles_for_a_point_put_the_end_point_there_in_servo_order(
+    fn point_angles_put_the_end_point_at_the_point(
         (robot, pose, solution) in any_solved_robot(),
     ) {
         // `point_angles` returns only outward elbows, and loses digits near a singularity.

@@ -1,4 +1,4 @@
-//! For any lengths and angles, a solution contains only finite numbers.
+//! A solution contains only finite numbers, for any lengths and angles.
 
 use lizard_kinematics::{AssemblyMode, Fault, FiveBar, FiveBarPose, Pose, Slider, Vector};
 use proptest::prelude::*;
@@ -57,7 +57,7 @@ proptest! {
     #[test]
     fn a_five_bar_of_any_size_has_a_finite_pose_or_a_fault(five_bar in any_five_bar(), left in any::<f64>(), right in -180.0..180.0f64) {
         for mode in [AssemblyMode::Ahead, AssemblyMode::Behind] {
-            if let Ok(pose) = five_bar.forward_in(mode, left, right) {
+            if let Ok(pose) = five_bar.forward_in_mode(mode, left, right) {
                 prop_assert!(is_finite_pose(&pose), "{pose:?}");
             }
         }
@@ -77,7 +77,7 @@ proptest! {
                     let reach = (point - tip).length();
                     let error = (reach - five_bar.left_coupler_length).abs();
                     let total_length = five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base;
-                    prop_assert!(error < 1e-6 * total_length, "{error} of {total_length}: {solution:?}");
+                    prop_assert!(error < 1e-6 * total_length, "error {error} mm, total length {total_length} mm: {solution:?}");
                 }
             }
             if let Ok(pose) = five_bar.pose_at_point(point) {
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn a_huge_angle_has_the_solution_of_the_angle_modulo_360_degrees(
+    fn a_huge_angle_has_the_same_solution_as_its_remainder_modulo_360_degrees(
         robot in any_lizard(), pose in any_pose(), huge in any::<f64>(), servo in 0..4usize,
     ) {
         prop_assume!(huge.is_finite());
@@ -117,8 +117,8 @@ proptest! {
 }
 
 #[test]
-fn a_length_that_is_not_finite_or_overflows_is_reported_with_its_part() {
-    for (index, length, part) in [
+fn an_infinite_or_overflowing_length_is_reported_with_its_mechanism() {
+    for (index, length, mechanism) in [
         (0, 1e200, "head"),
         (1, f64::NAN, "head"),
         (2, f64::INFINITY, "head"),
@@ -136,7 +136,7 @@ fn a_length_that_is_not_finite_or_overflows_is_reported_with_its_part() {
         let neutral = [138.59, 41.41, 318.59, 221.41];
         let result = robot.solve(&neutral.into());
         let infeasible = result.expect_err("the robot has no finite pose");
-        assert_eq!(infeasible.mechanism.to_string(), part, "l{index}");
+        assert_eq!(infeasible.mechanism.to_string(), mechanism, "l{index}");
         assert_eq!(infeasible.fault, Fault::NotFinite, "l{index}");
     }
 }

@@ -1,5 +1,5 @@
-//! Five-bars or sliders that are computed together in lanes have the same bits as those that are computed alone, and
-//! lanes that do not close do not affect the others.
+//! Five-bars and sliders computed together in lanes have the same bits as those computed alone, and lanes that do not
+//! close do not affect the others.
 
 use lizard_kinematics::{End, Lanes, Lizard, Side, Vector};
 use proptest::prelude::*;

@@ -24,7 +24,7 @@ fn violation_messages(pose: [f64; 4]) -> Vec<String> {
 }
 
 #[test]
-fn the_neutral_pose_is_safe_with_nominal_sliders_and_the_ends_on_the_middle_line() {
+fn the_neutral_pose_is_safe_and_symmetrical_with_nominal_sliders() {
     let solution = paper_lizard().solve(&NEUTRAL_POSE.into()).unwrap();
     assert!(solution.left.s.abs() < 1e-6 && solution.right.s.abs() < 1e-6);
     assert!((solution.head.gap.length() - 65.0).abs() < 1e-6);
@@ -92,11 +92,12 @@ proptest! {
 }
 
 #[test]
-fn the_angles_for_two_points_put_head_and_tail_there() {
+fn point_angles_put_head_and_tail_at_their_points() {
     let robot = paper_lizard();
-    let angles_of = |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
-    let [a1, a2] = angles_of(End::Head, 8.0, 52.0);
-    let [a3, a4] = angles_of(End::Tail, -5.0, 60.0);
+    let point_angles =
+        |end: End, x: f64, y: f64| robot.point_angles(end, Vector::new(x, y)).unwrap();
+    let [a1, a2] = point_angles(End::Head, 8.0, 52.0);
+    let [a3, a4] = point_angles(End::Tail, -5.0, 60.0);
     let solution = robot.solve(&[a1, a2, a3, a4].into()).unwrap();
     assert!((solution.head_point() - Vector::new(8.0, 119.5)).length() < 1e-9);
     assert!((solution.tail_point() - Vector::new(-5.0, -127.5)).length() < 1e-9);
@@ -110,7 +111,7 @@ fn each_violated_limit_has_its_message() {
     let arm_message = "margin type1_a1 -0.317 is below 0.300";
     let slider_message = "left slider travel +47.09 mm is above +45.00 mm";
     let crossed_message = "head crank tips are crossed: -18.57 mm from left to right";
-    // The leg is beyond its change point: the magnitude of its margin is large enough, but its sign is negative.
+    // The leg is beyond its change point: its margin is large enough in magnitude, but negative.
     let beyond_message = "margin leg_rf -0.319 is below 0.300";
     for (pose, message) in [
         ([176.0, a2, a3, a4], leg_message),
@@ -131,7 +132,7 @@ fn a_pose_with_nan_is_infeasible_and_the_error_names_the_mechanism() {
 }
 
 #[test]
-fn there_are_ten_margins_and_at_neutral_the_smallest_is_that_of_a_leg() {
+fn a_leg_has_the_smallest_of_the_ten_neutral_margins() {
     let margins = paper_lizard().margins(&NEUTRAL_POSE.into()).unwrap();
     let names: Vec<_> = margins.iter().map(|(check, _)| check.name()).collect();
     assert_eq!(

@@ -1,5 +1,4 @@
-//! Tests across modules: the complete robot, compared with solvers that share only the link lengths
-//! with it.
+//! Tests across modules: the complete robot, compared with independent solvers.
 
 mod conditions;
 mod finite;

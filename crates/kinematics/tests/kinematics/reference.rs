@@ -47,8 +47,8 @@ pub fn loop_residuals(five_bar: &FiveBar, degrees: [f64; 4]) -> [f64; 2] {
     ]
 }
 
-/// theta2 and theta3 (degrees) by Newton's method, at the angles of both cranks and from `start` (degrees); `None` if
-/// it does not converge.
+/// Computes theta2 and theta3 (degrees) by Newton's method from the values in `start`; `None` if it does not converge.
+/// `cranks` are the angles of both cranks, degrees.
 pub fn solve_by_newton(five_bar: &FiveBar, cranks: [f64; 2], start: [f64; 2]) -> Option<[f64; 2]> {
     let [mut t2, mut t3] = start;
     for _ in 0..60 {
@@ -68,8 +68,8 @@ pub fn solve_by_newton(five_bar: &FiveBar, cranks: [f64; 2], start: [f64; 2]) ->
     (fx.hypot(fy) < 1e-10).then_some([t2, t3])
 }
 
-/// The end point, to the left of the line from the left crank tip to the right one, by the law of cosines; `None` if
-/// the couplers' circles do not intersect.
+/// Computes the end point to the left of the line from the left crank tip to the right one, by the law of cosines;
+/// `None` if the couplers' circles do not intersect.
 pub fn end_point_by_cosines(
     five_bar: &FiveBar,
     theta_left: f64,
@@ -116,7 +116,7 @@ pub fn any_solved_robot() -> impl Strategy<Value = (Lizard, [f64; 4], Solution)>
     })
 }
 
-/// A proptest configuration with this number of cases, which tolerates many rejected ones.
+/// A proptest configuration with this number of cases that tolerates many rejected ones.
 pub fn config_with_cases(case_count: u32) -> ProptestConfig {
     ProptestConfig {
         cases: case_count,

@@ -29,7 +29,7 @@ pub struct Conditioning {
     pub least: f64,
     /// Largest index in the circle.
     pub most: f64,
-    /// Share of the circle's area in which the index is above 0.7, the paper's bound.
+    /// Fraction of the circle's area in which the index is above 0.7, the paper's bound.
     pub share_above: f64,
     /// Radius of the concentric circle within which the index is at least 0.7, the paper's bound.
     pub radius_above: f64,
@@ -43,8 +43,8 @@ pub fn lci(five_bar: &FiveBar, point: Vector) -> f64 {
 
 impl Performance {
     /// Computes the performance of a five-bar. The inscribed circle is sampled on `ring_count` rings.
-    pub fn of(five_bar: &FiveBar, ring_count: usize) -> Self {
-        let workspace = Workspace::of(five_bar);
+    pub fn compute(five_bar: &FiveBar, ring_count: usize) -> Self {
+        let workspace = Workspace::for_five_bar(five_bar);
         let circle = workspace.inscribed_circle();
         Self {
             area: workspace.area(),
@@ -94,19 +94,19 @@ impl Conditioning {
         Self {
             mean: sum / sample_count,
             least: min_index,
-            most: largest_index_near(
+            most: find_largest_index(
                 five_bar,
                 circle,
                 (max_index, max_point),
                 circle.radius / ring_count as f64,
             ),
             share_above: count_above as f64 / sample_count,
-            radius_above: Self::radius_above(five_bar, circle, ring_count),
+            radius_above: Self::find_radius_above(five_bar, circle, ring_count),
         }
     }
 
-    /// Radius of the concentric circle within which the index is at least the claimed bound.
-    fn radius_above(five_bar: &FiveBar, circle: Circle, ring_count: usize) -> f64 {
+    /// Finds the radius of the concentric circle within which the index is at least the claimed bound.
+    fn find_radius_above(five_bar: &FiveBar, circle: Circle, ring_count: usize) -> f64 {
         let step = circle.radius / (2 * ring_count) as f64;
         (0..4 * ring_count)
             .map(|spoke| {
@@ -139,7 +139,7 @@ impl Conditioning {
 
 /// Searches for the largest index in the circle near a sample, by hill climbing. The step is halved if no neighbour is
 /// better.
-fn largest_index_near(
+fn find_largest_index(
     five_bar: &FiveBar,
     circle: Circle,
     start_sample: (f64, Vector),

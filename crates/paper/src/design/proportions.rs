@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The sum r1 + r2 + r3 of every design.
 pub const PROPORTION_SUM: f64 = 0.9;
 
-/// The smallest r1, r2 or r3 of a design; smaller values make D overflow.
+/// The smallest r1, r2 or r3 of a design. Smaller values make D overflow.
 const MIN_PROPORTION: f64 = 0.001;
 
 /// A point of the design space.
@@ -42,12 +42,12 @@ impl Proportions {
         ] {
             if !(value > 0.0 && value < max) {
                 return Err(format!(
-                    "{name} is {value}, it must lie between 0 and {max}"
+                    "{name} is {value}, but must be between 0 and {max}"
                 ));
             }
             if value < MIN_PROPORTION {
                 return Err(format!(
-                    "{name} is {value:.1e}, too short to build: it must be at least {MIN_PROPORTION}"
+                    "{name} is {value:.1e}, but must be at least {MIN_PROPORTION}"
                 ));
             }
         }
@@ -55,7 +55,7 @@ impl Proportions {
         if (sum - PROPORTION_SUM).abs() > 1e-9 {
             let factor = PROPORTION_SUM / sum;
             return Err(format!(
-                "r1 + r2 + r3 is {sum:.6}, it must be {PROPORTION_SUM}; the same shape is r1 {:.6}, r2 {:.6}, r3 {:.6}",
+                "r1 + r2 + r3 is {sum:.6}, but must be {PROPORTION_SUM}; the same shape has r1 {:.6}, r2 {:.6}, r3 {:.6}",
                 r1 * factor,
                 r2 * factor,
                 r3 * factor
@@ -81,7 +81,8 @@ impl Proportions {
     }
 }
 
-/// The grid points inside the triangle of r1, r2 and r3. The edges are left out, because a link has no length there.
+/// Returns the grid points inside the triangle of r1, r2 and r3. The edges are left out, because there a link has no
+/// length.
 pub fn triangle_points(step: f64) -> Vec<Proportions> {
     let step_count = (PROPORTION_SUM / step + 1e-9) as usize;
     let mut points = Vec::new();

@@ -1,4 +1,4 @@
-//! Search for the best proportions of the five-bar for this robot. The paper has no such search.
+//! The search for the five-bar's best proportions for this robot, which the paper does not contain.
 //!
 //! The paper takes r1, r2, r3 from a gecko's head and checks the conditioning index afterwards. Here every point of
 //! the triangle becomes a robot with the given base. The robot's cranks are mounted at the neutral angle that allows
@@ -30,7 +30,7 @@ pub struct Requirements {
     pub sweep_deg: f64,
 }
 
-/// A design whose safe sweep is at least the demanded sweep.
+/// A design whose safe sweep is at least the required sweep.
 #[derive(Clone, Copy, Serialize, Deserialize)]
 pub struct Design {
     /// The proportions of the five-bar.
@@ -44,11 +44,11 @@ pub struct Design {
     pub sweep: f64,
     /// Stride of a foot with the largest safe sweep, mm.
     pub stride: f64,
-    /// Smallest margin within the demanded sweep, a sine.
+    /// Smallest margin within the required sweep, a sine.
     pub margin: f64,
-    /// Mean conditioning index within the demanded sweep.
+    /// Mean conditioning index within the required sweep.
     pub lci: f64,
-    /// Geometric mean of conditioning index, margin and stride, each as a share of the best of all designs.
+    /// Geometric mean of conditioning index, margin and stride, each relative to the best value among all designs.
     pub score: f64,
     /// True if no other design is better in conditioning index, margin and stride.
     pub pareto: bool,
@@ -77,7 +77,7 @@ impl Search {
         self.points.len().div_ceil(PIECE_SIZE)
     }
 
-    /// The number of points in `piece_count` pieces.
+    /// The number of points in the first `piece_count` pieces.
     pub fn point_count(&self, piece_count: usize) -> usize {
         self.points.len().min(piece_count * PIECE_SIZE)
     }
@@ -105,8 +105,8 @@ pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
     designs
 }
 
-/// Finds the best design with these proportions, without a score. Returns `None` if its safe sweep is smaller than
-/// demanded, or if a link is too short.
+/// Finds the best design with these proportions, without a score. Returns `None` if the safe sweep is smaller than
+/// required, or if a link is too short.
 pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Option<Design> {
     let d = proportions.scale_for_base(requirements.base_mm);
     let five_bar = proportions.at_scale(d);
@@ -116,13 +116,16 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
     let (neutral, sweep) = (90..=170)
         .map(|neutral| {
             let neutral = f64::from(neutral);
-            (neutral, largest_sweep(&five_bar, neutral, requirements))
+            (
+                neutral,
+                find_largest_sweep(&five_bar, neutral, requirements),
+            )
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     if sweep < requirements.sweep_deg {
         return None;
     }
-    let (margin, lci) = margin_and_lci(&five_bar, neutral, requirements.sweep_deg);
+    let (margin, lci) = compute_margin_and_lci(&five_bar, neutral, requirements.sweep_deg);
     Some(Design {
         proportions,
         d,
@@ -136,15 +139,15 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
     })
 }
 
-/// The largest sweep about a neutral angle within all limits, degrees.
-fn largest_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
+/// Finds the largest sweep about a neutral angle within all limits, degrees.
+fn find_largest_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
     let (mut safe_deg, mut unsafe_deg) = (0.0, requirements.travel_deg.min(89.9));
-    if !keeps_limits(five_bar, neutral, safe_deg, requirements) {
+    if !is_within_limits(five_bar, neutral, safe_deg, requirements) {
         return 0.0;
     }
     for _ in 0..9 {
         let middle_deg = (safe_deg + unsafe_deg) / 2.0;
-        if keeps_limits(five_bar, neutral, middle_deg, requirements) {
+        if is_within_limits(five_bar, neutral, middle_deg, requirements) {
             safe_deg = middle_deg;
         } else {
             unsafe_deg = middle_deg;
@@ -156,23 +159,28 @@ fn largest_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) 
 /// Sample positions across the sweep, from -1 to 1.
 const SWEEP_SAMPLES: [f64; 9] = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// True if the five-bar and the sliders keep the limits at all sampled angles of the sweep.
-fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, requirements: &Requirements) -> bool {
+/// True if the five-bar and the sliders are within the limits at all sampled angles of the sweep.
+fn is_within_limits(
+    five_bar: &FiveBar,
+    neutral: f64,
+    sweep: f64,
+    requirements: &Requirements,
+) -> bool {
     let limits = &requirements.limits;
-    let slider = slider_of_side(five_bar, requirements);
+    let slider = side_slider(five_bar, requirements);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
-    let span_of = |front: f64, rear: f64| {
+    let slider_span = |front: f64, rear: f64| {
         slider
             .forward(-rear - 90.0, front + 90.0)
             .map_or(f64::NAN, |pose| pose.d)
     };
-    let nominal_span = span_of(neutral, neutral);
+    let nominal_span = slider_span(neutral, neutral);
     SWEEP_SAMPLES.iter().all(|&left_fraction| {
         let left_angle = neutral + left_fraction * sweep;
         SWEEP_SAMPLES.iter().all(|&right_fraction| {
             let right_angle = 180.0 - neutral + right_fraction * sweep;
-            let travel = span_of(left_angle, neutral + right_fraction * sweep) - nominal_span;
-            limits.violation_of(Check::StrokeLeft, travel).is_none()
+            let travel = slider_span(left_angle, neutral + right_fraction * sweep) - nominal_span;
+            limits.find_violation(Check::StrokeLeft, travel).is_none()
                 && five_bar
                     .forward(left_angle, right_angle)
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
@@ -180,8 +188,8 @@ fn keeps_limits(five_bar: &FiveBar, neutral: f64, sweep: f64, requirements: &Req
     })
 }
 
-/// The slider of a side, with arms as long as the cranks, as in the paper.
-fn slider_of_side(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
+/// The slider of a side, whose arms are as long as the cranks, as in the paper.
+fn side_slider(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
     Slider {
         front_offset: 0.0,
         base: requirements.chassis_length_mm,
@@ -191,8 +199,8 @@ fn slider_of_side(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
     }
 }
 
-/// Smallest margin and mean conditioning index within a sweep.
-fn margin_and_lci(five_bar: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
+/// Computes the smallest margin and the mean conditioning index within a sweep.
+fn compute_margin_and_lci(five_bar: &FiveBar, neutral: f64, sweep: f64) -> (f64, f64) {
     let mut min_margin = f64::INFINITY;
     let mut lci_sum = 0.0;
     for left_fraction in SWEEP_SAMPLES {
@@ -222,29 +230,29 @@ pub struct BestValues {
 
 impl BestValues {
     /// Finds the best values among designs.
-    pub fn among<'a>(designs: impl Iterator<Item = &'a Design> + Clone) -> Self {
-        let best_of = |value: fn(&Design) -> f64| {
+    pub fn from_designs<'a>(designs: impl Iterator<Item = &'a Design> + Clone) -> Self {
+        let best = |value: fn(&Design) -> f64| {
             designs.clone().map(value).fold(f64::MIN_POSITIVE, f64::max)
         };
         Self {
-            lci: best_of(|design| design.lci),
-            margin: best_of(|design| design.margin),
-            stride: best_of(|design| design.stride),
+            lci: best(|design| design.lci),
+            margin: best(|design| design.margin),
+            stride: best(|design| design.stride),
         }
     }
 
     /// Computes the score of one of the designs.
     pub fn score(&self, design: &Design) -> f64 {
-        let lci_share = design.lci / self.lci;
-        let margin_share = design.margin.max(0.0) / self.margin;
-        let stride_share = design.stride / self.stride;
-        (lci_share * margin_share * stride_share).cbrt()
+        let lci_ratio = design.lci / self.lci;
+        let margin_ratio = design.margin.max(0.0) / self.margin;
+        let stride_ratio = design.stride / self.stride;
+        (lci_ratio * margin_ratio * stride_ratio).cbrt()
     }
 }
 
 /// Scores the designs and sorts them, best first.
 fn rank_designs(designs: &mut [Design]) {
-    let best_values = BestValues::among(designs.iter());
+    let best_values = BestValues::from_designs(designs.iter());
     let all_designs = designs.to_vec();
     for design in designs.iter_mut() {
         design.score = best_values.score(design);

@@ -15,12 +15,12 @@ pub struct Entry {
     pub holds: bool,
     /// The largest error, in `unit`.
     pub worst: f64,
-    /// Share of the samples at which the printed form has no real value.
+    /// Fraction of the samples at which the printed form has no real value.
     pub unreal: f64,
     /// The unit of every error of this equation.
     pub unit: &'static str,
-    /// The largest error of the printed form in a special case, in `unit`, and the name of that case; null if there is
-    /// no special case.
+    /// The largest error of the printed form in a special case, in `unit`, and the special case's name; null if there
+    /// is no special case.
     pub aside: Option<(f64, &'static str)>,
     /// True if the printed form holds with right-hand angles measured clockwise from -x; null if the drawings do not
     /// suggest this convention.
@@ -34,7 +34,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// The verdict in words.
+    /// The verdict on the printed form, in words.
     pub fn verdict(&self) -> &'static str {
         match (self.holds, self.holds_clockwise) {
             (true, Some(false)) => "holds, but not clockwise",
@@ -44,7 +44,7 @@ impl Entry {
         }
     }
 
-    /// The largest error in words, or `rounding` if the equation holds, followed by the error of the special case.
+    /// Formats the largest error, or `rounding` if the equation holds, followed by the error of the special case.
     pub fn format_error(&self) -> String {
         let mut text = self.format_largest_error();
         if let Some((worst_error, special_case)) = self.aside {
@@ -58,7 +58,7 @@ impl Entry {
         text
     }
 
-    /// The largest error in words, or `rounding` if the equation holds, without the special case.
+    /// Formats the largest error, or `rounding` if the equation holds, without the special case.
     fn format_largest_error(&self) -> String {
         if self.holds {
             return "rounding".to_string();

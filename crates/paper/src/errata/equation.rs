@@ -71,8 +71,8 @@ impl Equation {
 pub struct FormErrors {
     /// The largest error among samples with a real value.
     pub largest: f64,
-    /// Share of the samples without a real value.
-    pub unreal_share: f64,
+    /// Fraction of the samples without a real value.
+    pub unreal_fraction: f64,
 }
 
 impl FormErrors {
@@ -91,12 +91,12 @@ impl FormErrors {
         }
         Self {
             largest,
-            unreal_share: unreal_count as f64 / samples.len().max(1) as f64,
+            unreal_fraction: unreal_count as f64 / samples.len().max(1) as f64,
         }
     }
 
     /// True if the form has a real value at every sample, and all its errors are rounding errors.
     pub fn holds(&self) -> bool {
-        self.largest < Self::ROUNDING && self.unreal_share == 0.0
+        self.largest < Self::ROUNDING && self.unreal_fraction == 0.0
     }
 }

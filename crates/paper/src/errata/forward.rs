@@ -24,7 +24,7 @@ pub const EQUATIONS: &[Equation] = &[
     }),
     Equation::new(
         "4.2 head, θ3",
-        "θ3 = 2 atan((-B - sqrt(B² - 4AC))/2A)",
+        "θ3 = 2 atan((-B - sqrt(B² - 4AC))/(2A))",
         "deg",
         |sample| {
             let (a, b, c) = abc_coefficients(sample, sample.theta()[4]);
@@ -35,7 +35,7 @@ pub const EQUATIONS: &[Equation] = &[
         },
     )
     .with_correction(
-        "two circles met by their chord, as `kinematics` does (miss: mm of loop closure)",
+        "the intersection of two circles, as in `kinematics` (error: mm of loop closure)",
         |sample| {
             let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
                 return Some(0.0);
@@ -57,7 +57,7 @@ pub const EQUATIONS: &[Equation] = &[
     .with_special_case("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
     Equation::new(
         "4.2 head, θ2",
-        "θ2 = 2 atan((-E + sqrt(E² + 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
+        "θ2 = 2 atan((-E + sqrt(E² + 4DF))/(2D)), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
         "deg",
         |sample| {
             let (d, e, f) = def_coefficients(sample, 1.0);
@@ -67,7 +67,7 @@ pub const EQUATIONS: &[Equation] = &[
         },
     )
     .with_correction(
-        "θ2 = 2 atan((E - sqrt(E² - 4DF))/2D), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
+        "θ2 = 2 atan((E - sqrt(E² - 4DF))/(2D)), K4 = -l4 cos θ4 + l1 cos θ1 - l0",
         |sample| {
             let (d, e, f) = def_coefficients(sample, -1.0);
             let radicand = e * e - 4.0 * d * f;
@@ -93,7 +93,7 @@ pub const EQUATIONS: &[Equation] = &[
         },
     ),
     Equation::new(
-        "4.2 left loop, its slider drawn out by s",
+        "4.2 left loop, slider extended by s",
         "R11 + R12 - R13 - R14 - R10 = 0",
         "mm",
         |sample| {
@@ -107,7 +107,7 @@ pub const EQUATIONS: &[Equation] = &[
         },
     ),
     Equation::new(
-        "4.2 right loop, its slider drawn out by s",
+        "4.2 right loop, slider extended by s",
         "R16 + R17 - R18 - R19 - R15 = 0",
         "mm",
         |sample| {
@@ -166,13 +166,13 @@ pub const EQUATIONS: &[Equation] = &[
     }),
 ];
 
-/// The difference of the two angles that are computed from a sample's thetas, deg.
-fn angle_error(sample: &Sample, angles_of: fn([f64; 17]) -> [f64; 2]) -> Option<f64> {
-    let [a, b] = angles_of(sample.theta());
+/// The difference between the two angles that `angles` returns for a sample's thetas, deg.
+fn angle_error(sample: &Sample, angles: fn([f64; 17]) -> [f64; 2]) -> Option<f64> {
+    let [a, b] = angles(sample.theta());
     Some(angle_error_deg(a, b))
 }
 
-/// The gap of the head's loop with these angles of l1 to l4, mm.
+/// The gap in the head's loop for these angles of l1 to l4, mm.
 fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -219,15 +219,17 @@ fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The theta4 (rad) at which A is 0 for the sample's theta1; `None` if there is no such angle from -90 to 90 degrees.
+/// Finds the theta4 (rad) at which A is 0 for the sample's theta1; `None` if there is no such angle from -90 to 90
+/// degrees.
 fn find_theta4_at_zero_a(sample: &Sample) -> Option<f64> {
-    let a_of = |theta4: f64| abc_coefficients(sample, theta4).0;
+    let coefficient_a = |theta4: f64| abc_coefficients(sample, theta4).0;
     let angle_at = |i: i32| f64::from(i) * FRAC_PI_2 / 90.0;
-    let start = (-90..90).find(|&i| a_of(angle_at(i)) * a_of(angle_at(i + 1)) < 0.0)?;
+    let start =
+        (-90..90).find(|&i| coefficient_a(angle_at(i)) * coefficient_a(angle_at(i + 1)) < 0.0)?;
     let (mut low, mut high) = (angle_at(start), angle_at(start + 1));
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        if a_of(low) * a_of(middle) <= 0.0 {
+        if coefficient_a(low) * coefficient_a(middle) <= 0.0 {
             high = middle;
         } else {
             low = middle;

@@ -10,10 +10,10 @@ pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "4.2 leg loops",
         "LG1 + LG12 - LG13 - LG10 = 0, and with LG10 for legs 2 to 4",
-        "mm; LG20, LG30, LG40 are meant",
+        "mm; the paper means LG20, LG30, LG40",
         |sample| {
             let leg = &sample.lizard.leg;
-            largest_error(sample, ALL_LEGS, |theta| {
+            max_error(sample, ALL_LEGS, |theta| {
                 let sum = polar(leg.crank, theta) + Vector::new(leg.coupler - leg.ground, 0.0)
                     - polar(leg.follower, theta);
                 Some(sum.length())
@@ -22,39 +22,39 @@ pub const EQUATIONS: &[Equation] = &[
     ),
     Equation::new(
         "4.2 θ_lg13, front legs",
-        "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/2G)",
+        "θ_lg13 = 2 atan((-H + sqrt(H² - 4GI))/(2G))",
         "deg",
         |sample| follower_error(sample, FRONT_LEGS, 1.0, None),
     )
-    .with_correction("the root with - for 0 < θ_lg < 180°", |sample| {
+    .with_correction("the negative root for 0 < θ_lg < 180°", |sample| {
         follower_error(sample, FRONT_LEGS, -1.0, None)
     }),
     Equation::new(
-        "4.2 θ_lg13, back legs",
-        "the same, with the + root",
+        "4.2 θ_lg13, hind legs",
+        "the same, with the positive root",
         "deg",
-        |sample| follower_error(sample, BACK_LEGS, 1.0, None),
+        |sample| follower_error(sample, HIND_LEGS, 1.0, None),
     ),
     Equation::new(
         "4.2 H, legs 2 to 4",
         "H = -2 sin θ1",
-        "deg in θ_lg13, root already corrected",
+        "deg in θ_lg13 with the corrected root",
         |sample| {
             let h = Some(-2.0 * sample.theta()[1].sin());
             let front = follower_error(sample, &[4], -1.0, h);
-            let back = follower_error(sample, BACK_LEGS, 1.0, h);
-            Some(front?.max(back?))
+            let hind = follower_error(sample, HIND_LEGS, 1.0, h);
+            Some(front?.max(hind?))
         },
     )
     .with_correction("H = -2 sin θ_lgi", |sample| {
         Some(
             follower_error(sample, &[4], -1.0, None)?
-                .max(follower_error(sample, BACK_LEGS, 1.0, None)?),
+                .max(follower_error(sample, HIND_LEGS, 1.0, None)?),
         )
     }),
     Equation::new(
         "4.2 θ_lg12, front legs",
-        "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/2J), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
+        "θ_lg12 = 2 atan((-K - sqrt(K² - 4JL))/(2J)), J: -lg10 cos θ/lg12, L: -(lg10/lg12 + 1) cos θ",
         "deg",
         |sample| coupler_error(sample, FRONT_LEGS, -1.0, -1.0),
     )
@@ -62,49 +62,54 @@ pub const EQUATIONS: &[Equation] = &[
         "J: +lg10 cos θ/lg12, L: +(lg10/lg12 - 1) cos θ",
         |sample| coupler_error(sample, FRONT_LEGS, 1.0, -1.0),
     ),
-    Equation::new("4.2 θ_lg12, back legs", "the same", "deg", |sample| {
-        coupler_error(sample, BACK_LEGS, -1.0, -1.0)
+    Equation::new("4.2 θ_lg12, hind legs", "the same", "deg", |sample| {
+        coupler_error(sample, HIND_LEGS, -1.0, -1.0)
     })
     .with_correction(
-        "J and L as above, and the + root for 180° < θ_lg < 360°",
-        |sample| coupler_error(sample, BACK_LEGS, 1.0, 1.0),
+        "J and L as above, and the positive root for 180° < θ_lg < 360°",
+        |sample| coupler_error(sample, HIND_LEGS, 1.0, 1.0),
     ),
 ];
 
-/// The paper's numbers of the angles that drive the front legs.
+/// The paper's indices of the front legs' drive angles.
 const FRONT_LEGS: &[usize] = &[1, 4];
-/// The paper's numbers of the angles that drive the back legs.
-const BACK_LEGS: &[usize] = &[8, 5];
-/// The paper's numbers of the angles that drive all legs.
+/// The paper's indices of the hind legs' drive angles.
+const HIND_LEGS: &[usize] = &[8, 5];
+/// The paper's indices of all legs' drive angles.
 const ALL_LEGS: &[usize] = &[1, 4, 8, 5];
 
-/// The largest error over these legs; `None` if a leg has no real value.
-fn largest_error(
+/// The largest error over these legs; `None` if the equation has no real root for a leg.
+fn max_error(
     sample: &Sample,
     legs: &[usize],
-    error_of: impl Fn(f64) -> Option<f64>,
+    leg_error: impl Fn(f64) -> Option<f64>,
 ) -> Option<f64> {
     legs.iter()
-        .map(|&leg| error_of(sample.theta()[leg]))
-        .try_fold(0.0, |worst: f64, value| Some(worst.max(value?)))
+        .map(|&leg| leg_error(sample.theta()[leg]))
+        .try_fold(0.0, |max: f64, error| Some(max.max(error?)))
 }
 
-/// The error of the follower's angle from G, H and I as printed, or from another H. `root_sign` selects the root. In a
-/// parallelogram, the true angle of the follower is the crank's angle.
-fn follower_error(sample: &Sample, legs: &[usize], root_sign: f64, h: Option<f64>) -> Option<f64> {
+/// The error of the follower's angle, computed from the printed G, H and I; `h_override` replaces the printed H.
+/// `root_sign` selects the root. In a parallelogram, the follower's true angle is the crank's angle.
+fn follower_error(
+    sample: &Sample,
+    legs: &[usize],
+    root_sign: f64,
+    h_override: Option<f64>,
+) -> Option<f64> {
     let Leg {
         ground,
         crank,
         coupler,
         follower,
     } = sample.lizard.leg;
-    largest_error(sample, legs, |theta| {
+    max_error(sample, legs, |theta| {
         let cos_theta = theta.cos();
         let constant_term = (crank * crank + follower * follower + ground * ground
             - coupler * coupler)
             / (2.0 * crank * follower);
         let g = cos_theta - ground / crank - ground * cos_theta / follower + constant_term;
-        let h = h.unwrap_or(-2.0 * theta.sin());
+        let h = h_override.unwrap_or(-2.0 * theta.sin());
         let i = ground / crank - (ground / follower + 1.0) * cos_theta + constant_term;
         Some(angle_error_deg(
             2.0 * half_angle_tangent(g, h, i, root_sign)?.atan(),
@@ -113,8 +118,8 @@ fn follower_error(sample: &Sample, legs: &[usize], root_sign: f64, h: Option<f64
     })
 }
 
-/// The error of the coupler's angle from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is the sign
-/// of the terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
+/// The error of the coupler's angle, computed from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is
+/// the sign of the terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
 fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64) -> Option<f64> {
     let Leg {
         ground,
@@ -122,7 +127,7 @@ fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64
         coupler,
         follower,
     } = sample.lizard.leg;
-    largest_error(sample, legs, |theta| {
+    max_error(sample, legs, |theta| {
         let cos_theta = theta.cos();
         let constant_term =
             (follower * follower - ground * ground - crank * crank - coupler * coupler)

@@ -1,4 +1,4 @@
-//! Every equation of the paper, compared with the geometric solution. Only the equations are written by hand; all
+//! All equations of the paper, compared with the geometric solution. Only the equations are written by hand; all
 //! results are computed.
 
 mod entry;
@@ -23,7 +23,7 @@ pub use table::{format_markdown, format_text};
 pub const SAMPLE_COUNT: u32 = 20_000;
 
 /// The paper's equations, in the order of the paper.
-fn equations() -> Vec<&'static Equation> {
+fn all_equations() -> Vec<&'static Equation> {
     [
         synthesis::EQUATIONS,
         inverse::EQUATIONS,
@@ -38,7 +38,7 @@ fn equations() -> Vec<&'static Equation> {
 
 /// The number of equations that [`measure`] evaluates.
 pub fn equation_count() -> usize {
-    equations().len()
+    all_equations().len()
 }
 
 /// Measures every equation at `sample_count` random poses, on all cores. The results are in the paper's order.
@@ -56,7 +56,7 @@ pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<En
             printed: equation.printed,
             holds: printed.holds(),
             worst: printed.largest,
-            unreal: printed.unreal_share,
+            unreal: printed.unreal_fraction,
             unit: equation.unit,
             aside: equation
                 .special_case
@@ -69,5 +69,8 @@ pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<En
             corrected_holds: corrected.map(|errors| errors.holds()),
         }
     };
-    equations().into_par_iter().map(measure_equation).collect()
+    all_equations()
+        .into_par_iter()
+        .map(measure_equation)
+        .collect()
 }

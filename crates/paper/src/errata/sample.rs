@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use lizard_kinematics::{Leg, Links, Lizard, Pose, Solution, Vector};
 
-/// The paper's table of link lengths as printed, mm. It names l16 twice, and does not name l17.
+/// The paper's table of link lengths as printed, mm. It lists l16 twice, and does not list l17.
 pub const LINK_TABLE: [(&[usize], f64); 5] = [
     (&[0, 5], 20.0),
     (&[1, 4, 6, 9, 14, 11, 16, 19], 30.0),
@@ -38,7 +38,7 @@ pub struct Sample {
     pub lizard: Lizard,
     /// The geometric solution.
     pub solution: Solution,
-    /// Uniform in [0, 1).
+    /// Two random numbers, uniform in [0, 1).
     pub random: [f64; 2],
 }
 
@@ -49,12 +49,12 @@ impl Sample {
         let lizard = paper_lizard();
         let mut random = Random(1);
         std::iter::repeat_with(move || {
-            let mut angle_from = |min: f64| min + 90.0 * random.next();
+            let mut angle_above = |min: f64| min + 90.0 * random.next();
             let pose = Pose {
-                theta1: angle_from(90.0),
-                theta4: angle_from(0.0),
-                theta8: 360.0 - angle_from(0.0),
-                theta5: 360.0 - angle_from(90.0),
+                theta1: angle_above(90.0),
+                theta4: angle_above(0.0),
+                theta8: 360.0 - angle_above(0.0),
+                theta5: 360.0 - angle_above(90.0),
             };
             let random = [random.next(), random.next()];
             let solution = lizard.solve(&pose).ok()?;
@@ -102,14 +102,14 @@ pub fn angle_error_deg(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }
 
-/// The tangent of half an angle, by the quadratic formula. `root_sign` selects the root. `None` if the roots are not
-/// real. A radicand of zero may be slightly negative from rounding.
+/// Computes the tangent of half an angle with the quadratic formula. `root_sign` selects the root. `None` if the roots
+/// are not real. A radicand of zero may be slightly negative from rounding.
 pub fn half_angle_tangent(a: f64, b: f64, c: f64, root_sign: f64) -> Option<f64> {
     let radicand = b * b - 4.0 * a * c;
     (radicand > -1e-12).then(|| (-b + root_sign * radicand.max(0.0).sqrt()) / (2.0 * a))
 }
 
-/// A SplitMix64 generator. Its numbers are the same on every run and every host, so the table of errata is, too.
+/// A SplitMix64 generator, whose numbers, and therefore the table of errata, are the same on every run and host.
 struct Random(u64);
 
 impl Random {

@@ -11,7 +11,7 @@ use super::sample::Sample;
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "5.1 shape of K",
-        "K is 8x8, its determinant must not vanish",
+        "K is 8x8, and its determinant must not vanish",
         "columns more than servos",
         |sample| Some(8.0 - sample.solution.active_matrix()[0].len() as f64),
     )
@@ -79,7 +79,7 @@ pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "5.1 determinant of the printed K*",
         "l2 l3 l7 l8 l12 l13 l17 l18 sin 2θ11 sin 2θ14 (cos(θ2+θ3-θ6-θ7) - cos(θ2+θ3+θ6+θ7))/2",
-        "per product of lengths; it follows from the printed matrix",
+        "per product of lengths; follows from the printed matrix",
         |sample| {
             let theta = sample.theta();
             let product = (theta[2] + theta[3]).sin() * (theta[6] + theta[7]).sin();
@@ -110,10 +110,13 @@ pub const EQUATIONS: &[Equation] = &[
                 .abs(),
         )
     })
-    .with_special_case("the neutral pose, which it flags", |sample| {
-        let (neutral_margin, sum) = neutral_margin_and_sum(sample)?;
-        Some((sum.sin().abs() - neutral_margin).abs())
-    }),
+    .with_special_case(
+        "the neutral pose, which the equation flags as singular",
+        |sample| {
+            let (neutral_margin, sum) = neutral_margin_and_sum(sample)?;
+            Some((sum.sin().abs() - neutral_margin).abs())
+        },
+    ),
     Equation::new(
         "5.1 singular tail",
         "sin(θ6 + θ7) = 0",
@@ -157,12 +160,12 @@ pub const EQUATIONS: &[Equation] = &[
     }),
     Equation::new(
         "5.2 shape of the leg's K",
-        "K is 2x2 and holds θ_lg12, which is passive",
+        "K is 2x2 and contains θ_lg12, which is passive",
         "columns more than drives",
-        |sample| Some(2.0 - leg_freedom_count(sample)),
+        |sample| Some(2.0 - count_leg_freedoms(sample)),
     )
     .with_correction("K is 2x1: [-lg1 sin θ_lg1; lg1 cos θ_lg1]", |sample| {
-        Some(1.0 - leg_freedom_count(sample))
+        Some(1.0 - count_leg_freedoms(sample))
     }),
     Equation::new(
         "5.2 singular leg",
@@ -215,41 +218,41 @@ fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
 struct Block {
     /// Returns the true block, by rows.
     true_block: fn(&Sample) -> [f64; 4],
-    /// The paper's numbers of the two bars' angles, 1 for theta1.
-    angle_numbers: [usize; 2],
-    /// The paper's numbers of the two bars' lengths, 1 for l1.
-    length_numbers: [usize; 2],
+    /// The paper's indices of the two bars' angles, 1 for theta1.
+    angle_indices: [usize; 2],
+    /// The paper's indices of the two bars' lengths, 1 for l1.
+    length_indices: [usize; 2],
 }
 
 const K_HEAD: Block = Block {
     true_block: |sample| active_block(sample, 0, 0, 1),
-    angle_numbers: [1, 4],
-    length_numbers: [1, 4],
+    angle_indices: [1, 4],
+    length_indices: [1, 4],
 };
 const K_TAIL: Block = Block {
     true_block: |sample| active_block(sample, 2, 3, 2),
-    angle_numbers: [5, 8],
-    length_numbers: [6, 9],
+    angle_indices: [5, 8],
+    length_indices: [6, 9],
 };
 const K_STAR_HEAD: Block = Block {
     true_block: |sample| passive_block(sample, 0),
-    angle_numbers: [2, 3],
-    length_numbers: [2, 3],
+    angle_indices: [2, 3],
+    length_indices: [2, 3],
 };
 const K_STAR_TAIL: Block = Block {
     true_block: |sample| passive_block(sample, 2),
-    angle_numbers: [6, 7],
-    length_numbers: [7, 8],
+    angle_indices: [6, 7],
+    length_indices: [7, 8],
 };
 const K_LEFT: Block = Block {
     true_block: |sample| active_block(sample, 4, 3, 0).map(|v| -v),
-    angle_numbers: [5, 1],
-    length_numbers: [11, 14],
+    angle_indices: [5, 1],
+    length_indices: [11, 14],
 };
 const K_RIGHT: Block = Block {
     true_block: |sample| active_block(sample, 6, 2, 1).map(|v| -v),
-    angle_numbers: [8, 4],
-    length_numbers: [16, 19],
+    angle_indices: [8, 4],
+    length_indices: [16, 19],
 };
 
 impl Block {
@@ -258,10 +261,10 @@ impl Block {
         self.side_error(sample, 0.0, sign)
     }
 
-    /// The same for the arms of a slider's side. `constant` is their angle from the cranks, rad.
+    /// The largest error of the block for the arms of a side. `constant` is the angle from the cranks to the arms, rad.
     fn side_error(&self, sample: &Sample, constant: f64, sign: f64) -> Option<f64> {
-        let [rear, front] = self.angle_numbers.map(|number| sample.theta()[number]);
-        let block = self.block_with(sample, [rear - constant, front + constant], sign);
+        let [rear, front] = self.angle_indices.map(|index| sample.theta()[index]);
+        let block = self.printed_block(sample, [rear - constant, front + constant], sign);
         Some(largest_difference(&(self.true_block)(sample), &block))
     }
 
@@ -269,15 +272,15 @@ impl Block {
     /// derivative with respect to this angle has the opposite sign.
     fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.true_block)(sample);
-        let [left, right] = self.angle_numbers.map(|number| sample.theta()[number]);
-        let block = self.block_with(sample, [left, PI - right], -1.0);
+        let [left, right] = self.angle_indices.map(|index| sample.theta()[index]);
+        let block = self.printed_block(sample, [left, PI - right], -1.0);
         Some(largest_difference(&[a, -b, c, -d], &block))
     }
 
-    /// The block in the paper's form, from the angles of the two bars, rad. `sign` is the sign of the right one's sine.
-    fn block_with(&self, sample: &Sample, thetas: [f64; 2], sign: f64) -> [f64; 4] {
+    /// The block in the paper's form for two bars with these angles, rad. `sign` is the sign of the right bar's sine.
+    fn printed_block(&self, sample: &Sample, thetas: [f64; 2], sign: f64) -> [f64; 4] {
         let lengths = sample.lizard.links.to_array();
-        let [left, right] = self.length_numbers.map(|number| lengths[number]);
+        let [left, right] = self.length_indices.map(|index| lengths[index]);
         let [(left_sin, left_cos), (right_sin, right_cos)] = thetas.map(f64::sin_cos);
         [
             -left * left_sin,
@@ -329,7 +332,7 @@ fn determinant_sine([a, b, c, d]: &[f64; 4], length_product: f64) -> f64 {
     -(a * d - b * c) / length_product
 }
 
-/// The number of a leg's degrees of freedom, which is the number of its drives.
-fn leg_freedom_count(sample: &Sample) -> f64 {
-    crate::mobility::leg_freedoms(&sample.lizard, &sample.solution) as f64
+/// The number of a leg's degrees of freedom, which equals the number of its drives.
+fn count_leg_freedoms(sample: &Sample) -> f64 {
+    crate::mobility::count_leg_freedoms(&sample.lizard, &sample.solution) as f64
 }

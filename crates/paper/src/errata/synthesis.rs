@@ -14,17 +14,22 @@ pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "2.1 mobility of the body",
         "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
-        "freedoms against the rank of the constraints",
+        "freedoms, relative to the rank of the constraints",
         |sample| {
-            Some((mobility::body_freedoms(&sample.lizard, &sample.solution) as f64 - 4.0).abs())
+            Some(
+                (mobility::count_body_freedoms(&sample.lizard, &sample.solution) as f64 - 4.0)
+                    .abs(),
+            )
         },
     ),
     Equation::new(
         "2.2 mobility of a leg",
         "M = 1",
-        "freedoms against the rank of the constraints",
+        "freedoms, relative to the rank of the constraints",
         |sample| {
-            Some((mobility::leg_freedoms(&sample.lizard, &sample.solution) as f64 - 1.0).abs())
+            Some(
+                (mobility::count_leg_freedoms(&sample.lizard, &sample.solution) as f64 - 1.0).abs(),
+            )
         },
     ),
     Equation::new(
@@ -45,7 +50,7 @@ pub const EQUATIONS: &[Equation] = &[
     ),
     Equation::new(
         "3.1 design space",
-        "r3 < 0.45 assures r1 + r2 > r3",
+        "r3 < 0.45 ensures r1 + r2 > r3",
         "D",
         |sample| {
             let r3 = 0.45 * sample.random[0];
@@ -90,12 +95,12 @@ pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "3.1.4 conditioning",
         "LCI > 0.7 inside the inscribed circle",
-        "of LCI short",
+        "below the LCI of 0.7",
         |sample| Some((CLAIMED_LCI - lci_at(sample, 1.0)).max(0.0)),
     )
     .with_correction(
         "LCI > 0.7 inside the concentric circle of half the radius; \
-         over the whole circle as a mean only",
+         over the whole circle only as a mean",
         |sample| Some((CLAIMED_LCI - lci_at(sample, 0.5)).max(0.0)),
     ),
     Equation::new(
@@ -112,7 +117,7 @@ pub const EQUATIONS: &[Equation] = &[
     Equation::new(
         "3.2 legs",
         "the parallelogram does not operate in the singularity zone",
-        "of the margin 0.3 short",
+        "below the margin of 0.3",
         |sample| {
             let (min_margin, angle_deg) = (0.3, 360.0 * sample.random[0]);
             Some((min_margin - angle_deg.to_radians().sin().abs()).max(0.0))
@@ -128,11 +133,11 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The largest error, in radius, of the circle equation at random points on the limits of the arms' reach. `y_term`
-/// returns the equation's term in y.
+/// The largest radius error of the circle equation at random points on the limits of the arms' reach. `y_term` returns
+/// the equation's term in y.
 fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     let five_bar = sample.lizard.end(End::Head);
-    let mut largest_error = 0.0_f64;
+    let mut max_error = 0.0_f64;
     for shaft_x in [-five_bar.base / 2.0, five_bar.base / 2.0] {
         for radius in [
             five_bar.left_crank_length + five_bar.left_coupler_length,
@@ -142,16 +147,16 @@ fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
             // x11 is measured from the middle of the base. The rim point is measured from the shaft.
             let (x11, y11) = (rim_point.x + shaft_x, rim_point.y);
             let square = (x11 - shaft_x).powi(2) + y_term(y11);
-            largest_error = largest_error.max((square.sqrt() - radius).abs());
+            max_error = max_error.max((square.sqrt() - radius).abs());
         }
     }
-    Some(largest_error)
+    Some(max_error)
 }
 
 /// The LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's radius.
 fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
     let five_bar = sample.lizard.end(End::Head);
-    Workspace::of(&five_bar)
+    Workspace::for_five_bar(&five_bar)
         .inscribed_circle()
         .map_or(0.0, |circle| {
             let radius = circle.radius * radius_factor * sample.random[0].sqrt();
@@ -162,8 +167,8 @@ fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
         })
 }
 
-/// Counts the links l0 to l19 that the table does not list. `link_number` converts the printed number and the length of
-/// an entry into the entry's link number, as printed or as corrected.
+/// Counts the links l0 to l19 that the table does not list. `link_number` converts an entry's printed number and length
+/// to its link number, as printed or as corrected.
 fn count_unlisted_links(link_number: fn(usize, f64) -> usize) -> f64 {
     let is_listed = |link: usize| {
         LINK_TABLE

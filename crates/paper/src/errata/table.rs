@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::entry::Entry;
 
-/// The table of all equations, as lines for a terminal.
+/// Formats the table of all equations as lines for a terminal.
 pub fn format_text(entries: &[Entry], sample_count: u32) -> String {
     let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
@@ -35,29 +35,29 @@ pub fn format_text(entries: &[Entry], sample_count: u32) -> String {
     page
 }
 
-/// The text of docs/errata.md.
+/// Formats the text of docs/errata.md.
 pub fn format_markdown(entries: &[Entry], sample_count: u32) -> String {
     let holding_count = entries.iter().filter(|entry| entry.holds).count();
     let mut page = format!(
         "# Errata of the paper, measured
 
-Made by `lizard errata --markdown`; a test fails when it is out of date. Nothing
-here is typed in but the equations themselves.
+This page is the output of `lizard errata --markdown`; a test fails if it is out of date.
+Only the equations are written by hand; all results are computed.
 
 Each printed equation of *Optimal Kinematic Design of a Robotic Lizard using
 Four-Bar and Five-Bar Mechanisms* was evaluated at {sample_count} random poses (theta1 and
 -theta5 in 90 to 180, theta4 and -theta8 in 0 to 90 degrees, the paper's lengths)
 and compared with the geometric solution, whose loops close within 1e-9 mm. Angles
 are counter-clockwise from +x in the chassis frame throughout. \"Clockwise\" is a
-second reading, in which the angles of the right-hand links are measured clockwise
-from -x, as the drawings suggest: then several signs come out right, but the loop
-equations and the theta3 formula, which the paper uses with them, do not. A miss below 1e-6 in
-its unit counts as rounding.
+second convention, in which the angles of the right-hand links are measured clockwise
+from -x, as the drawings suggest: with it several signs are right, but the loop
+equations and the theta3 formula, which the paper uses with them, do not hold. An error
+below 1e-6 in its unit counts as rounding.
 
 **{holding_count} of {} hold as printed.** Every corrected form below was measured at the same
 poses and holds.
 
-| where | printed | verdict | worst miss | corrected |
+| place | printed | verdict | largest error | corrected |
 |---|---|---|---|---|
 ",
         entries.len()

@@ -1,12 +1,12 @@
-//! Things to buy that are not modelled as bodies of the robot: wires, tools, options.
+//! Items to buy that are not modelled as bodies of the robot: wires, tools, options.
 
 use crate::price::Price;
 
-/// A row of the bill: number of pieces, name, mass of one piece in g, and price class.
+/// A row of the bill of materials: number of pieces, name, mass of one piece (g), and price class.
 pub(super) type Row = (usize, &'static str, f64, Price);
 
-/// Things to buy that have no place of their own on the robot, such as wires. Their mass centre is assumed to be at
-/// the origin, in the middle of the plate.
+/// Items to buy without a place of their own on the robot, such as wires. Their centre of mass is assumed to be at the
+/// origin, in the middle of the plate.
 pub(super) const LOOSE_ITEMS: [Row; 12] = [
     (
         2,
@@ -47,8 +47,7 @@ pub(super) const LOOSE_ITEMS: [Row; 12] = [
     (1, "soldering iron and solder", 0.0, Price::E),
 ];
 
-/// Things to buy for driving without a cable. They are optional, so neither the mass nor the sum of the prices
-/// includes them.
+/// Optional items to buy for driving without a cable; neither the mass nor the sum of the prices includes them.
 pub(super) const RADIO_ITEMS: [Row; 5] = [
     (
         1,
@@ -72,8 +71,7 @@ pub(super) const RADIO_ITEMS: [Row; 5] = [
     (4, "jumper wire, socket to pin, 20 cm", 0.4, Price::B),
 ];
 
-/// Things to buy for the inputs of robot.toml, each with the name of its input. They are optional, so neither the
-/// mass nor the sum of the prices includes them.
+/// Optional items for the inputs in robot.toml, each with the input's name; the mass and the price sum exclude them.
 pub(super) const INPUT_ITEMS: [(&str, Row); 2] = [
     (
         "button",

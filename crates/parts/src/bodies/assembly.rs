@@ -1,4 +1,4 @@
-//! The complete robot: its bodies, and the place of each at a pose.
+//! The complete robot: its bodies, and their placements at a pose.
 
 use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
@@ -33,24 +33,24 @@ impl Assembly {
         struts::add(&mut builder);
         Self {
             robot: robot.clone(),
-            alternatives: struts::alternatives(&builder),
+            alternatives: struts::make_alternatives(&builder),
             stack: builder.stack,
             layout: builder.layout,
             bodies: builder.bodies,
         }
     }
 
-    /// The robot of this assembly.
+    /// Robot of this assembly.
     pub fn robot(&self) -> &Robot {
         &self.robot
     }
 
-    /// The heights of the layers in which the bodies lie.
+    /// Heights of the layers in which the bodies lie.
     pub fn stack(&self) -> &Stack {
         &self.stack
     }
 
-    /// The positions of the pivots and anchors, seen from above.
+    /// Positions of the pivots and anchors, seen from above.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -65,12 +65,12 @@ impl Assembly {
         &self.alternatives
     }
 
-    /// The body with this name, if any.
+    /// Returns the body with this name, if any.
     pub fn body(&self, name: &str) -> Option<&Body> {
         self.bodies.iter().find(|body| body.name == name)
     }
 
-    /// The same robot with changed bodies, for tests and for custom parts.
+    /// Returns the same robot with changed bodies, for tests and for custom parts.
     #[must_use]
     pub fn with_changed_bodies(mut self, change: impl FnOnce(&mut Vec<Body>)) -> Self {
         change(&mut self.bodies);
@@ -84,40 +84,40 @@ impl Assembly {
             || b.allowed_contacts.contains(&a.name)
     }
 
-    /// The placement of a mount's frame at a pose at which no leg lags behind its servo.
-    pub fn place(&self, mount: Mount, pose: &Solution) -> Placement {
-        self.place_for_cranks(mount, &Cranks::of(self.robot.lizard(), pose))
+    /// Computes the placement of a mount's frame at a pose without lags of the legs.
+    pub fn placement(&self, mount: Mount, pose: &Solution) -> Placement {
+        self.placement_for_cranks(mount, &Cranks::from_pose(self.robot.lizard(), pose))
     }
 
-    /// The placement of a mount's frame, for crank directions of any number type.
-    pub(crate) fn place_for_cranks<T: Real>(
+    /// Computes the placement of a mount's frame from crank directions of any number type.
+    pub(crate) fn placement_for_cranks<T: Real>(
         &self,
         mount: Mount,
         cranks: &Cranks<T>,
     ) -> Placement<T> {
-        let vector_of = |v: Vector| Vector::new(T::constant(v.x), T::constant(v.y));
+        let to_constant = |v: Vector| Vector::new(T::constant(v.x), T::constant(v.y));
         let placement_on_crank = |servo: usize, origin: Vector| Placement {
-            origin: vector_of(origin),
+            origin: to_constant(origin),
             x_axis: cranks.directions[servo],
         };
-        let link_placement_of = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
+        let link_placement = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
         match mount {
             Mount::Chassis => Placement {
-                origin: vector_of(Placement::CHASSIS.origin),
-                x_axis: vector_of(Placement::CHASSIS.x_axis),
+                origin: to_constant(Placement::CHASSIS.origin),
+                x_axis: to_constant(Placement::CHASSIS.x_axis),
             },
-            Mount::Link(servo) => link_placement_of(servo),
+            Mount::Link(servo) => link_placement(servo),
             Mount::Crank(servo) => placement_on_crank(servo, legs[servo].crank_pivot),
             Mount::Follower(servo) => placement_on_crank(servo, legs[servo].follower_pivot),
             Mount::Foot(servo) => Placement {
                 origin: placement_on_crank(servo, legs[servo].crank_pivot)
                     .map(legs[servo].crank_joint),
-                x_axis: vector_of(legs[servo].coupler_direction),
+                x_axis: to_constant(legs[servo].coupler_direction),
             },
             Mount::Strut(servo) => Placement {
-                origin: link_placement_of(servo).map(legs[servo].anchor),
-                x_axis: vector_of(legs[servo].strut_direction),
+                origin: link_placement(servo).map(legs[servo].anchor),
+                x_axis: to_constant(legs[servo].strut_direction),
             },
             Mount::Coupler(servo) => {
                 let (end, index) = end_and_index(servo);
@@ -131,13 +131,13 @@ impl Assembly {
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
                 let slider = cranks.slider(side);
-                let rear = vector_of(self.layout.shafts[side.servos()[1]]);
+                let rear_shaft = to_constant(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,
                 };
                 Placement {
-                    origin: rear + tip,
+                    origin: rear_shaft + tip,
                     x_axis: slider.span.scaled(T::constant(1.0) / slider.d),
                 }
             }

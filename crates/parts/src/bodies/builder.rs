@@ -1,4 +1,4 @@
-//! A builder that adds a robot's bodies one by one, each bolt as a screw and a nut.
+//! A builder that adds a robot's bodies one by one. A bolt consists of a screw and a nut.
 
 use lizard_kinematics::Vector;
 use lizard_robot::{Parts, Robot};
@@ -7,7 +7,7 @@ use crate::bodies::layout::Layout;
 use crate::bodies::names;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_PLAY, HEX_HEAD_HEIGHT, Span, Stack, stock_screw_length};
+use crate::layers::stack::{HEAD_PLAY, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length};
 
 /// The direction from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
@@ -27,42 +27,42 @@ impl Direction {
 
 /// A robot's dimensions and the bodies added so far.
 pub struct Builder<'a> {
-    /// The robot whose bodies are built.
+    /// Robot whose bodies are built.
     pub robot: &'a Robot,
-    /// The dimensions of the robot's parts.
+    /// Dimensions of the robot's parts.
     pub parts: &'a Parts,
-    /// The heights of the layers in which the bodies lie.
+    /// Heights of the layers in which the bodies lie.
     pub stack: Stack,
-    /// The positions of pivots and anchors, seen from above.
+    /// Positions of pivots and anchors, seen from above.
     pub layout: Layout,
-    /// The bodies added so far.
+    /// Bodies added so far.
     pub bodies: Vec<Body>,
 }
 
-/// A screw and the place of its nut.
+/// A screw and the height of its nut.
 pub struct Bolt<'a> {
-    /// The name of the bolt, without the word "screw" or "nut".
+    /// Name of the bolt, without the word "screw" or "nut".
     pub name: &'a str,
-    /// The mount that the screw moves with.
+    /// Mount that the screw moves with.
     pub mount: Mount,
-    /// The position of the screw's axis in the mount's frame, mm.
+    /// Position of the screw's axis, mount frame, mm.
     pub position: Vector,
     /// Height of the face under the screw's head, mm.
     pub head_z: f64,
-    /// The direction from the screw's head to its tip.
+    /// Direction from the screw's head to its tip.
     pub direction: Direction,
-    /// Height of the face that the nut bears on, mm.
+    /// Height of the face on which the nut bears, mm.
     pub nut_z: f64,
     /// Length below the head, mm; `None` for the length that the nut needs.
     pub length: Option<f64>,
     /// Names of the bodies with other mounts that screw and nut may touch.
     pub contacts: &'a [&'a str],
-    /// True for a hexagon head, which is sunk into the part at the head; false for a button head.
+    /// True for a hexagon head sunk into the part; false for a button head.
     pub is_hex: bool,
 }
 
 impl<'a> Bolt<'a> {
-    /// A bolt with a button head and without contacts. Its nut, if it gets one, is at height 0.
+    /// Creates a bolt with a button head and without contacts; its nut, if any, is at height 0.
     pub fn new(
         name: &'a str,
         mount: Mount,
@@ -85,7 +85,7 @@ impl<'a> Bolt<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// A builder for a robot, without any bodies.
+    /// Creates a builder without bodies.
     pub fn new(robot: &'a Robot) -> Self {
         let parts = robot.parts();
         Self {
@@ -97,7 +97,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Half a bar's width, mm.
+    /// Half of a bar's width, mm.
     pub fn half_bar_width(&self) -> f64 {
         self.parts.bar / 2.0
     }
@@ -119,12 +119,12 @@ impl<'a> Builder<'a> {
         self.robot.drive().strut().is_some()
     }
 
-    /// The name of a leg's strut.
+    /// Name of a leg's strut.
     pub fn strut_name(&self, leg: &str) -> String {
         names::strut_name(self.has_slotted_struts(), leg)
     }
 
-    /// A hole in which a screw can turn.
+    /// Makes a hole in which a screw can turn.
     pub fn clearance_hole(&self, centre: Vector) -> Shape {
         Shape::disc(
             centre,
@@ -132,17 +132,17 @@ impl<'a> Builder<'a> {
         )
     }
 
-    /// A hole into which a screw cuts its thread.
+    /// Makes a hole into which a screw cuts its thread.
     pub fn thread_hole(&self, centre: Vector) -> Shape {
         Shape::disc(centre, 0.43 * self.parts.screw.diameter)
     }
 
-    /// The recess for a sunk screw head.
+    /// Makes the recess for a sunk screw head.
     pub fn head_recess(&self, centre: Vector) -> Shape {
         Shape::disc(centre, self.parts.screw.head / 2.0 + self.parts.fit)
     }
 
-    /// The pocket for a nut.
+    /// Makes the pocket for a nut.
     pub fn nut_pocket(&self, centre: Vector) -> Shape {
         Shape::hexagon(centre, self.parts.screw.nut + self.parts.fit)
     }
@@ -174,7 +174,7 @@ impl<'a> Builder<'a> {
         self.add_body(name, Kind::Printed, mount, prisms);
     }
 
-    /// Records the bodies that the body added last touches by design.
+    /// Records the bodies that the last added body touches by design.
     pub fn allow_contact<S: AsRef<str>>(&mut self, names: &[S]) {
         if let Some(body) = self.bodies.last_mut() {
             let names = names.iter().map(|name| name.as_ref().to_owned());
@@ -208,7 +208,7 @@ impl<'a> Builder<'a> {
         let nut_end = bolt.nut_z + sign * screw.nut_height;
         let length = bolt
             .length
-            .unwrap_or_else(|| stock_screw_length((nut_end - bolt.head_z).abs()));
+            .unwrap_or_else(|| find_screw_length((nut_end - bolt.head_z).abs()));
         self.add_screw(bolt, length);
         let flats = Shape::hexagon(bolt.position, screw.nut);
         let thread = Shape::disc(bolt.position, screw.diameter / 2.0);
@@ -221,7 +221,7 @@ impl<'a> Builder<'a> {
     pub fn add_screw(&mut self, bolt: &Bolt, length: f64) {
         let screw = self.parts.screw;
         let sign = bolt.direction.sign();
-        let solid_prism_of =
+        let build_prism =
             |shape: Shape, from: f64, to: f64| Prism::solid([shape], order_heights(from, to));
         let shank = Shape::disc(bolt.position, screw.diameter / 2.0);
         let (head, height, kind) = if bolt.is_hex {
@@ -232,8 +232,8 @@ impl<'a> Builder<'a> {
             (disc, screw.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            solid_prism_of(shank, bolt.head_z, bolt.head_z + sign * length),
-            solid_prism_of(head, bolt.head_z - sign * height, bolt.head_z),
+            build_prism(shank, bolt.head_z, bolt.head_z + sign * length),
+            build_prism(head, bolt.head_z - sign * height, bolt.head_z),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
         self.add_body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
@@ -241,8 +241,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Adds the bolt of a joint on a servo's link. A pocket in the link's underside keeps the hexagon head from
-    /// turning, since no key can reach it once the link is on its servo. `top` is the height of the joint's upper
-    /// face, mm.
+    /// turning, since no key can reach the head once the link is on its servo. `top` is the joint's upper face, mm.
     pub fn add_link_joint(
         &mut self,
         name: &str,
@@ -266,7 +265,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Orders two heights, the lower one first.
+/// Orders two heights, lower before upper.
 fn order_heights(a: f64, b: f64) -> Span {
     [a.min(b), a.max(b)]
 }

@@ -13,25 +13,22 @@ use crate::layers::shape::Shape;
 
 /// Radius of a servo's spline, mm.
 pub const SPLINE_RADIUS: f64 = 2.4;
-/// Radius of the hole in which a servo's own screw cuts its thread, mm. One of a servo's two
-/// holes is only 0.35 mm from the notch for the lead, so its screw holds on the three other
-/// sides.
+/// Radius of the hole in which a servo's own screw cuts its thread, mm. One of a servo's two holes is only 0.35 mm from
+/// the lead's notch, so its screw holds on the three other sides.
 const PILOT_RADIUS: f64 = 0.75;
 
-/// Distance from a seat to the middle of its servo's number, and from the servo's middle
-/// outward to the middle of the number, mm.
+/// Distance of a servo's engraved number from the seat, and outward from the servo's middle, mm.
 const NUMBER_DISTANCE: f64 = 4.0;
 
-/// The holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600,
-/// 2000), (2600, 300), (2600, 1400) mil from a corner.
+/// Holes of a UNO relative to its middle, with the USB socket behind, mm: (550, 100), (600, 2000), (2600, 300) and
+/// (2600, 1400) mil from a corner.
 const UNO_HOLES: [(f64, f64); 4] = [
     (24.13, -20.32),
     (-24.13, -19.05),
     (19.05, 31.75),
     (-8.89, 31.75),
 ];
-/// Index in [`UNO_HOLES`] of the hole beside the pin AREF, whose header leaves no room for a
-/// screw's head.
+/// Index in [`UNO_HOLES`] of the hole beside the pin AREF, whose header leaves no room for a screw's head.
 const UNO_TIGHT_HOLE: usize = 1;
 
 fn vector(x: f64, y: f64) -> Vector {
@@ -51,31 +48,31 @@ pub fn add(builder: &mut Builder) {
     add_board(builder);
 }
 
-/// Outline of a servo's case from above, wider by `margin` on each side.
+/// Outline of a servo's case from above, wider by `margin` (mm) on each side.
 fn case_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
     let size = vector(body.width + 2.0 * margin, body.length + 2.0 * margin);
     Shape::rectangle(case_middle(builder, servo), size, 0.0)
 }
 
-/// The middle of a servo's case from above, chassis frame, mm.
+/// Middle of a servo's case from above, chassis frame, mm.
 fn case_middle(builder: &Builder, servo: usize) -> Vector {
     builder.layout.plate.case_centres[servo]
 }
 
-/// The direction from the shaft's end of a servo's case towards its other end.
+/// Direction from the shaft's end of a servo's case to the other end.
 fn inward_direction(servo: usize) -> Vector {
-    vector(0.0, -End::of_servo(servo).sign())
+    vector(0.0, -End::from_servo(servo).sign())
 }
 
-/// The positions of the two screws that hold a servo's flange.
+/// Positions of the two screws that hold a servo's flange.
 fn flange_hole_positions(builder: &Builder, servo: usize) -> [Vector; 2] {
     let offset = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
     let middle = case_middle(builder, servo);
     [middle - offset, middle + offset]
 }
 
-/// Outline of a servo's seat, wider by `margin` on each side.
+/// Outline of a servo's seat, wider by `margin` (mm) on each side.
 fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
     let border = builder.parts.fit + builder.parts.wall + margin;
@@ -83,11 +80,10 @@ fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
     Shape::rectangle(case_middle(builder, servo), size, 1.0)
 }
 
-/// The cut-outs that a servo needs in the plate and in its seat: first those for its case and
-/// its lead, then the holes for its screws.
-fn cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
-    let (parts, outward) = (builder.parts, End::of_servo(servo).sign());
-    let notch = leads::lead_notch(
+/// Makes the cut-outs for a servo in the plate and in its seat: first for case and lead, then the holes for the screws.
+fn make_cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
+    let (parts, outward) = (builder.parts, End::from_servo(servo).sign());
+    let notch = leads::make_lead_notch(
         &parts.servo,
         case_middle(builder, servo),
         parts.fit,
@@ -108,12 +104,9 @@ fn standoff_positions() -> [Vector; 4] {
 fn add_plate(builder: &mut Builder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
-    let seats: Vec<_> = (0..4)
-        .map(|servo| seat_outline(builder, servo, 0.0))
-        .collect();
-    // First all openings, then all holes: the files list the shapes in this order, and the files
-    // must not change.
-    let servo_cutouts: Vec<_> = (0..4).map(|servo| cutouts(builder, servo)).collect();
+    let seats = [0, 1, 2, 3].map(|servo| seat_outline(builder, servo, 0.0));
+    // First all openings, then all holes: the files list the shapes in this order, and must not change.
+    let servo_cutouts: Vec<_> = (0..4).map(|servo| make_cutouts(builder, servo)).collect();
     let openings = servo_cutouts.iter().flat_map(|shapes| &shapes[..2]);
     let all_cutouts: Vec<_> = openings
         .chain(servo_cutouts.iter().flat_map(|shapes| &shapes[2..]))
@@ -128,19 +121,19 @@ fn add_plate(builder: &mut Builder) {
     let mut through_holes = all_cutouts.clone();
     // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     for (leg, [pivot_arm, driven_arm, idle_arm]) in layout.legs.iter().zip(plate.arms) {
-        let bar_of = |[from, to]: [Vector; 2], half_width: f64| Shape::bar(from, to, half_width);
-        filled.push(bar_of(pivot_arm, plate.arm_half_width));
+        let build_bar = |[from, to]: [Vector; 2], half_width: f64| Shape::bar(from, to, half_width);
+        filled.push(build_bar(pivot_arm, plate.arm_half_width));
         for (pivot, arm) in [
             (leg.crank_pivot, driven_arm),
             (leg.follower_pivot, idle_arm),
         ] {
-            filled.push(bar_of(arm, plate.arm_half_width - 0.01));
+            filled.push(build_bar(arm, plate.arm_half_width - 0.01));
             through_holes.push(builder.clearance_hole(pivot));
         }
     }
     through_holes.extend(standoff_positions().map(|position| builder.clearance_hole(position)));
-    through_holes.extend(leads::wire_holes());
-    through_holes.extend(fittings::plate_slots(builder));
+    through_holes.extend(leads::make_wire_holes());
+    through_holes.extend(fittings::make_plate_slots(builder));
     let [low, high] = stack.plate;
     let engraved_cuts = [&through_holes[..], &number_strokes(builder)].concat();
     let prisms = [
@@ -155,9 +148,8 @@ fn add_plate(builder: &mut Builder) {
     builder.add_printed("plate", Mount::Chassis, prisms);
 }
 
-/// The layers of the piece of the plate around one servo and the pivots of its leg. This piece is
-/// printed first, as a trial.
-pub fn corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+/// Makes the layers of the plate's piece around one servo and its leg's pivots, which is printed first, as a trial.
+pub fn make_corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     /// Margin of the plate around the seat, mm.
     const SEAT_MARGIN: f64 = 2.0;
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
@@ -171,7 +163,7 @@ pub fn corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
         filled.push(Shape::bar(from, to, plate.arm_half_width - 0.01));
         filled.push(Shape::bar(to, middle, plate.arm_half_width - 0.02));
     }
-    let servo_cutouts = cutouts(builder, servo);
+    let servo_cutouts = make_cutouts(builder, servo);
     let pivots =
         [leg.crank_pivot, leg.follower_pivot].map(|position| builder.clearance_hole(position));
     let raised_seat = stack.seat.map(|z| z + parts.plate);
@@ -189,7 +181,7 @@ pub fn corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     ]
 }
 
-/// The strokes of the servos' numbers, engraved beside the seats so that head and tail can be told apart.
+/// The strokes of the servos' numbers, engraved beside the seats to distinguish head and tail.
 fn number_strokes(builder: &Builder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
@@ -199,7 +191,7 @@ fn number_strokes(builder: &Builder) -> Vec<Shape> {
         let outward_shift = middle.x.signum() * NUMBER_DISTANCE;
         let inward_shift = inward_direction(servo) * (body.flange / 2.0 + 1.0 + NUMBER_DISTANCE);
         let corner = middle + inward_shift + vector(outward_shift - width / 2.0, -height / 2.0);
-        mark::strokes(&(servo + 1).to_string(), corner)
+        mark::draw_strokes(&(servo + 1).to_string(), corner)
     });
     strokes.collect()
 }
@@ -268,16 +260,16 @@ fn add_deck(builder: &mut Builder) {
         bar_between(UNO_HOLES[0], UNO_HOLES[1]),
         bar_between(UNO_HOLES[2], UNO_HOLES[3]),
     ];
-    let [wings, openings] = fittings::wing_shapes(UNO_HOLES);
+    let [wings, openings] = fittings::make_wing_shapes(UNO_HOLES);
     filled.extend(wings);
     let screws = standoff_positions().map(|position| builder.clearance_hole(position));
     let threads = UNO_HOLES.map(|(x, y)| builder.thread_hole(vector(x, y)));
-    // The window saves weight, and the cable ties that hold the fittings under the deck pass through it.
+    // The window saves weight; the cable ties of the fittings under the deck pass through it.
     let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
     let holes = [
         &screws[..],
         &threads,
-        &leads::wire_holes(),
+        &leads::make_wire_holes(),
         &[window],
         &openings,
     ]
@@ -312,11 +304,11 @@ fn add_board(builder: &mut Builder) {
     let low = builder.stack.board_boss[1];
     let [x, y, z] = UNO_SIZE;
     let top = low + UNO_BOARD_THICKNESS;
-    let block_of = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
+    let build_block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
     let holes = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 1.6));
     let heads = UNO_HOLES.map(|(x, y)| builder.head_recess(vector(x, y)));
-    let board = Prism::new(block_of(x, y), holes, [low, top]);
-    let components = Prism::new(block_of(x - 4.0, y - 4.0), heads, [top, low + z]);
+    let board = Prism::new(build_block(x, y), holes, [low, top]);
+    let components = Prism::new(build_block(x - 4.0, y - 4.0), heads, [top, low + z]);
     builder.add_body("board", Kind::Board, Mount::Chassis, [board, components]);
     for (index, (x, y)) in UNO_HOLES.into_iter().enumerate() {
         if index != UNO_TIGHT_HOLE {

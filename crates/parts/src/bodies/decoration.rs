@@ -1,9 +1,9 @@
-//! The parts that make the robot look like a lizard: two long links behind the tail's
-//! point, as the paper's robot has them, and a head ahead of the head's point.
+//! The parts that make the robot look like a lizard: two long links behind the tail's end point, as in the paper's
+//! robot, and a head in front of the head's end point.
 //!
-//! They drive nothing. The screw of the end point and a second screw fix each of these parts to a coupler: the left
-//! tail link under the lower coupler, the right tail link and the head on the upper coupler. At neutral the head
-//! points straight ahead, and the tail links point back, spread by a few degrees.
+//! These parts drive nothing. The screw of the end point and a second screw fix each part to a coupler: the left tail
+//! link under the lower coupler, the right tail link and the head on the upper coupler. At neutral the head points
+//! straight ahead, and the tail links point back, spread by a few degrees.
 
 use lizard_kinematics::{End, Solution, Vector};
 
@@ -17,23 +17,23 @@ use crate::layers::stack::HEAD_PLAY;
 const THICKNESS: f64 = 3.0;
 /// Distance from the end point to the second screw, mm.
 const SECOND_SCREW_DISTANCE: f64 = 14.0;
-/// Length of the second screw, mm, which cuts its own thread.
+/// Length of the second screw, which cuts its own thread, mm.
 const SECOND_SCREW_LENGTH: f64 = 6.0;
-/// Angle of each tail link from straight back at neutral, deg.
+/// Angle between each tail link and straight back at neutral, deg.
 const TAIL_LINK_ANGLE: f64 = 3.5;
 
-/// The decorative parts that an end carries beyond its couplers.
+/// Decorative parts of an end beyond its couplers.
 #[derive(Default)]
 pub struct EndDecoration {
-    /// Thickness of the part under the lower coupler at the end point, mm; 0 if there is none.
+    /// Thickness of the part under the lower coupler at the end point, mm; 0 without such a part.
     pub lower_thickness: f64,
-    /// Thickness of the part on the upper coupler, mm; 0 if there is none.
+    /// Thickness of the part on the upper coupler, mm; 0 without such a part.
     pub upper_thickness: f64,
     /// Names of the bodies on the upper coupler.
     pub upper_bodies: Vec<String>,
 }
 
-/// Length of an end's decorative part beyond its end point, mm; 0 if there is none.
+/// Length of an end's decorative part beyond the end point, mm; 0 without such a part.
 fn decoration_length(builder: &Builder, end: End) -> f64 {
     match end {
         End::Head => builder.parts.head,
@@ -41,9 +41,13 @@ fn decoration_length(builder: &Builder, end: End) -> f64 {
     }
 }
 
-/// The holes for the second screw in a coupler's lower and upper layer. In the left coupler of the tail, the head of
-/// the screw is sunk into the upper layer. `None` for a coupler that carries no decorative part.
-pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Option<[Shape; 2]> {
+/// Makes the holes for the second screw in a coupler's lower and upper layer; `None` for a coupler without a decorative
+/// part. In the tail's left coupler, the screw's head is sunk into the upper layer.
+pub fn make_second_screw_holes(
+    builder: &Builder,
+    servo: usize,
+    point: Vector,
+) -> Option<[Shape; 2]> {
     let (end, index) = end_and_index(servo);
     let position = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     match (decoration_length(builder, end) > 0.0, end, index) {
@@ -56,7 +60,7 @@ pub fn second_screw_holes(builder: &Builder, servo: usize, point: Vector) -> Opt
     }
 }
 
-/// Adds the decorative parts of an end, with their second screws.
+/// Adds an end's decorative parts with their second screws.
 pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
     let length = decoration_length(builder, end);
     let neutral = builder.robot.lizard().solve(&builder.robot.neutral_pose());
@@ -66,16 +70,16 @@ pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
     let [left, right] = end.servos();
     let (lower_thickness, name, upper_part) = match end {
         End::Head => {
-            let part = head_part(builder, right, &neutral, length);
+            let part = make_head_part(builder, right, &neutral, length);
             (0.0, "head plate".to_owned(), part)
         }
         End::Tail => {
-            let lower_part = tail_part(builder, left, &neutral, length);
+            let lower_part = make_tail_part(builder, left, &neutral, length);
             add_under_lower_coupler(builder, left, lower_part);
             (
                 THICKNESS,
                 format!("tail {}", servo_and_leg_names(right).0),
-                tail_part(builder, right, &neutral, length),
+                make_tail_part(builder, right, &neutral, length),
             )
         }
     };
@@ -90,8 +94,8 @@ pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
 /// A flat part: its filled shapes and its holes.
 type FlatPart = (Vec<Shape>, Vec<Shape>);
 
-/// An end's point, and the direction that points outward at neutral, both in a coupler's frame.
-fn point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
+/// Computes an end point, and the direction that points outward at neutral, both in a coupler's frame.
+fn compute_point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, index) = end_and_index(servo);
     let five_bar = neutral.end(end);
     let coupler_direction = end.mirror([five_bar.left_coupler, five_bar.right_coupler][index]);
@@ -112,18 +116,12 @@ fn rotate(direction: Vector, angle_deg: f64) -> Vector {
     direction * turn.x + direction.rotated_left() * turn.y
 }
 
-fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
-    let [point, straight_direction] = point_and_direction(builder, servo, neutral);
-    // The left tail link points to the robot's left, the right one to its right.
+fn make_tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+    let [point, straight_direction] = compute_point_and_direction(builder, servo, neutral);
+    // The left tail link points to the left, the right tail link to the right.
     let (_, index) = end_and_index(servo);
-    let link_direction = rotate(
-        straight_direction,
-        if index == 0 {
-            -TAIL_LINK_ANGLE
-        } else {
-            TAIL_LINK_ANGLE
-        },
-    );
+    let angle_deg = [-TAIL_LINK_ANGLE, TAIL_LINK_ANGLE][index];
+    let link_direction = rotate(straight_direction, angle_deg);
     let half_width = builder.half_bar_width();
     let side_offset = link_direction.rotated_left() * (half_width - 1.5);
     let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
@@ -139,12 +137,12 @@ fn tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -
     (filled, vec![builder.clearance_hole(point)])
 }
 
-fn head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
-    /// Radius of the corners, mm.
+fn make_head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+    /// Radius of the head's corners, mm.
     const CORNER_RADIUS: f64 = 7.0;
     /// Radius of an eye, mm.
     const EYE_RADIUS: f64 = 2.5;
-    let [point, direction] = point_and_direction(builder, servo, neutral);
+    let [point, direction] = compute_point_and_direction(builder, servo, neutral);
     let point_at =
         |ahead: f64, left: f64| point + direction * ahead + direction.rotated_left() * left;
     let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
@@ -171,7 +169,7 @@ fn head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -
     (filled, cut)
 }
 
-/// The position of the second screw in a coupler's frame.
+/// Position of the second screw in a coupler's frame, mm.
 fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
     Vector::new(
         coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,

@@ -1,4 +1,4 @@
-//! The couplers of head and tail, with their screws. The left coupler of each end is below the right one.
+//! The couplers of head and tail, with their screws. Each end's left coupler is below its right coupler.
 
 use lizard_kinematics::{End, Vector};
 
@@ -21,7 +21,7 @@ pub fn add(builder: &mut Builder) {
         } = builder.stack;
         add_coupler(builder, left, lower);
         add_coupler(builder, right, upper);
-        // The right coupler lies higher, so a spacer fills the gap between the crank and this coupler.
+        // A spacer fills the gap between the crank and the right coupler, which lies higher.
         for (servo, top, spacer_top) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))]
         {
             let tip = Vector::new(builder.layout.crank_lengths[servo], 0.0);
@@ -48,26 +48,26 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// Adds the coupler of a servo between the heights `z`, mm. If a second screw fixes a decorative part to it, the
-/// coupler has two layers, since the head of that screw may be sunk into the upper one.
+/// Adds the coupler of a servo between the heights `z`, mm. A coupler with a decorative part has two layers, since the
+/// head of the part's second screw may be sunk into the upper layer.
 fn add_coupler(builder: &mut Builder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
-    let layer_of = |hole: Option<Shape>, z: Span| {
+    let build_layer = |hole: Option<Shape>, z: Span| {
         let mut filled = vec![Shape::bar(from, to, builder.half_bar_width())];
         let mut cut = vec![builder.clearance_hole(from), builder.clearance_hole(to)];
-        let boss_of = |hole: &Shape| Shape::disc(hole.middle(), builder.head_boss_radius());
-        filled.extend(hole.iter().map(boss_of));
+        let build_boss = |hole: &Shape| Shape::disc(hole.middle(), builder.head_boss_radius());
+        filled.extend(hole.iter().map(build_boss));
         cut.extend(hole);
         Prism::new(filled, cut, z)
     };
-    let prisms = match decoration::second_screw_holes(builder, servo, to) {
+    let prisms = match decoration::make_second_screw_holes(builder, servo, to) {
         Some([lower_hole, upper_hole]) => {
             let seat_z = z[1] - builder.parts.screw.head_height - HEAD_PLAY;
-            let lower = layer_of(Some(lower_hole), [z[0], seat_z]);
-            vec![lower, layer_of(Some(upper_hole), [seat_z, z[1]])]
+            let lower = build_layer(Some(lower_hole), [z[0], seat_z]);
+            vec![lower, build_layer(Some(upper_hole), [seat_z, z[1]])]
         }
-        None => vec![layer_of(None, z)],
+        None => vec![build_layer(None, z)],
     };
     builder.add_printed(coupler_name(servo), Mount::Coupler(servo), prisms);
 }

@@ -1,8 +1,8 @@
-//! Bodies of the power supply, the terminal strips, the plugs and the straps.
+//! Bodies of the power supply, the terminal strips, the plugs and the strap.
 //!
-//! Each of these fittings is a body, so that the proof of fit and the mass include it. Since no part of the robot
-//! moves above the deck, the deck has two wings beside the board for everything that must be reached by hand: on the
-//! right the parts of the battery's positive line; on the left, beside the board's pins, the signals.
+//! Each fitting is a body, so that the proof of fit and the mass include it. Since no part of the robot moves above the
+//! deck, the deck has two wings beside the board for the fittings that must be reached by hand: on the right the parts
+//! of the battery's positive line; on the left, beside the board's pins, the signals.
 
 use lizard_kinematics::Vector;
 
@@ -16,25 +16,25 @@ use crate::layers::shape::Shape;
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// Size of a slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
-/// Least distance of the terminal strips' middles from the plate's middle, mm.
+/// Least distance between the terminal strips' middles and the plate's middle, mm.
 const MIN_STRIP_X: f64 = 13.2;
-/// Distance from the middle of the plate to the cable ties, which pass beside the battery's ends, mm.
+/// Distance from the plate's middle to the cable ties, which pass beside the battery's ends, mm.
 const TIE_DISTANCE: f64 = 31.5;
 /// Thickness of a cable tie, mm.
 const TIE_THICKNESS: f64 = 1.6;
 
-/// Distances of a wing's inner and outer edge from the deck's middle, and half the wing's length, mm. A longer wing
+/// Distances from the deck's middle to a wing's inner and outer edge, and half the wing's length, mm. A longer wing
 /// would cover nuts of the sliders.
 const WING_EDGES_AND_HALF_LENGTH: [f64; 3] = [25.2, 51.2, 40.0];
-/// The openings of a wing, mm: for each, its limits in x, away from the middle, and its limits in y. They save
+/// Openings of a wing, mm: for each, the limits in x, away from the middle, and the limits in y. The openings save
 /// weight; the material between them is the arm that carries the wing.
 const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
     [[32.5, 43.0], [-36.5, -26.0]],
     [[32.5, 43.0], [-12.0, 26.0]],
 ];
-/// Distance of the inner edge of the fittings on a wing from the middle, mm.
+/// Distance from the middle to the inner edge of a wing's fittings, mm.
 const WING_FITTING_X: f64 = 29.5;
-/// Distances of the cable ties of a wing from the middle, mm: on the inner and on the outer side of the fittings.
+/// Distances from the middle to a wing's cable ties, mm: on the inner and on the outer side of the fittings.
 const WING_TIE_X: [f64; 2] = [28.0, 48.4];
 /// Height of the barrel jack's middle above the board, and its length beyond the board's edge, mm.
 const SOCKET_HEIGHT_AND_OVERHANG: [f64; 2] = [6.5, 2.0];
@@ -45,17 +45,16 @@ fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-/// A slot with its middle at `x`, `y`, mm.
-fn slot_shape(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
+/// Makes a slot with its middle at `x`, `y`, mm.
+fn make_slot(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
     Shape::rectangle(vector(x, y), vector(slot_width, slot_length), 0.5)
 }
 
-/// Slots in the plate: for the strap beside the battery, if the plate is wide enough, and
-/// for cable ties beside the terminal strips.
-pub fn plate_slots(builder: &Builder) -> Vec<Shape> {
+/// Makes the plate's slots: for the battery's strap if the plate is wide enough, and for the terminal strips' ties.
+pub fn make_plate_slots(builder: &Builder) -> Vec<Shape> {
     let mut slots = Vec::new();
     if let Some(x) = strap_slot_x(builder) {
-        slots.extend([-x, x].map(|x| slot_shape(x, 0.0, STRAP_SLOT)));
+        slots.extend([-x, x].map(|x| make_slot(x, 0.0, STRAP_SLOT)));
     }
     let strip_distance = strip_x(builder);
     for x in [
@@ -64,13 +63,13 @@ pub fn plate_slots(builder: &Builder) -> Vec<Shape> {
         strip_distance - 4.5,
         strip_distance + 4.5,
     ] {
-        slots.extend([-TIE_DISTANCE, TIE_DISTANCE].map(|y| slot_shape(x, y, TIE_SLOT)));
+        slots.extend([-TIE_DISTANCE, TIE_DISTANCE].map(|y| make_slot(x, y, TIE_SLOT)));
     }
     slots
 }
 
-/// Distance from the middle of the plate to the middles of the terminal strips, mm. The servos' leads pass between
-/// the strips, along the inner sides of the servos' cases.
+/// Distance from the plate's middle to the terminal strips' middles, mm. The servos' leads pass between the strips,
+/// along the inner sides of the servos' cases.
 fn strip_x(builder: &Builder) -> f64 {
     let plate = builder.layout.plate;
     let cases = plate.case_centres.iter().map(|case| case.x.abs());
@@ -78,9 +77,9 @@ fn strip_x(builder: &Builder) -> f64 {
     MIN_STRIP_X.max(lead_edge + 0.3 + fitting_size(Fitting::GroundStrip, 0) / 2.0)
 }
 
-/// The filled shapes of the deck's wings and of the arms between them and the board's holes; then the openings and
-/// slots in the wings.
-pub fn wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
+/// Makes the filled shapes of the deck's wings and of the arms from the wings to the board's holes; then the openings
+/// and slots in the wings.
+pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     let [inner, outer, half_length] = WING_EDGES_AND_HALF_LENGTH;
     let middle = (inner + outer) / 2.0;
     let mut filled = Vec::new();
@@ -97,18 +96,18 @@ pub fn wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
     for (x, y) in board_holes {
         filled.push(Shape::bar(vector(x, y), vector(middle.copysign(x), y), 5.0));
     }
-    // The ties of the signal strip are behind the resistors, whose wires lie beside the middle of the strip.
+    // The signal strip's ties are behind the resistors, whose wires lie beside the strip's middle.
     for x in WING_TIE_X {
-        cut.push(slot_shape(-x, signal_strip_y() - 11.0, TIE_SLOT));
+        cut.push(make_slot(-x, signal_strip_y() - 11.0, TIE_SLOT));
     }
-    cut.push(slot_shape(WING_TIE_X[0], fuse_y(), TIE_SLOT));
-    cut.push(slot_shape(
+    cut.push(make_slot(WING_TIE_X[0], fuse_y(), TIE_SLOT));
+    cut.push(make_slot(
         WING_FITTING_X + fitting_size(Fitting::Fuse, 0) + 2.4,
         fuse_y(),
         TIE_SLOT,
     ));
     let [tie_length, tie_width] = TIE_SLOT;
-    cut.push(slot_shape(38.5, switch_tie_y(), [tie_width, tie_length]));
+    cut.push(make_slot(38.5, switch_tie_y(), [tie_width, tie_length]));
     [filled, cut]
 }
 
@@ -117,30 +116,29 @@ fn fitting_size(fitting: Fitting, axis: usize) -> f64 {
     fitting.facts().size[axis]
 }
 
-/// Position of the middle of the signal strip, mm ahead of the plate's middle. The strip begins at the wing's rear
-/// end.
+/// Position of the signal strip's middle, mm forward of the plate's middle. The strip begins at the wing's rear end.
 fn signal_strip_y() -> f64 {
     0.5 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::SignalStrip, 1) / 2.0
 }
 
-/// Position of the fuse's middle, mm ahead of the plate's middle. The fuse is at the wing's front end.
+/// Position of the fuse's middle, mm forward of the plate's middle. The fuse is at the wing's front end.
 fn fuse_y() -> f64 {
     WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
 }
 
-/// Position of the switch's middle, mm ahead of the plate's middle. The switch is at the wing's rear end, and its
-/// cable tie goes around that end.
+/// Position of the switch's middle, mm forward of the plate's middle. The switch is at the wing's rear end, and its
+/// cable tie goes around this end.
 fn switch_y() -> f64 {
     0.3 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::Switch, 1) / 2.0
 }
 
-/// Position of the slot for the switch's cable tie, in front of the switch, mm ahead of the plate's middle.
+/// Position of the slot for the cable tie in front of the switch, mm forward of the plate's middle.
 fn switch_tie_y() -> f64 {
     switch_y() + fitting_size(Fitting::Switch, 1) / 2.0 + 1.2
 }
 
-/// Distance of the strap's slots from the plate's middle, mm; `None` if the plate is too narrow for slots beside
-/// the battery, and the strap goes around battery and plate instead.
+/// Distance from the plate's middle to the strap's slots, mm; `None` if the plate is too narrow for slots beside the
+/// battery, so that the strap goes around battery and plate.
 fn strap_slot_x(builder: &Builder) -> Option<f64> {
     let [battery_width, _, _] = builder.parts.battery;
     let x = (battery_width + STRAP_SECTION[1]) / 2.0;
@@ -156,7 +154,7 @@ pub fn add(builder: &mut Builder) {
     add_strap(builder);
 }
 
-/// Adds a fitting as a block of its own size whose lower face is at the height `low`, mm.
+/// Adds a fitting as a block of its own size with its lower face at the height `low`, mm.
 fn add_block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
     let size = fitting.facts().size;
     add_sized_block(
@@ -191,24 +189,23 @@ fn add_under_deck_and_plate(builder: &mut Builder) {
         stack.plate[0] - STRAP_SECTION[1].max(builder.parts.screw.head_height) - 0.3;
     let deck = stack.deck[0];
     let half_free_length = STANDOFF_DISTANCES[1] - 3.4;
-    let half_length_of = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
+    let half_length = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
     let strip_distance = strip_x(builder);
-    // The ground strip reaches this far forward and back. The supply strip's front end and the capacitor's rear end
-    // are level with its ends.
-    let strip_reach = half_length_of(Fitting::GroundStrip);
-    let supply_y = strip_reach - half_length_of(Fitting::SupplyStrip);
-    let capacitor_y = half_length_of(Fitting::Capacitor) - strip_reach;
+    // The supply strip's front end and the capacitor's rear end are level with the ground strip's ends.
+    let strip_reach = half_length(Fitting::GroundStrip);
+    let supply_y = strip_reach - half_length(Fitting::SupplyStrip);
+    let capacitor_y = half_length(Fitting::Capacitor) - strip_reach;
     for (fitting, x, y, ceiling) in [
         (
             Fitting::Alarm,
             0.0,
-            half_length_of(Fitting::Alarm) - half_free_length,
+            half_length(Fitting::Alarm) - half_free_length,
             deck,
         ),
         (
             Fitting::Converter,
             0.0,
-            half_free_length - half_length_of(Fitting::Converter),
+            half_free_length - half_length(Fitting::Converter),
             deck,
         ),
         (Fitting::GroundStrip, -strip_distance, 0.0, lower_ceiling),
@@ -237,31 +234,31 @@ fn add_under_deck_and_plate(builder: &mut Builder) {
 /// Adds the fittings on the deck's wings.
 fn add_on_deck(builder: &mut Builder) {
     let top = builder.stack.deck[1];
-    let half_width_of = |fitting: Fitting| fitting_size(fitting, 0) / 2.0;
-    let wing_x_of = |fitting: Fitting| WING_FITTING_X + half_width_of(fitting);
+    let half_width = |fitting: Fitting| fitting_size(fitting, 0) / 2.0;
+    let wing_x = |fitting: Fitting| WING_FITTING_X + half_width(fitting);
     add_block(
         builder,
         Fitting::SignalStrip,
-        vector(-wing_x_of(Fitting::SignalStrip), signal_strip_y()),
+        vector(-wing_x(Fitting::SignalStrip), signal_strip_y()),
         top,
     );
     let radio_y = WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::RadioSpace, 1) / 2.0;
     add_block(
         builder,
         Fitting::RadioSpace,
-        vector(-wing_x_of(Fitting::RadioSpace), radio_y),
+        vector(-wing_x(Fitting::RadioSpace), radio_y),
         top,
     );
     add_block(
         builder,
         Fitting::Fuse,
-        vector(wing_x_of(Fitting::Fuse), fuse_y()),
+        vector(wing_x(Fitting::Fuse), fuse_y()),
         top,
     );
     add_block(
         builder,
         Fitting::Switch,
-        vector(wing_x_of(Fitting::Switch), switch_y()),
+        vector(wing_x(Fitting::Switch), switch_y()),
         top,
     );
     let plus_y = fuse_y()
@@ -270,14 +267,14 @@ fn add_on_deck(builder: &mut Builder) {
     add_block(
         builder,
         Fitting::PlusTerminal,
-        vector(wing_x_of(Fitting::PlusTerminal), plus_y),
+        vector(wing_x(Fitting::PlusTerminal), plus_y),
         top,
     );
-    // Each resistor leads from a signal terminal to the middle one: two resistors span one pitch, two span two.
+    // Each resistor leads from a signal terminal to the middle terminal: two resistors span one pitch, two span two.
     let resistor_x = -WING_FITTING_X
         - fitting_size(Fitting::SignalStrip, 0)
         - 0.4
-        - half_width_of(Fitting::Resistor);
+        - half_width(Fitting::Resistor);
     let row_pitch = fitting_size(Fitting::Resistor, 0) + 0.4;
     let rows_and_pitches = [(1.0, -1.0), (0.0, -0.5), (0.0, 0.5), (1.0, 1.0)];
     for (number, (row, pitches)) in (1..).zip(rows_and_pitches) {
@@ -290,8 +287,8 @@ fn add_on_deck(builder: &mut Builder) {
     }
 }
 
-/// Adds the battery's plug, ahead of the battery or, if a long battery leaves no room there, on top of it. Adds the
-/// plug in the board's barrel jack.
+/// Adds the plug in the board's barrel jack, and the battery's plug in front of the battery, or on top of it if a long
+/// battery leaves no room in front.
 fn add_plugs(builder: &mut Builder) {
     let [_, battery_length, battery_height] = builder.parts.battery;
     let [width, thickness, height] = Fitting::BatteryPlug.facts().size;

@@ -1,40 +1,39 @@
-//! The robot seen from above: pivots, anchors and lengths of links, all of them independent
-//! of the pose.
+//! The robot seen from above: pivots, anchors and lengths of links, all independent of the pose.
 
 use lizard_kinematics::{End, Side, Vector};
 use lizard_robot::servo::ARM_SIDE;
 use lizard_robot::{LegPlan, Plate, Robot};
 
-/// Distance of the standoffs from the plate's middle, mm: to the right, forward.
+/// Distances from the plate's middle to the standoffs, mm: to the right, forward.
 pub const STANDOFF_DISTANCES: [f64; 2] = [8.0, 39.0];
 
 /// Radius of the circle around a hexagonal standoff of 5.5 mm across flats, mm.
 pub const STANDOFF_RADIUS: f64 = 3.2;
-/// Size of an Arduino UNO, mm: width and length of its board of 2100 x 2700 mil, and the height from
-/// the board's underside to the top of its components.
+/// Size of an Arduino UNO, mm: width and length of the board (2100 x 2700 mil), and the height from the board's
+/// underside to the top of its components.
 pub const UNO_SIZE: [f64; 3] = [53.34, 68.58, 12.0];
 /// Thickness of an Arduino UNO's board, mm.
 pub const UNO_BOARD_THICKNESS: f64 = 1.6;
 
-/// The pivots of all moving bodies, the lengths of the servos' links, and the plate's outline.
+/// Pivots of all moving bodies, lengths of the servos' links, and the plate's outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
-    /// The servos' shafts, mm, chassis frame, servo order.
+    /// Servos' shafts, chassis frame, servo order, mm.
     pub shafts: [Vector; 4],
-    /// The side of a link's arm, servo order: 1 if the arm is counter-clockwise from the crank, otherwise -1.
-    pub arm_side: [f64; 4],
-    /// Lengths of the cranks of head and tail, mm, servo order.
+    /// Sign of each link's arm, servo order: 1 if the arm is counter-clockwise from the crank, otherwise -1.
+    pub arm_signs: [f64; 4],
+    /// Lengths of the cranks of head and tail, servo order, mm.
     pub crank_lengths: [f64; 4],
-    /// Lengths of the arms of the sliders, mm, servo order.
+    /// Lengths of the sliders' arms, servo order, mm.
     pub arm_lengths: [f64; 4],
     /// Pivots and anchors of the legs, servo order.
     pub legs: [LegPlan; 4],
-    /// The outline of the chassis plate.
+    /// Outline of the chassis plate.
     pub plate: Plate,
 }
 
 impl Layout {
-    /// The layout of a robot.
+    /// Computes the layout of a robot.
     pub fn new(robot: &Robot) -> Self {
         let lizard = robot.lizard();
         let (mut crank_lengths, mut arm_lengths) = ([0.0; 4], [0.0; 4]);
@@ -51,7 +50,7 @@ impl Layout {
         }
         Self {
             shafts: lizard.shafts(),
-            arm_side: ARM_SIDE,
+            arm_signs: ARM_SIDE,
             crank_lengths,
             arm_lengths,
             legs: *robot.legs(),

@@ -1,9 +1,8 @@
 //! The servos' leads: three wires side by side, which leave the case at the shaft's end.
 //!
-//! A servo is pushed into the plate from above, plug and lead first. The lead sticks out
-//! of the case, so the opening needs a notch for it. Below the plate the lead is folded
-//! around the case's corner, runs between the servos towards the middle, and goes up
-//! through plate and deck to the board.
+//! A servo is pushed into the plate from above, plug and lead first. The lead protrudes from the case, so the opening
+//! needs a notch for it. Below the plate the lead is folded around the case's corner, runs between the servos towards
+//! the middle, and goes up through plate and deck to the board.
 
 use lizard_kinematics::{End, Vector};
 use lizard_robot::ServoBody;
@@ -18,19 +17,18 @@ use crate::layers::shape::Shape;
 pub const LEAD_SECTION: [f64; 2] = [4.0, 1.2];
 /// Difference in width between a notch and its lead, mm.
 const NOTCH_PLAY: f64 = 1.0;
-/// Height of a lead's lower edge above the bottom of the case, and the height of the lead
-/// on edge, mm.
+/// Height of a lead's lower edge above the case's bottom, and height of the lead on edge, mm.
 const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
-/// Length of lead that sticks out of the case before the fold, mm.
+/// Length of a lead between the case and the fold, mm.
 const BEND_LENGTH: f64 = 4.0;
 /// Size of a hole for the leads and the wires, mm: across and along the plate.
 const WIRE_HOLE_SIZE: [f64; 2] = [8.4, 6.0];
-/// Distance of the middle of a hole for leads beyond the middles of the standoffs, along the plate, mm.
+/// Distance along the plate from the standoffs' middles to the middle of a hole for leads, mm.
 const HOLE_BEYOND_STANDOFFS: f64 = 2.0;
 
-/// The notch for the lead in a servo's opening. `fit` is the clearance on each side,
-/// `outward` the direction of the shaft's end of the case: 1 forward, -1 back.
-pub fn lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
+/// Makes the notch for the lead in a servo's opening. `fit` is the clearance on each side, mm; `outward` is the
+/// direction of the shaft's end of the case: 1 forward, -1 back.
+pub fn make_lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> Shape {
     let reach = body.length / 2.0 + LEAD_SECTION[1] + fit;
     // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
@@ -40,13 +38,13 @@ pub fn lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64) -> S
     Shape::hull(&[left, right].concat(), 0.0)
 }
 
-/// The centre of the front hole for leads if `sign` is 1, of the rear one if it is -1.
+/// Centre of the front hole for leads if `sign` is 1, of the rear hole if it is -1.
 fn wire_hole_centre(sign: f64) -> Vector {
     Vector::new(0.0, sign * (STANDOFF_DISTANCES[1] + HOLE_BEYOND_STANDOFFS))
 }
 
-/// The holes in plate and deck through which leads and wires go up.
-pub fn wire_holes() -> [Shape; 2] {
+/// Makes the holes in plate and deck through which leads and wires go up.
+pub fn make_wire_holes() -> [Shape; 2] {
     let [width, length] = WIRE_HOLE_SIZE;
     [1.0, -1.0]
         .map(|sign| Shape::rectangle(wire_hole_centre(sign), Vector::new(width, length), 1.0))
@@ -56,7 +54,7 @@ pub fn wire_holes() -> [Shape; 2] {
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
         let (name, _) = servo_and_leg_names(servo);
-        let outward = End::of_servo(servo).sign();
+        let outward = End::from_servo(servo).sign();
         let body = builder.parts.servo;
         let middle = builder.layout.plate.case_centres[servo];
         let half_size = Vector::new(body.width, body.length) * 0.5;

@@ -1,8 +1,8 @@
 //! The legs: crank, follower, coupler with the foot, and the screws that join them.
 //!
-//! A stiff robot on four stiff feet rocks: two diagonal feet carry nearly all of its weight. So each foot is on a
-//! leaf spring, and a screw sets its height. The higher a leaf is above the floor, the more the friction of the pad
-//! bends it and turns the foot; so a column reaches down from the coupler to a low leaf.
+//! A stiff robot on four stiff feet rocks: two diagonal feet carry nearly all of the weight. Each foot is therefore on
+//! a leaf spring, and a screw sets its height. The higher the leaf is above the floor, the more the pad's friction
+//! bends the leaf and turns the foot, so a column reaches down from the coupler to a low leaf.
 
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;
@@ -18,23 +18,22 @@ use crate::layers::stack::{HEAD_PLAY, LEAF_THICKNESS, PAD_LIP_HEIGHT};
 const TIP_RADIUS: f64 = 5.0;
 /// Distances from the follower's joint to the two screws of the foot's column, mm.
 const CLAMP_DISTANCES: [f64; 2] = [21.0, 9.0];
-/// Length of the screws between coupler and column, which cut their thread into the column, mm.
+/// Length of the screws that fix the column to the coupler and cut their thread into the column, mm.
 const CLAMP_SCREW_LENGTH: f64 = 10.0;
-/// Depth of the holes for the screws between coupler and column, mm.
+/// Depth of these screws' holes, mm.
 const CLAMP_HOLE_DEPTH: f64 = 10.0;
-/// Half the width of the column, mm.
+/// Half of the column's width, mm.
 const COLUMN_HALF_WIDTH: f64 = 3.2;
 /// Length of the screw that sets a foot's height, mm.
 const FOOT_SCREW_LENGTH: f64 = 10.0;
 /// Young's modulus of PLA, N/mm^2.
 const PLA_MODULUS: f64 = 3000.0;
-/// Stiffness of a leaf, N/mm. From 0.4 to 0.6, a foot that is 1 mm too long costs no gait
-/// more than 5 % of its distance.
+/// Stiffness of a leaf, N/mm. Between 0.4 and 0.6, a foot that is 1 mm too long shortens a gait by at most 5 %.
 const LEAF_STIFFNESS: f64 = 0.5;
 
-/// The free length L of a leaf, mm. The stiffness of a beam clamped at one end is E b t^3 / (4 L^3), with Young's
-/// modulus E, width b and thickness t.
-fn leaf_length(width: f64) -> f64 {
+/// Computes the free length L of a leaf, mm. The stiffness of a beam clamped at one end is E b t^3 / (4 L^3), with
+/// Young's modulus E, width b and thickness t.
+fn compute_leaf_length(width: f64) -> f64 {
     libm::cbrt(
         PLA_MODULUS * width * (LEAF_THICKNESS * LEAF_THICKNESS * LEAF_THICKNESS)
             / (4.0 * LEAF_STIFFNESS),
@@ -74,7 +73,7 @@ fn add_crank(builder: &mut Builder, servo: usize) {
         holes_with(builder.nut_pocket(anchor)),
         holes_with(builder.clearance_hole(anchor)),
     );
-    let (nut_z, _) = stack.anchor_nut(parts);
+    let (nut_z, _) = stack.anchor_nut_height_and_screw_length(parts);
     let nut_z = nut_z.clamp(stack.crank[0], stack.crank[1]);
     let bearing = Shape::disc(pivot, half_width - 0.2);
     let bosses = [bearing.clone(), Shape::disc(anchor, half_width - 0.4)];
@@ -103,14 +102,13 @@ fn add_follower(builder: &mut Builder, servo: usize) {
     builder.add_printed(format!("follower {leg}"), Mount::Follower(servo), prisms);
 }
 
-/// The positions of the two screws between coupler and foot, in the coupler's frame.
+/// Positions of the two screws between coupler and foot, coupler frame, mm.
 fn clamp_positions(builder: &Builder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMP_DISTANCES.map(|distance| Vector::new(ground - distance, 0.0))
 }
 
-/// Height of the faces under the heads of the screws between coupler and foot, mm. The heads are sunk into the
-/// coupler.
+/// Height of the faces under the sunk heads of the screws between coupler and foot, mm.
 fn clamp_seat(builder: &Builder) -> f64 {
     builder.stack.leg_coupler[1] - builder.parts.screw.head_height - HEAD_PLAY
 }
@@ -144,7 +142,8 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     // The column begins at the end of the leaf's free length.
     let column_offset = clamps[0] - foot;
     let column_direction = column_offset * (1.0 / column_offset.length());
-    let root = foot + column_direction * (leaf_length(builder.parts.bar) + COLUMN_HALF_WIDTH);
+    let root =
+        foot + column_direction * (compute_leaf_length(builder.parts.bar) + COLUMN_HALF_WIDTH);
     // As in the crank, the half widths of bars that start at the same point differ by 0.01 mm.
     let column = vec![
         Shape::bar(clamps[0], clamps[1], COLUMN_HALF_WIDTH),
@@ -190,14 +189,14 @@ fn add_foot(builder: &mut Builder, servo: usize) {
     );
     let nut_prism = Prism::new([flats], [thread], [stack.leaf[0], nut_z]);
     builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut_prism]);
-    // The coupler never turns, so a direction stays the same in its frame.
+    // The coupler never turns, so a direction is constant in its frame.
     let coupler_direction = builder.layout.legs[servo].coupler_direction;
     let head_direction = Vector::new(coupler_direction.y, coupler_direction.x);
-    let pad = pads::pad_layers(builder.parts, foot, stack.floor, head_direction);
+    let pad = pads::make_pad_layers(builder.parts, foot, stack.floor, head_direction);
     builder.add_body(format!("pad {leg}"), Kind::Pad, mount, pad);
 }
 
-/// Adds the bolts of a leg's pivots and joints, and the bolt between crank and strut.
+/// Adds the bolts of a leg's pivots and joints, and the bolt that joins crank and strut.
 fn add_screws(builder: &mut Builder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
@@ -222,7 +221,7 @@ fn add_screws(builder: &mut Builder, servo: usize) {
             ..Bolt::new(&screw, mount, joint, head_z, Direction::Up)
         });
     }
-    let (nut_z, length) = stack.anchor_nut(parts);
+    let (nut_z, length) = stack.anchor_nut_height_and_screw_length(parts);
     let name = format!("leg anchor {leg}");
     builder.add_bolt(&Bolt {
         nut_z,

@@ -1,7 +1,6 @@
-//! The bodies that a servo turns: its horn and the link that is pushed over the horn.
+//! The bodies that a servo turns: its horn, and the link on the horn.
 //!
-//! The link is the crank of head or tail, the arm of a slider and the anchor of the leg's strut, so one servo
-//! moves all three.
+//! The link is the crank of head or tail, a slider's arm and the anchor of the leg's strut; one servo moves all three.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
@@ -13,16 +12,16 @@ use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 use crate::layers::stack::{HEAD_PLAY, Span};
 
-/// Distances of the horn's small screws from its shaft, as shares of the arm's length.
-const HORN_SCREW_SHARES: [f64; 2] = [0.52, 0.83];
+/// Distances from the shaft to the horn's small screws, as fractions of the arm's length.
+const HORN_SCREW_FRACTIONS: [f64; 2] = [0.52, 0.83];
 /// Radius of the hole in which a horn's small screw cuts its thread, mm.
 const PILOT_RADIUS: f64 = 0.7;
-/// Length of a horn's small screw, mm: one of 5 mm would reach the servo's boss under the link.
+/// Length of a horn's small screw, mm; a 5 mm screw would reach the servo's boss under the link.
 pub const HORN_SCREW_LENGTH: f64 = 4.0;
 /// Radius and height of the head of a horn's small screw, mm.
 const HORN_SCREW_HEAD_SIZE: [f64; 2] = [1.5, 1.0];
 
-/// Wall of the ring between strut and link, mm: the spring's coil leaves no room for more.
+/// Wall of the ring between strut and link, mm; the spring's coil leaves no room for more.
 const RING_WALL: f64 = 1.1;
 
 /// Clearance on each side of a horn's arm in its pocket, in multiples of `fit`: horns vary in size.
@@ -38,11 +37,11 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The outline of the horn's arm, which points along the crank, widened by `margin` mm on each side.
-pub fn horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
+/// Makes the shapes of the horn's arm, which points along the crank, wider by `margin` (mm) on each side.
+pub fn make_horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
     let (hub_radius, tip_radius) = (horn.hub / 2.0 + margin, horn.tip / 2.0 + margin);
     let end = Vector::new(horn.arm - horn.tip / 2.0, 0.0);
-    // The arm gets narrower from hub to tip.
+    // The arm narrows from hub to tip.
     let half_width = 0.8 * hub_radius;
     let corners = [
         (0.0, -half_width),
@@ -70,7 +69,7 @@ fn add_horn(builder: &mut Builder, servo: usize) {
     let prisms = [
         Prism::new([hub], [spline], [low + horn.thickness - horn.height, low]),
         Prism::new(
-            horn_arm(&horn, 0.0),
+            make_horn_arm(&horn, 0.0),
             through_holes,
             [low, low + horn.thickness],
         ),
@@ -89,7 +88,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
     let tip = Vector::new(layout.crank_lengths[servo], 0.0);
-    let arm_tip = Vector::new(0.0, layout.arm_side[servo] * layout.arm_lengths[servo]);
+    let arm_tip = Vector::new(0.0, layout.arm_signs[servo] * layout.arm_lengths[servo]);
     let anchor = layout.legs[servo].anchor;
     let half_width = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
@@ -109,10 +108,10 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let holes = [builder.clearance_hole(tip), builder.clearance_hole(arm_tip)];
     let pilots =
         horn_screw_positions(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
-    let pocket = horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
+    let pocket = make_horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
     let anchor_hole = builder.clearance_hole(anchor);
     let [low, high] = stack.link;
-    // The holes and pockets, each with the heights between which it is cut.
+    // Holes and pockets, each with the heights between which it is cut.
     let cuts = [
         (&holes[..], [low, high]),
         (
@@ -128,20 +127,20 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
     heights.sort_by(f64::total_cmp);
     heights.dedup_by(|a, b| *a - *b < 1e-9);
-    let layer_of = |z: &[f64]| {
+    let build_layer = |z: &[f64]| {
         let is_cut_in = |span: Span| span[0] < z[1] - 1e-9 && z[0] < span[1] - 1e-9;
         let layer_cuts = cuts.iter().filter(|(_, span)| is_cut_in(*span));
         let cut_shapes: Vec<_> = layer_cuts.flat_map(|(shapes, _)| shapes.to_vec()).collect();
         Prism::new(filled.clone(), cut_shapes, [z[0], z[1]])
     };
-    let prisms: Vec<_> = heights.windows(2).map(layer_of).collect();
+    let prisms: Vec<_> = heights.windows(2).map(build_layer).collect();
     builder.add_printed(format!("link {name}"), Mount::Link(servo), prisms);
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
-/// The positions of the small screws that hold the horn.
+/// Positions of the small screws that hold the horn.
 fn horn_screw_positions(horn: &Horn) -> [Vector; 2] {
-    HORN_SCREW_SHARES.map(|share| Vector::new(share * horn.arm, 0.0))
+    HORN_SCREW_FRACTIONS.map(|fraction| Vector::new(fraction * horn.arm, 0.0))
 }
 
 fn add_horn_screws(builder: &mut Builder, servo: usize) {
@@ -152,10 +151,10 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
         .into_iter()
         .enumerate()
     {
-        let disc_prism_of = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
+        let build_disc = |radius: f64, z: Span| Prism::solid([Shape::disc(position, radius)], z);
         let prisms = [
-            disc_prism_of(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
-            disc_prism_of(radius, [top, top + head_height]),
+            build_disc(PILOT_RADIUS, [top - HORN_SCREW_LENGTH, top]),
+            build_disc(radius, [top, top + head_height]),
         ];
         let name = format!("horn screw {name} {}", index + 1);
         let kind = Kind::HornScrew(HORN_SCREW_LENGTH);

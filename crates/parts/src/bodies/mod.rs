@@ -1,8 +1,7 @@
 //! The bodies of the robot, and their placements at a pose.
 //!
-//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each module here makes
-//! the bodies of one area of the robot from its robot.toml; [`assembly`] collects all of them and places them
-//! at a pose.
+//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each module makes the bodies of
+//! one area of the robot from its robot.toml; [`assembly`] collects them and computes their placements at a pose.
 
 pub(crate) mod assembly;
 pub(crate) mod builder;

@@ -2,17 +2,17 @@
 
 use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 
-/// The names of a servo and of its leg, such as A1 and LF.
+/// Names of a servo and of its leg, such as A1 and LF.
 pub fn servo_and_leg_names(servo: usize) -> (&'static str, &'static str) {
     (SERVO_NAMES[servo], LEG_NAMES[servo])
 }
 
-/// The name of the head's or tail's coupler on a servo's crank.
+/// Name of the head's or tail's coupler on a servo's crank.
 pub fn coupler_name(servo: usize) -> String {
     format!("coupler {}", servo_and_leg_names(servo).0)
 }
 
-/// The name of a leg's strut, which is either slotted or rigid.
+/// Name of a leg's strut, slotted or rigid.
 pub fn strut_name(is_slotted: bool, leg: &str) -> String {
     match is_slotted {
         true => format!("strut {leg}"),

@@ -2,12 +2,12 @@
 //!
 //! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over such an edge,
 //! since its slope there is hardly steeper than friction allows. The pad is printed from a flexible filament with its
-//! flat side on the bed. Its underside has a hole for the hex key. The screw's head snaps in from above, through a
+//! flat side on the bed. The underside has a hole for the hex key. The screw's head snaps in from above, through a
 //! mouth that is narrower than the head.
 //!
-//! A strip with a grain, for example of climbing skin, can be glued along the dome from head to tail. Its front end
-//! is folded up into a notch of the rim, so that it does not catch on an edge of the floor. The notch also shows
-//! which way to turn the pad. Around the notch the dome has terraces.
+//! A strip with a grain, for example of climbing skin, can be glued along the dome from head to tail. The strip's front
+//! end is folded up into a notch of the rim, so that it does not catch on an edge of the floor. The notch also marks
+//! the direction of the pad. Around the notch the dome has terraces.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
@@ -18,46 +18,42 @@ use crate::layers::stack::PAD_LIP_HEIGHT;
 
 /// Radius of the hole for a 2 mm hex key, which is 2.3 mm across corners, mm.
 const KEY_HOLE_RADIUS: f64 = 1.6;
-/// Width of the rim around the key's hole, mm: two printed lines.
+/// Width of the rim around the key hole, mm: two printed lines.
 const RIM_WIDTH: f64 = 0.8;
-/// Difference between the radius of the screw's head and that of the narrower mouth above it, mm.
+/// Difference between the radii of the screw's head and of the narrower mouth above it, mm.
 const SNAP_INTERFERENCE: f64 = 0.65;
 /// Height of the cones that approximate the dome, mm: their surfaces are within 0.02 mm of the sphere.
 const CONE_HEIGHT: f64 = 0.1;
-/// Depth of the notch for the end of a strip, mm: the largest thickness of a strip.
+/// Depth of the notch for a strip's end, mm: the largest thickness of a strip.
 pub(crate) const NOTCH_DEPTH: f64 = 1.5;
-/// Least width of a strip, mm: wider than the key's hole.
+/// Least width of a strip, mm: wider than the key hole.
 const MIN_STRIP_WIDTH: f64 = 5.0;
 /// Least thickness of material under the screw's head, mm.
 const MIN_THICKNESS_UNDER_HEAD: f64 = 1.0;
 
-/// The least height of a pad, mm.
+/// Least height of a pad, mm.
 pub(crate) fn min_height(parts: &Parts) -> f64 {
     MIN_THICKNESS_UNDER_HEAD + parts.screw.head_height + PAD_LIP_HEIGHT
 }
 
-/// The least width of a pad, mm.
+/// Least width of a pad, mm.
 pub(crate) fn min_width(parts: &Parts) -> f64 {
-    let notches = if parts.strip > 0.0 {
-        2.0 * NOTCH_DEPTH
-    } else {
-        0.0
-    };
-    parts.screw.head + parts.fit + 2.0 * parts.wall + notches
+    let notch_depth = if parts.strip > 0.0 { NOTCH_DEPTH } else { 0.0 };
+    parts.screw.head + parts.fit + 2.0 * parts.wall + 2.0 * notch_depth
 }
 
-/// The least and the greatest width of a strip along a pad, mm.
-pub(crate) fn strip_widths(parts: &Parts) -> [f64; 2] {
+/// Least and greatest width of a strip along a pad, mm.
+pub(crate) fn strip_width_range(parts: &Parts) -> [f64; 2] {
     [MIN_STRIP_WIDTH, 0.7 * parts.pad.width - 2.0 * parts.fit]
 }
 
-/// The notch in the rim of a pad whose middle is at `point`. `head_direction` points to the robot's head and has
-/// length one. The first side of the shape runs to the robot's right.
-fn notch_shape(parts: &Parts, point: Vector, head_direction: Vector) -> Shape {
+/// Makes the notch in the rim of a pad with its middle at `middle`. `head_direction` is the unit vector to the robot's
+/// head. The first side of the shape runs to the robot's right.
+fn make_notch(parts: &Parts, middle: Vector, head_direction: Vector) -> Shape {
     let right = Vector::new(head_direction.y, -head_direction.x);
     let half_width = parts.strip / 2.0 + parts.fit;
     let pad_radius = parts.pad.width / 2.0;
-    let corner_at = |x: f64, y: f64| point + right * x + head_direction * y;
+    let corner_at = |x: f64, y: f64| middle + right * x + head_direction * y;
     let (low, high) = (pad_radius - NOTCH_DEPTH, pad_radius + 1.0);
     Shape {
         points: vec![
@@ -70,11 +66,10 @@ fn notch_shape(parts: &Parts, point: Vector, head_direction: Vector) -> Shape {
     }
 }
 
-/// The layers of a pad from the floor up; its middle is at `point`. `head_direction` points to the robot's head and
-/// has length one.
-pub(crate) fn pad_layers(
+/// Makes the layers of a pad from the floor up, centred on `middle`. `head_direction` is the unit vector to the head.
+pub(crate) fn make_pad_layers(
     parts: &Parts,
-    point: Vector,
+    middle: Vector,
     floor: f64,
     head_direction: Vector,
 ) -> Vec<Prism> {
@@ -91,7 +86,7 @@ pub(crate) fn pad_layers(
         } else {
             screw.head / 2.0 - SNAP_INTERFERENCE
         };
-        Shape::disc(point, radius)
+        Shape::disc(middle, radius)
     };
     let radius_at = |z: f64| {
         let height = (z - floor).min(pad.radius);
@@ -100,7 +95,7 @@ pub(crate) fn pad_layers(
             .max(KEY_HOLE_RADIUS + RIM_WIDTH)
             .min(pad_radius)
     };
-    // The height at which the sphere is as wide as the rim.
+    // At this height the sphere is as wide as the rim.
     let rim_height =
         pad.radius - (pad.radius.powi(2) - (KEY_HOLE_RADIUS + RIM_WIDTH).powi(2)).sqrt();
     let cone_count = (dome / CONE_HEIGHT).ceil() as u32;
@@ -112,17 +107,17 @@ pub(crate) fn pad_layers(
         .collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let notch = (parts.strip > 0.0).then(|| notch_shape(parts, point, head_direction));
+    let notch = (parts.strip > 0.0).then(|| make_notch(parts, middle, head_direction));
     let layer_between = |heights: &[f64]| {
         let z = [heights[0], heights[1]];
         let (radii, hole) = (z.map(radius_at), hole_at(f64::midpoint(z[0], z[1])));
         match &notch {
             // A cone with a vertical cut has an edge that is not an arc, so this layer has vertical walls.
             Some(notch) if radii[0] > pad_radius - NOTCH_DEPTH => {
-                let disc = Shape::disc(point, radii[0]);
+                let disc = Shape::disc(middle, radii[0]);
                 Prism::new([disc], [hole, notch.clone()], z)
             }
-            _ => Prism::cone(point, radii, hole, z),
+            _ => Prism::cone(middle, radii, hole, z),
         }
     };
     levels.windows(2).map(layer_between).collect()

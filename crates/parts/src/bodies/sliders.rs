@@ -1,7 +1,7 @@
 //! The sliders: a rod in a sleeve between the arms of a front and a rear servo.
 //!
-//! A sleeve between the pins would be too short for the stroke. So sleeve and rod lie beside the line between the
-//! pins: the sleeve begins at the rear pin, and the rod may pass that pin.
+//! A sleeve between the pins would be too short for the stroke, so sleeve and rod lie beside the line between the pins:
+//! the sleeve begins at the rear pin, and the rod may pass this pin.
 
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
@@ -15,24 +15,24 @@ use crate::layers::shape::Shape;
 pub const ROD_OFFSET: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD_WIDTH: f64 = 6.0;
-/// The least length of the rod inside its sleeve, mm.
+/// Least length of the rod inside its sleeve, mm.
 const MIN_OVERLAP: f64 = 20.0;
-/// Least gap between the sleeve's front end and the front pin, mm, at the shortest distance of the pins.
+/// Least gap between the sleeve's front end and the front pin, at the shortest distance of the pins, mm.
 const MIN_GAP: f64 = 8.0;
 
-/// Lengths of one slider, mm.
+/// Lengths of a slider, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderLengths {
     /// Length of the sleeve, which begins at the rear pin.
     pub sleeve: f64,
     /// Length of the rod, from the front pin to its rear end.
     pub rod: f64,
-    /// Offset of sleeve and rod from the line between the pins, mm, positive to the left.
+    /// Offset of sleeve and rod from the line between the pins, positive to the left.
     pub lateral_offset: f64,
 }
 
 impl SliderLengths {
-    /// The lengths for a side whose pins may be from `shortest` to `longest` mm apart.
+    /// Computes the lengths for a side whose pins are between `shortest` and `longest` mm apart.
     pub fn new(side: Side, [shortest, longest]: [f64; 2]) -> Self {
         let sleeve = shortest - MIN_GAP;
         Self {
@@ -46,7 +46,7 @@ impl SliderLengths {
 /// Adds both sliders.
 pub fn add(builder: &mut Builder) {
     for side in Side::ALL {
-        let lengths = SliderLengths::new(side, slider_range(builder.robot, side));
+        let lengths = SliderLengths::new(side, find_slider_range(builder.robot, side));
         add_sleeve(builder, side, &lengths);
         add_rod(builder, side, &lengths);
         add_pins(builder, side);
@@ -61,7 +61,7 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let outer_width = bore_width + 2.0 * parts.wall;
     let middle = Vector::new(lengths.sleeve / 2.0, lengths.lateral_offset);
     let case = Shape::rectangle(middle, Vector::new(lengths.sleeve, outer_width), 0.8);
-    // The sleeve's corners must not stick out beyond the arm of its eye.
+    // The sleeve's corners must not protrude beyond the arm of its eye.
     let arm = Shape::bar(
         pin,
         Vector::new(half_width, lengths.lateral_offset),
@@ -90,7 +90,7 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.lateral_offset);
     let bar = Shape::rectangle(middle, Vector::new(lengths.rod, ROD_WIDTH), 1.0);
-    // The bend lies ahead of the pin, so that the sleeve can come near the pin.
+    // The bend lies in front of the pin, so that the sleeve can come near the pin.
     let bend = Shape::bar(
         pin,
         Vector::new(1.0, lengths.lateral_offset),
@@ -105,20 +105,20 @@ fn add_pins(builder: &mut Builder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;
-    let arm_tip_of =
-        |servo: usize| Vector::new(0.0, layout.arm_side[servo] * layout.arm_lengths[servo]);
+    let arm_tip =
+        |servo: usize| Vector::new(0.0, layout.arm_signs[servo] * layout.arm_lengths[servo]);
     let [sleeve, rod] = ["sleeve", "rod"].map(|prefix| format!("{prefix} {side}"));
     let name = format!("arm {}", servo_and_leg_names(rear).0);
     let mount = Mount::Link(rear);
     builder.add_link_joint(
         &name,
         mount,
-        arm_tip_of(rear),
+        arm_tip(rear),
         stack.lower_coupler[1],
         &[&sleeve],
     );
     let (name, _) = servo_and_leg_names(front);
-    let (position, mount) = (arm_tip_of(front), Mount::Link(front));
+    let (position, mount) = (arm_tip(front), Mount::Link(front));
     let spacer_z = [stack.link[1], stack.rod[0]];
     builder.add_spacer(
         format!("arm spacer {name}"),
@@ -136,8 +136,8 @@ fn add_pins(builder: &mut Builder, side: Side) {
     );
 }
 
-/// The shortest and the longest distance between a slider's pins, mm.
-pub fn slider_range(robot: &Robot, side: Side) -> [f64; 2] {
+/// Finds the shortest and the longest distance between a slider's pins, mm.
+pub fn find_slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
     [
         slider.nominal_length + limits.stroke_min,

@@ -1,14 +1,14 @@
-//! The strut between a servo's link and its leg: one with a spring, or a rigid one.
+//! The strut between a servo's link and its leg: slotted with a spring, or rigid.
 //!
-//! A strut with a spring has a hole at the servo's end, a slot at the leg's end, and the spring between the
-//! screws in hole and slot. The spring pulls the leg's screw against the slot's inner end, so the leg follows its servo
-//! exactly until the force on the foot exceeds the spring's pull. Then the screw moves along the slot.
+//! A slotted strut has a hole at the servo's end, a slot at the leg's end, and the spring between the screws in hole
+//! and slot. The spring pulls the leg's screw against the slot's inner end, so the leg follows its servo exactly until
+//! the force on the foot exceeds the spring's pull. Then the screw moves along the slot.
 //!
-//! The coil of the mounted spring is stretched nearly from screw to screw, and becomes longer when the leg lags.
-//! So the strut is a channel, and the coil lies on the channel's floor along its whole length.
+//! The mounted spring's coil extends nearly from screw to screw, and lengthens when the leg lags. The strut is
+//! therefore a channel, with the coil along the whole floor of the channel.
 //!
-//! A rigid strut is a bar with two holes in the same places, for the same screws. It fits into the space of a
-//! strut with a spring, so either can replace the other, and a rigid one is at least as far from all other parts.
+//! A rigid strut is a bar with holes for the same screws. It fits into the space of a slotted strut, so either can
+//! replace the other, and a rigid strut is at least as far from all other parts.
 
 use lizard_kinematics::Vector;
 use lizard_robot::SLOT_LENGTH;
@@ -21,7 +21,7 @@ use crate::layers::shape::Shape;
 /// Adds all struts, and their springs if they have any.
 pub fn add(builder: &mut Builder) {
     for servo in 0..4 {
-        let strut = strut_body(builder, servo, builder.has_slotted_struts());
+        let strut = make_strut(builder, servo, builder.has_slotted_struts());
         builder.bodies.push(strut);
         if builder.has_slotted_struts() {
             add_spring(builder, servo);
@@ -29,45 +29,45 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-/// The struts of the kind that the robot does not have, which can replace its own.
-pub fn alternatives(builder: &Builder) -> Vec<Body> {
-    (0..4)
-        .map(|servo| strut_body(builder, servo, !builder.has_slotted_struts()))
-        .collect()
+/// Makes the struts of the kind that the robot does not have.
+pub fn make_alternatives(builder: &Builder) -> Vec<Body> {
+    let is_slotted = !builder.has_slotted_struts();
+    let struts = (0..4).map(|servo| make_strut(builder, servo, is_slotted));
+    struts.collect()
 }
 
-fn strut_body(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
+fn make_strut(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
     let (_, leg) = servo_and_leg_names(servo);
     Body {
         name: names::strut_name(is_slotted, leg),
         kind: Kind::Printed,
         mount: Mount::Strut(servo),
         prisms: match is_slotted {
-            true => slotted_prisms(builder, servo),
-            false => vec![rigid_prism(builder, servo)],
+            true => make_slotted_prisms(builder, servo),
+            false => vec![make_rigid_prism(builder, servo)],
         },
         allowed_contacts: vec![format!("crank {leg}")],
     }
 }
 
-/// The point of a strut's axis at a distance from the strut's servo end, mm.
+/// The point on a strut's axis at a distance from the servo's end, mm.
 fn point_at(x: f64) -> Vector {
     Vector::new(x, 0.0)
 }
 
-/// Half the width of the channel in which spring, hooks and screw heads lie, mm.
+/// Half of the width of the channel for spring, hooks and screw heads, mm.
 fn channel_half_width(builder: &Builder) -> f64 {
     let parts = builder.parts;
     let spring = parts.spring.outer_diameter / 2.0 + 1.5 * parts.fit;
     (parts.screw.head / 2.0).max(spring) + parts.fit
 }
 
-fn slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+fn make_slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     let (stack, half_width) = (builder.stack, channel_half_width(builder));
     let length = builder.layout.legs[servo].strut_length;
-    let full_length_bar_of =
+    let build_full_bar =
         |half_width: f64| Shape::bar(point_at(0.0), point_at(length + SLOT_LENGTH), half_width);
-    let outer = vec![full_length_bar_of(half_width + builder.parts.wall)];
+    let outer = vec![build_full_bar(half_width + builder.parts.wall)];
     let hole = builder.clearance_hole(point_at(0.0));
     let slot = Shape::bar(
         point_at(length),
@@ -76,11 +76,11 @@ fn slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     );
     vec![
         Prism::new(outer.clone(), [hole, slot], stack.strut_floor),
-        Prism::new(outer, [full_length_bar_of(half_width)], stack.strut_wall),
+        Prism::new(outer, [build_full_bar(half_width)], stack.strut_wall),
     ]
 }
 
-fn rigid_prism(builder: &Builder, servo: usize) -> Prism {
+fn make_rigid_prism(builder: &Builder, servo: usize) -> Prism {
     let [from, to] = [
         point_at(0.0),
         point_at(builder.layout.legs[servo].strut_length),
@@ -108,7 +108,7 @@ fn add_spring(builder: &mut Builder, servo: usize) {
     );
     let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
     builder.add_body(spring, Kind::Spring, mount, [coil]);
-    // The screw heads lie over the hooks and reach to the coil's ends.
+    // The screw heads lie over the hooks and extend to the coil's ends.
     builder.allow_contact(&[
         format!("screw leg anchor {leg}"),
         format!("screw anchor {name}"),

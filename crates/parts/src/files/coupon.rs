@@ -1,38 +1,38 @@
 //! A fit coupon: a test piece, printed within an hour, that shows which `fit` a printer needs.
 //!
-//! Each column has its own fit, from 0.0 mm on the left to 0.4 mm on the right, marked by one to five dots. It
-//! consists of an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve.
-//! Use the first column in which all of these can be assembled by hand.
+//! Each column has its own fit, from 0.0 mm on the left to 0.4 mm on the right, marked by one to five dots. A column
+//! consists of an M3 hole, a horn's pocket, a servo's opening with the notch for its lead, and a piece of a sleeve. Use
+//! the first column into which all counterparts go by hand.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
 
-use crate::bodies::leads::{LEAD_SECTION, lead_notch};
-use crate::bodies::links::{POCKET_FIT_FACTOR, horn_arm};
+use crate::bodies::leads::{LEAD_SECTION, make_lead_notch};
+use crate::bodies::links::{POCKET_FIT_FACTOR, make_horn_arm};
 use crate::bodies::sliders::ROD_WIDTH;
 use crate::layers::body::Prism;
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 use crate::part::Part;
 
-/// Number of columns.
+/// Number of columns, each with its own fit.
 const COLUMN_COUNT: u32 = 5;
-/// Difference of the fit from column to column, mm.
+/// Difference between the fits of adjacent columns, mm.
 const FIT_STEP: f64 = 0.1;
 /// Thickness of the coupon, mm.
 const THICKNESS: f64 = 4.0;
-/// Thickness of the floor of the coupon's pockets, mm.
+/// Thickness of the pockets' floor, mm.
 const FLOOR_THICKNESS: f64 = 1.8;
 /// Length of a piece of a sleeve, mm.
 const SLEEVE_LENGTH: f64 = 10.0;
 /// Length of the piece of rod to try in a sleeve, mm.
 const GAUGE_LENGTH: f64 = 30.0;
 
-/// The coupon, and a piece of rod to try in its sleeves.
-pub fn coupon(parts: &Parts) -> [Part; 2] {
+/// Builds the coupon, and a piece of rod to try in its sleeves.
+pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     let (servo, horn) = (&parts.servo, &parts.horn);
     let pitch = servo.width + 2.0 * FIT_STEP * f64::from(COLUMN_COUNT) + 4.0;
-    // From the lower edge up: opening, pocket, hole with dots, sleeve.
+    // Order from the lower edge up: opening, pocket, hole with dots, sleeve.
     let max_fit = FIT_STEP * f64::from(COLUMN_COUNT);
     let opening_y = 3.0 + LEAD_SECTION[1] + max_fit + servo.length / 2.0;
     let pocket_y = opening_y + servo.length / 2.0 + max_fit + 3.0 + horn.hub / 2.0;
@@ -51,7 +51,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         let through_holes = [
             Shape::disc(vector(x - 3.0, hole_y), (parts.screw.diameter + fit) / 2.0),
             Shape::rectangle(vector(x, opening_y), case_size, 0.0),
-            lead_notch(servo, vector(x, opening_y), fit, -1.0),
+            make_lead_notch(servo, vector(x, opening_y), fit, -1.0),
         ];
         floor_cuts.extend(through_holes.iter().cloned());
         upper_cuts.extend(through_holes);
@@ -60,7 +60,7 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
             origin: vector(x, pocket_y),
             x_axis: vector(0.0, 1.0),
         };
-        let arm_shapes = horn_arm(horn, POCKET_FIT_FACTOR * fit).into_iter();
+        let arm_shapes = make_horn_arm(horn, POCKET_FIT_FACTOR * fit).into_iter();
         upper_cuts.extend(arm_shapes.map(|shape| shape.placed(&arm_placement)));
         for dot in 0..=column {
             let dot_x = x + 1.6 + 1.6 * f64::from(dot % 3);
@@ -85,8 +85,8 @@ pub fn coupon(parts: &Parts) -> [Part; 2] {
         Prism::new([plate.clone()], floor_cuts, [0.0, FLOOR_THICKNESS]),
         Prism::new([plate], upper_cuts, [FLOOR_THICKNESS, THICKNESS]),
     ];
-    // The roof of each sleeve begins higher than that of the previous one, since its fit is larger. So each layer
-    // has one bore less than the layer below it.
+    // Since the fit grows from column to column, each sleeve's roof begins higher than the previous sleeve's. Each
+    // layer therefore has one bore less than the layer below it.
     let mut low = THICKNESS;
     for (column, roof) in roof_heights.into_iter().enumerate() {
         prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));

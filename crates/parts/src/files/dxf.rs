@@ -1,17 +1,17 @@
-//! A sheet as a DXF file of AutoCAD release 12, which the software of every cutter can read.
+//! A sheet as a DXF file of AutoCAD release 12, which every cutter's software can read.
 //!
-//! The crate that writes DXF depends on an image decoder and a calendar, so this module has its own writer for the
-//! few entities that a sheet needs.
+//! The existing DXF crate depends on an image decoder and a calendar, so this module has its own writer for the few
+//! entities that a sheet needs.
 
 use std::fmt::Write;
 
-use crate::files::sheet::{Sheet, extent};
+use crate::files::sheet::{Sheet, compute_extent};
 use crate::layers::outline::Loop;
 
-/// The text of a DXF file. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
-pub fn dxf(sheet: &Sheet, kerf: f64) -> String {
+/// Formats a sheet as DXF. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
+pub fn format_dxf(sheet: &Sheet, kerf: f64) -> String {
     let mut file = Groups::default();
-    let [low, high] = extent(sheet);
+    let [low, high] = compute_extent(sheet);
     let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
     file.add(999, format!(
         "{name}: mm, 1:1, {thickness:.2} mm thick; lines are the part's edge, cut {half_kerf:.2} mm outside (kerf {kerf} mm)"

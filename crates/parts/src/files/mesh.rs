@@ -1,7 +1,7 @@
 //! A part's surface as a closed mesh of triangles.
 //!
-//! Each edge of the solid is divided once, and both faces that share it use the same
-//! points, so the triangles of neighbouring faces match.
+//! Each edge of the solid is divided once, and both adjacent faces use the same points, so the triangles of
+//! neighbouring faces match.
 
 use std::collections::BTreeMap;
 
@@ -12,15 +12,15 @@ use crate::layers::outline::Segment;
 
 /// Largest distance between a chord and its arc, mm.
 const MAX_CHORD_ERROR: f64 = 0.01;
-/// Largest angle of an arc that a chord spans, rad: at least 36 chords to a circle.
+/// Largest angle that a chord spans, rad: at least 36 chords to a circle.
 const MAX_CHORD_ANGLE: f64 = std::f64::consts::TAU / 36.0;
 
 /// A surface of triangles, counter-clockwise seen from outside.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// The corners of all triangles, mm.
+    /// Corners of all triangles, mm.
     pub corners: Vec<[f64; 3]>,
-    /// The triangles, each by the indices of three corners.
+    /// Triangles, each as the indices of three corners.
     pub triangles: Vec<[usize; 3]>,
 }
 
@@ -29,16 +29,16 @@ impl Mesh {
     ///
     /// # Panics
     /// Never for a closed solid.
-    pub fn of(solid: &Solid) -> Self {
+    pub fn from_solid(solid: &Solid) -> Self {
         let mut builder = MeshBuilder {
             solid,
             mesh: Self::default(),
             corner_indices: BTreeMap::new(),
-            lines: Vec::new(),
+            edge_corners: Vec::new(),
         };
         for edge in 0..solid.edges.len() {
-            let line = builder.divide_edge(edge);
-            builder.lines.push(line);
+            let corners = builder.divide_edge(edge);
+            builder.edge_corners.push(corners);
         }
         for face in &solid.faces {
             match face.surface {
@@ -52,7 +52,7 @@ impl Mesh {
         builder.mesh
     }
 
-    /// The volume, mm^3.
+    /// Computes the enclosed volume, mm^3.
     pub fn volume(&self) -> f64 {
         let volumes = self.triangles.iter().map(|&triangle| {
             let [[ax, ay, az], [bx, by, bz], [cx, cy, cz]] = triangle.map(|i| self.corners[i]);
@@ -61,7 +61,7 @@ impl Mesh {
         volumes.sum::<f64>() / 6.0
     }
 
-    /// True if every side of a triangle has exactly one neighbour.
+    /// True if every side of every triangle has exactly one neighbour.
     pub fn is_closed(&self) -> bool {
         let mut sides = BTreeMap::new();
         for &[a, b, c] in &self.triangles {
@@ -74,19 +74,19 @@ impl Mesh {
     }
 }
 
-/// A solid and its mesh as built so far.
+/// A solid and the mesh built so far.
 struct MeshBuilder<'a> {
     solid: &'a Solid,
     mesh: Mesh,
-    /// Index in the mesh of each of the solid's corners, by the indices of its point and of its height.
+    /// Index in the mesh of each corner of the solid, by the indices of the corner's point and height.
     corner_indices: BTreeMap<(usize, usize), usize>,
-    /// The indices of the corners along each edge of the solid, from its first end to its second.
-    lines: Vec<Vec<usize>>,
+    /// Indices of the corners along each edge of the solid, from its first end to its second.
+    edge_corners: Vec<Vec<usize>>,
 }
 
 impl MeshBuilder<'_> {
-    /// Returns the index of a corner of the solid in the mesh; adds the corner if it is new.
-    fn corner_index(&mut self, (point, level): (usize, usize)) -> usize {
+    /// Returns the index in the mesh of a corner of the solid; adds the corner if it is new.
+    fn find_or_add_corner(&mut self, (point, level): (usize, usize)) -> usize {
         let (position, z) = (self.solid.points[point], self.solid.heights[level]);
         let corners = &mut self.mesh.corners;
         *self
@@ -102,95 +102,91 @@ impl MeshBuilder<'_> {
     fn divide_edge(&mut self, edge: usize) -> Vec<usize> {
         let edge = self.solid.edges[edge];
         let [from, to] = edge.ends;
-        let (first, last) = (self.corner_index(from), self.corner_index(to));
+        let (first, last) = (self.find_or_add_corner(from), self.find_or_add_corner(to));
         let side = Segment {
             from: self.solid.points[from.0],
             bulge: edge.bulge,
         };
-        let mut line = vec![first];
-        let chord_count_of = |radius: f64, angle: f64| {
+        let mut corners = vec![first];
+        let count_chords = |radius: f64, angle: f64| {
             let chord = 2.0 * libm::acos((1.0 - MAX_CHORD_ERROR / radius).clamp(-1.0, 1.0));
             (angle / chord.min(MAX_CHORD_ANGLE)).ceil() as u32
         };
         let z = self.solid.heights[from.1];
-        for position in side.division_points(self.solid.points[to.0], chord_count_of) {
-            line.push(self.mesh.corners.len());
+        for position in side.division_points(self.solid.points[to.0], count_chords) {
+            corners.push(self.mesh.corners.len());
             self.mesh.corners.push([position.x, position.y, z]);
         }
-        line.push(last);
-        line
+        corners.push(last);
+        corners
     }
 
-    /// The corners along a sequence of edges, without the last corner.
-    fn trail_of(&self, edges: &[(usize, bool)]) -> Vec<usize> {
-        let mut trail = Vec::new();
+    /// Collects the corners along a sequence of edges, without the last corner.
+    fn collect_corners(&self, edges: &[(usize, bool)]) -> Vec<usize> {
+        let mut corners = Vec::new();
         for &(edge, is_forward) in edges {
-            let line = &self.lines[edge];
+            let edge_corners = &self.edge_corners[edge];
             match is_forward {
-                true => trail.extend(&line[..line.len() - 1]),
-                false => trail.extend(line[1..].iter().rev()),
+                true => corners.extend(&edge_corners[..edge_corners.len() - 1]),
+                false => corners.extend(edge_corners[1..].iter().rev()),
             }
         }
-        trail
+        corners
     }
 
-    /// Adds a horizontal face. A face that is seen from below is triangulated as its mirror image.
+    /// Adds a horizontal face; a face seen from below is triangulated as its mirror image.
     fn add_flat(&mut self, face: &Face, is_below: bool) {
         let mut corners: Vec<usize> = Vec::new();
         let mut hole_starts = Vec::new();
         for edges in &face.loops {
-            let trail = self.trail_of(edges);
             if !corners.is_empty() {
                 hole_starts.push(corners.len());
             }
-            corners.extend(trail);
+            corners.extend(self.collect_corners(edges));
         }
-        let corner_position_of = |&corner: &usize| {
+        let to_position = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
             (corner, Vector::new(if is_below { -x } else { x }, y))
         };
-        let positions: Vec<_> = corners.iter().map(corner_position_of).collect();
-        let coordinates: Vec<f64> = positions
-            .iter()
-            .flat_map(|(_, position)| [position.x, position.y])
-            .collect();
+        let positions: Vec<_> = corners.iter().map(to_position).collect();
+        let coordinates = positions.iter().flat_map(|(_, point)| [point.x, point.y]);
+        let coordinates: Vec<f64> = coordinates.collect();
         let indices = earcutr::earcut(&coordinates, &hole_starts, 2).expect("a loop has points");
-        let triangle_of = |corner_indices: &[usize]| {
+        let to_triangle = |corner_indices: &[usize]| {
             let [(a, p), (b, q), (c, r)] = [0, 1, 2].map(|i| positions[corner_indices[i]]);
             match (q - p).cross(r - p) < 0.0 {
                 true => [a, c, b],
                 false => [a, b, c],
             }
         };
-        let mut triangles: Vec<_> = indices.chunks_exact(3).map(triangle_of).collect();
+        let mut triangles: Vec<_> = indices.chunks_exact(3).map(to_triangle).collect();
         split_at_corners(&mut triangles, &positions);
         self.mesh.triangles.extend(triangles);
     }
 
-    /// Adds a wall as a strip of triangles between its lower and its upper line of corners.
+    /// Adds a wall as a strip of triangles between its lower and its upper corners.
     fn add_wall(&mut self, face: &Face, side: Segment, end: Vector) {
-        let levels_of = |edge: usize| self.solid.edges[edge].ends.map(|(_, level)| level);
         let edges = &face.loops[0];
-        let is_vertical = |&(edge, _): &(usize, bool)| {
-            let [low, high] = levels_of(edge);
+        let is_rising = |&(edge, _): &(usize, bool)| {
+            let [(_, low), (_, high)] = self.solid.edges[edge].ends;
             low != high
         };
-        let first_vertical = edges.iter().position(is_vertical).unwrap_or(0);
-        let mut low = self.trail_of(&edges[..first_vertical]);
-        low.push(self.first_or_last_corner(edges[first_vertical], false));
-        let mut high = self.trail_of(&edges[first_vertical + 1..edges.len() - 1]);
-        high.push(self.first_or_last_corner(edges[edges.len() - 1], false));
+        let first_rising = edges.iter().position(is_rising).unwrap_or(0);
+        let mut low = self.collect_corners(&edges[..first_rising]);
+        low.push(self.start_corner(edges[first_rising]));
+        let mut high = self.collect_corners(&edges[first_rising + 1..edges.len() - 1]);
+        high.push(self.start_corner(edges[edges.len() - 1]));
         high.reverse();
-        let position_of = |&corner: &usize| {
+        let find_position = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
             position_along(side, end, Vector::new(x, y))
         };
-        let distances_of = |chain: &[usize]| {
-            let mut distances: Vec<f64> = chain.iter().map(position_of).collect();
+        let find_distances = |chain: &[usize]| {
+            let mut distances: Vec<f64> = chain.iter().map(find_position).collect();
             distances[0] = 0.0;
             distances
         };
-        let (low_distances, high_distances) = (distances_of(&low), distances_of(&high));
+        let (low_distances, high_distances) = (find_distances(&low), find_distances(&high));
         let (mut i, mut j) = (0, 0);
         let mut triangles = Vec::new();
         while i + 1 < low.len() || j + 1 < high.len() {
@@ -207,26 +203,22 @@ impl MeshBuilder<'_> {
         self.mesh.triangles.extend(triangles);
     }
 
-    /// The corner at which an edge of a loop begins or, if `is_last`, ends.
-    fn first_or_last_corner(&self, (edge, is_forward): (usize, bool), is_last: bool) -> usize {
-        let line = &self.lines[edge];
-        if is_forward == is_last {
-            line[line.len() - 1]
-        } else {
-            line[0]
-        }
+    /// The corner at which an edge of a loop begins.
+    fn start_corner(&self, (edge, is_forward): (usize, bool)) -> usize {
+        let corners = &self.edge_corners[edge];
+        corners[if is_forward { 0 } else { corners.len() - 1 }]
     }
 }
 
-/// Divides triangles at the corners that lie on their sides. The triangulation skips points in the middle of a straight
-/// line, where walls and other triangles have corners.
+/// Divides triangles at the corners that lie on their sides. The triangulation skips points within a straight side,
+/// where walls and other triangles have corners.
 fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]) {
     let mut index = 0;
     while index < triangles.len() {
         let triangle = triangles[index];
         let split = (0..3).find_map(|i| {
             let [a, b, c] = [0, 1, 2].map(|k| triangle[(i + k) % 3]);
-            let inner_corners = corners_between(corners, a, b);
+            let inner_corners = find_corners_between(corners, a, b);
             (!inner_corners.is_empty()).then_some((a, inner_corners, b, c))
         });
         let Some((a, inner_corners, b, c)) = split else {
@@ -235,7 +227,7 @@ fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]
         };
         triangles.swap_remove(index);
         if inner_corners.contains(&c) {
-            // The triangle has no area, and its neighbours touch each other without it.
+            // The triangle has no area; its neighbours touch each other without it.
             continue;
         }
         let chain = [&[a][..], &inner_corners, &[b]].concat();
@@ -243,14 +235,14 @@ fn split_at_corners(triangles: &mut Vec<[usize; 3]>, corners: &[(usize, Vector)]
     }
 }
 
-/// The corners on the line between two others, in order; the two are not included.
-fn corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
-    let position_of = |index: usize| corners.iter().find(|(corner, _)| *corner == index);
-    let (Some(&(_, from)), Some(&(_, to))) = (position_of(a), position_of(b)) else {
+/// Finds the corners on the line between two others, in order, without these two.
+fn find_corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize> {
+    let find_position = |index: usize| corners.iter().find(|(corner, _)| *corner == index);
+    let (Some(&(_, from)), Some(&(_, to))) = (find_position(a), find_position(b)) else {
         return Vec::new();
     };
     let (length, line) = ((to - from).length(), to - from);
-    let distance_and_corner_of = |&(corner, position): &(usize, Vector)| {
+    let locate_corner = |&(corner, position): &(usize, Vector)| {
         let distance = (position - from).dot(line) / length;
         let offset = line.cross(position - from) / length;
         let is_within = offset.abs() < 1e-7 && distance > 0.0 && distance < length;
@@ -259,8 +251,7 @@ fn corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<usize
     let other_corners = corners
         .iter()
         .filter(|(corner, _)| *corner != a && *corner != b);
-    let mut sorted_corners: Vec<(f64, usize)> =
-        other_corners.filter_map(distance_and_corner_of).collect();
+    let mut sorted_corners: Vec<(f64, usize)> = other_corners.filter_map(locate_corner).collect();
     sorted_corners.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     sorted_corners
         .into_iter()

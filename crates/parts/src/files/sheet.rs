@@ -1,31 +1,31 @@
 //! Drawings of parts to cut from a sheet: outlines to cut through, pockets to mill.
 //!
-//! A part can be cut if all of its layers have the same outer outline. The layers of plate and deck differ; each of
-//! them becomes a sheet, and the sheets are glued together.
+//! A part can be cut if all of its layers have the same outer outline. The layers of plate and deck differ, so each
+//! becomes a sheet of its own, and the sheets are glued together.
 
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline, bounds};
+use crate::layers::outline::{Loop, Outline, compute_bounds};
 use crate::part::Part;
 
 /// A drawing of one sheet, mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sheet {
-    /// The name of the part, with the number of the sheet if it has several.
+    /// Name of the part, with the number of the sheet if the part has several.
     pub name: String,
     /// Thickness of the sheet, mm.
     pub thickness: f64,
-    /// The layers of the drawing.
+    /// Layers of the drawing.
     pub layers: Vec<Layer>,
 }
 
 /// A layer of a drawing: lines of one kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// The kind of the lines: `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
+    /// Kind of the lines: `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
-    /// The closed lines of the layer.
+    /// Closed lines of the layer.
     pub loops: Vec<Loop>,
 }
 
@@ -36,24 +36,22 @@ impl Layer {
     }
 }
 
-/// The sheets of a part; empty if it cannot be cut.
-pub fn sheets(part: &Part) -> Vec<Sheet> {
-    let outlines: Vec<_> = part.prisms.iter().map(Outline::of).collect();
-    let outer_loops_of = |outline: &Outline| -> Vec<Loop> {
+/// Draws the sheets of a part; empty if the part cannot be cut.
+pub fn draw_sheets(part: &Part) -> Vec<Sheet> {
+    let outlines: Vec<_> = part.prisms.iter().map(Outline::from_prism).collect();
+    let outer_loops = |outline: &Outline| -> Vec<Loop> {
         let pieces = outline.pieces.iter();
         pieces.filter_map(|piece| piece.first().cloned()).collect()
     };
     let low = part.prisms.first().map_or(0.0, |prism| prism.z[0]);
     let high = part.prisms.last().map_or(0.0, |prism| prism.z[1]);
-    let first_loops = outer_loops_of(&outlines[0]);
-    if outlines
-        .iter()
-        .all(|outline| outer_loops_of(outline) == first_loops)
-    {
+    let first_loops = outer_loops(&outlines[0]);
+    let has_first_loops = |outline: &Outline| outer_loops(outline) == first_loops;
+    if outlines.iter().all(has_first_loops) {
         return vec![Sheet {
             name: part.name.clone(),
             thickness: high - low,
-            layers: pocket_layers(&part.prisms, &outlines, [low, high]),
+            layers: draw_pocket_layers(&part.prisms, &outlines, [low, high]),
         }];
     }
     if part.name != "plate" && part.name != "deck" {
@@ -68,14 +66,14 @@ pub fn sheets(part: &Part) -> Vec<Sheet> {
     sheets.collect()
 }
 
-/// The layers of a drawing for a part whose layers all have the same outer outline: outline, holes and pockets.
-fn pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
+/// Draws outline, holes and pockets of a part whose layers all have the same outer outline.
+fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
     let outer_loops = outlines[0].pieces.iter().filter_map(|piece| piece.first());
     let mut layers = vec![Layer::cut(outer_loops.cloned().collect())];
     for (index, outline) in outlines.iter().enumerate() {
         let holes = outline.pieces.iter().flat_map(|piece| piece.iter().skip(1));
         for hole in holes {
-            // The layers are visited from below, so a pocket that is already listed is deeper.
+            // The layers are visited from the lowest up, so a pocket that is already listed is deeper.
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
             }
@@ -109,22 +107,19 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
     let sides = hole.sides.iter();
     let sum = sides.fold(Vector::default(), |sum, side| sum + side.from);
     let middle = sum * (1.0 / hole.sides.len() as f64);
-    // The probes lie slightly within the hole, so that a hole of the same size in the layer counts as open.
+    // The probes lie slightly inside the hole, so that a hole of the same size in the layer counts as open.
     let shrink = |point: Vector| middle + (point - middle) * 0.999;
     let ends = hole.sides_with_end_points();
     let mut probes = ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]);
     probes.all(|point| !outline.contains(shrink(point)))
 }
 
-/// The smallest and the largest x and y of a sheet, mm, with each arc replaced by points along it.
-pub fn extent(sheet: &Sheet) -> [Vector; 2] {
+/// Computes the smallest and the largest x and y of a sheet, mm; points along each arc replace the arc.
+pub fn compute_extent(sheet: &Sheet) -> [Vector; 2] {
     let loops = sheet.layers.iter().flat_map(|layer| &layer.loops);
-    bounds(
-        loops
-            .flat_map(Loop::sides_with_end_points)
-            .flat_map(|(side, to)| {
-                let arc = side.division_points(to, |_, _| 16);
-                std::iter::once(side.from).chain(arc)
-            }),
-    )
+    let sides = loops.flat_map(Loop::sides_with_end_points);
+    compute_bounds(sides.flat_map(|(side, to)| {
+        let arc = side.division_points(to, |_, _| 16);
+        std::iter::once(side.from).chain(arc)
+    }))
 }

@@ -1,9 +1,9 @@
 //! A part's surface: flat faces and walls that share their edges.
 //!
-//! A stack of layers has walls along the outlines, and flat faces where a layer ends and the next one does not
-//! cover it. The outlines of two layers may coincide along a part of their length, so at each height both outlines
-//! are cut where they intersect. Every piece is then one edge, which exactly two faces share. This makes a valid
-//! solid in STEP and a mesh without gaps.
+//! A stack of layers has walls along the outlines, and flat faces where the next layer does not cover a layer's end.
+//! The outlines of two layers may coincide along a part of their length, so at each height both outlines are cut where
+//! they intersect. Every piece is then one edge, which exactly two faces share. The STEP solid is therefore valid and
+//! the mesh has no gaps.
 
 use std::collections::BTreeMap;
 
@@ -13,32 +13,31 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::outline::{self, Loop, Outline, SAME_POINT_MM, Segment};
 
-/// The surface of a part, as points, edges and faces. A `level` is the index of a height.
+/// A part's surface as points, edges and faces. A `level` is the index of a height.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Points seen from above, mm.
     pub points: Vec<Vector>,
-    /// The heights of the boundaries between layers, ascending, mm.
+    /// Heights of the boundaries between layers, ascending, mm.
     pub heights: Vec<f64>,
-    /// The lines and arcs between points.
+    /// Lines and arcs between points.
     pub edges: Vec<Edge>,
     /// Flat faces and walls.
     pub faces: Vec<Face>,
-    /// The enclosed volume, mm^3.
+    /// Enclosed volume, mm^3.
     pub volume: f64,
 }
 
-/// An edge between two corners: at one height; vertical if both corners are one point at two heights; along a slope if
-/// they are two points at two heights.
+/// An edge between two corners: at one height, vertical (one point, two heights), or sloping (two points, two heights).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Edge {
-    /// The two corners, each by the indices of a point and of a height.
+    /// The two corners, each as the indices of a point and of a height.
     pub ends: [(usize, usize); 2],
-    /// The bulge, as in [`Segment`]: 0 if straight.
+    /// The bulge, as in [`Segment`]; 0 if straight.
     pub bulge: f64,
 }
 
-/// A face: loops of edges, each edge with its direction, true for forward.
+/// A face: loops of edges, each edge with true if the loop runs along it forward.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
     /// The surface on which the face lies.
@@ -50,38 +49,38 @@ pub struct Face {
 /// The plane, cylinder or cone under a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Surface {
-    /// A horizontal plane, by the index of its height, seen from above.
+    /// A horizontal plane seen from above, by the index of its height.
     Top(usize),
-    /// A horizontal plane, by the index of its height, seen from below.
+    /// A horizontal plane seen from below, by the index of its height.
     Bottom(usize),
     /// A wall along a side of an outline; the vector is the side's end point.
     Wall(Segment, Vector),
-    /// A piece of a cone along an arc of an outline: the arc, its end point, the index of its height, and its radius
-    /// at the next height, mm.
+    /// A piece of a cone along an arc of an outline: the arc, its end point, the index of its height, and the cone's
+    /// radius at the next height, mm.
     Slope(Segment, Vector, usize, f64),
 }
 
 /// A piece of an outline at a height. All numbers are indices.
 #[derive(Clone, Copy)]
 struct Piece {
-    /// The point at which the piece begins.
+    /// Start point.
     from: usize,
-    /// The point at which the piece ends.
+    /// End point.
     to: usize,
-    /// The piece's middle, in [`SolidBuilder::middles`].
+    /// Middle of the piece, in [`SolidBuilder::middles`].
     middle: usize,
-    /// The edge of the solid on which the piece lies.
+    /// Edge of the solid on which the piece lies.
     edge: usize,
     /// True if the piece runs in the direction of its edge.
     is_forward: bool,
 }
 
 impl Solid {
-    /// The surface of a stack of layers, from the lowest to the highest.
-    pub fn of(prisms: &[Prism]) -> Self {
-        let outlines_at = |share| {
-            let outline_of = |prism: &Prism| Outline::of(&prism.cross_section(share));
-            prisms.iter().map(outline_of).collect::<Vec<_>>()
+    /// Builds the surface of a stack of layers, listed from the lowest to the highest.
+    pub fn from_prisms(prisms: &[Prism]) -> Self {
+        let outlines_at = |fraction| {
+            let to_outline = |prism: &Prism| Outline::from_prism(&prism.cross_section(fraction));
+            prisms.iter().map(to_outline).collect::<Vec<_>>()
         };
         let (bottoms, tops) = (outlines_at(0.0), outlines_at(1.0));
         let mut builder = SolidBuilder::default();
@@ -102,7 +101,7 @@ impl Solid {
             }
             pieces_below = upper_pieces;
         }
-        builder.solid.volume = prisms.iter().map(outline::volume).sum();
+        builder.solid.volume = prisms.iter().map(outline::compute_volume).sum();
         builder.solid
     }
 
@@ -116,10 +115,10 @@ impl Solid {
     }
 }
 
-/// The outline of a layer and its pieces at a height.
+/// A layer's outline and its pieces at a height.
 type OutlineAndPieces<'a> = (&'a Outline, &'a [Vec<Piece>]);
 
-/// A solid as built so far, and the indices of its edges.
+/// The solid built so far, and the indices of its edges.
 #[derive(Default)]
 struct SolidBuilder {
     solid: Solid,
@@ -149,16 +148,9 @@ impl SolidBuilder {
         outline: &Outline,
         other: &Outline,
     ) -> Vec<Vec<Piece>> {
-        let other_sides: Vec<_> = other
-            .loops()
-            .flat_map(Loop::sides_with_end_points)
-            .collect();
-        let sides: Vec<_> = outline
-            .loops()
-            .flat_map(Loop::sides_with_end_points)
-            .collect();
+        let other_sides = collect_sides(other);
+        let sides = collect_sides(outline).into_iter();
         sides
-            .into_iter()
             .map(|(side, to)| {
                 let mut cuts = vec![side.from, to];
                 for (other_side, other_end) in &other_sides {
@@ -174,15 +166,15 @@ impl SolidBuilder {
                 positions.sort_by(|(a, _), (b, _)| a.total_cmp(b));
                 positions.dedup_by_key(|(_, point)| *point);
                 let is_uncut = positions.len() == 2;
-                let piece_of = |pair: &[(f64, usize)]| {
+                let to_piece = |pair: &[(f64, usize)]| {
                     let [(start, from), (end, to)] = [pair[0], pair[1]];
                     let bulge = match is_uncut {
                         true => side.bulge,
-                        false => bulge_of(end - start, side.bulge),
+                        false => compute_bulge(end - start, side.bulge),
                     };
                     self.add_piece(level, from, to, bulge)
                 };
-                positions.windows(2).map(piece_of).collect()
+                positions.windows(2).map(to_piece).collect()
             })
             .collect()
     }
@@ -213,16 +205,16 @@ impl SolidBuilder {
         }
     }
 
-    /// Adds the flat faces at a height, where one layer has material and the other has none.
+    /// Adds the flat faces at a height where only one of the two layers has material.
     fn add_flats(&mut self, level: usize, lower: OutlineAndPieces, upper: OutlineAndPieces) {
-        let tops = self.difference(lower, upper);
+        let tops = self.subtract(lower, upper);
         self.add_faces(tops, Surface::Top(level), false);
-        let bottoms = self.difference(upper, lower);
+        let bottoms = self.subtract(upper, lower);
         self.add_faces(bottoms, Surface::Bottom(level), true);
     }
 
-    /// The outline of `a` less `b`, as pieces with the material on their left.
-    fn difference(
+    /// Computes the outline of `a` minus `b`, as pieces with the material on their left.
+    fn subtract(
         &self,
         (a, a_pieces): OutlineAndPieces,
         (b, b_pieces): OutlineAndPieces,
@@ -255,7 +247,7 @@ impl SolidBuilder {
         outline
     }
 
-    /// Adds the faces that the pieces bound. Each loop of a face seen from below runs in the opposite direction.
+    /// Adds the faces that the pieces bound. Loops of a face seen from below run in the opposite direction.
     fn add_faces(&mut self, mut pieces: Vec<Piece>, surface: Surface, is_below: bool) {
         let mut outer_faces: Vec<(f64, Outline, Vec<Vec<Piece>>)> = Vec::new();
         let mut holes = Vec::new();
@@ -269,7 +261,7 @@ impl SolidBuilder {
                 point = next_piece.to;
                 trail.push(next_piece);
             }
-            let outline = self.loop_of(&trail);
+            let outline = self.build_loop(&trail);
             let area = outline.area();
             if area > 0.0 {
                 let pieces = vec![vec![outline]];
@@ -289,7 +281,7 @@ impl SolidBuilder {
             }
         }
         for (_, _, loops) in outer_faces {
-            let edges_of = |mut trail: Vec<Piece>| {
+            let to_edges = |mut trail: Vec<Piece>| {
                 if is_below {
                     trail.reverse();
                 }
@@ -298,20 +290,20 @@ impl SolidBuilder {
                     .map(|piece| (piece.edge, piece.is_forward != is_below))
                     .collect()
             };
-            let loops = loops.into_iter().map(edges_of).collect();
+            let loops = loops.into_iter().map(to_edges).collect();
             self.solid.faces.push(Face { surface, loops });
         }
     }
 
-    fn loop_of(&self, trail: &[Piece]) -> Loop {
-        let segment_of = |piece: &Piece| {
+    fn build_loop(&self, trail: &[Piece]) -> Loop {
+        let to_segment = |piece: &Piece| {
             let bulge = self.solid.edges[piece.edge].bulge;
             Segment {
                 from: self.solid.points[piece.from],
                 bulge: if piece.is_forward { bulge } else { -bulge },
             }
         };
-        let sides = trail.iter().map(segment_of).collect();
+        let sides = trail.iter().map(to_segment).collect();
         Loop { sides }
     }
 
@@ -323,16 +315,12 @@ impl SolidBuilder {
         low: &[Vec<Piece>],
         high: &[Vec<Piece>],
     ) {
-        let sides_of = |outline: &Outline| {
-            let ends = outline.loops().flat_map(Loop::sides_with_end_points);
-            ends.collect::<Vec<_>>()
-        };
-        let sides = sides_of(bottom).into_iter().zip(sides_of(top));
+        let sides = collect_sides(bottom).into_iter().zip(collect_sides(top));
         for ((low, high), ((side, end), (upper_side, upper_end))) in low.iter().zip(high).zip(sides)
         {
-            let end_points_of = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
+            let end_points = |pieces: &[Piece]| Some((pieces.first()?.from, pieces.last()?.to));
             let (Some((from, to)), Some((high_from, high_to))) =
-                (end_points_of(low), end_points_of(high))
+                (end_points(low), end_points(high))
             else {
                 continue;
             };
@@ -359,8 +347,8 @@ impl SolidBuilder {
         }
     }
 
-    /// Returns the edge from a point at the previous height to a point at this one, vertical or along a slope; adds the
-    /// edge if it is new.
+    /// Returns the edge from a point at the previous height to a point at this height, vertical or along a slope; adds
+    /// the edge if it is new.
     fn find_or_add_rising_edge(&mut self, [low, high]: [usize; 2], level: usize) -> usize {
         let edges = &mut self.solid.edges;
         *self
@@ -376,14 +364,20 @@ impl SolidBuilder {
     }
 }
 
-/// The distance of a point from the start of a side, measured along the side: mm, or rad on an arc.
+/// Collects the sides of an outline, each with its end point.
+fn collect_sides(outline: &Outline) -> Vec<(Segment, Vector)> {
+    let sides = outline.loops().flat_map(Loop::sides_with_end_points);
+    sides.collect()
+}
+
+/// The distance of a point from a side's start, measured along the side: mm, or rad on an arc.
 pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     let Some((centre, _)) = side.arc(to) else {
         return (point - side.from).length();
     };
     let (a, b) = (side.from - centre, point - centre);
     let angle = libm::atan2(a.cross(b), a.dot(b)) * side.bulge.signum();
-    // Rounding may give the start itself a slightly negative angle.
+    // Rounding may give the start point a slightly negative angle.
     if angle < -1e-6 {
         angle + std::f64::consts::TAU
     } else {
@@ -391,15 +385,15 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// The bulge of an arc of `angle`, rad, that turns in the direction of `model_bulge`; 0 if `model_bulge` is 0.
-fn bulge_of(angle: f64, model_bulge: f64) -> f64 {
+/// Computes the bulge of an arc of `angle` (rad) with the sign of `model_bulge`; 0 if `model_bulge` is 0.
+fn compute_bulge(angle: f64, model_bulge: f64) -> f64 {
     match model_bulge == 0.0 {
         true => 0.0,
         false => libm::tan(angle / 4.0) * model_bulge.signum(),
     }
 }
 
-/// Adds the points in which two sides intersect, or between which they overlap.
+/// Adds the points at which two sides intersect, or between which they overlap.
 fn add_intersections(
     a: Segment,
     a_end: Vector,
@@ -409,9 +403,9 @@ fn add_intersections(
 ) {
     let vertex_at = |position: Vector| PlineVertex::new(position.x, position.y, 0.0);
     let points = match pline_seg_intr(
-        a.vertex(),
+        a.to_vertex(),
         vertex_at(a_end),
-        b.vertex(),
+        b.to_vertex(),
         vertex_at(b_end),
         SAME_POINT_MM,
     ) {
@@ -436,37 +430,33 @@ mod tests {
         Vector::new(x, y)
     }
 
-    fn prism_of(filled: Vec<Shape>, cut: Vec<Shape>, z: [f64; 2]) -> Prism {
-        Prism::new(filled, cut, z)
-    }
-
     #[test]
     fn a_plate_with_a_hole_has_eight_faces() {
-        let plate = prism_of(
-            vec![Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 0.0)],
-            vec![Shape::disc(vector(1.0, 1.0), 2.0)],
+        let rectangle = Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 0.0);
+        let plate = Prism::new(
+            [rectangle],
+            [Shape::disc(vector(1.0, 1.0), 2.0)],
             [0.0, 3.0],
         );
-        let solid = Solid::of(&[plate]);
+        let solid = Solid::from_prisms(&[plate]);
         assert!(solid.is_closed());
-        // Four walls, two halves of a hole, top and bottom.
+        // Four walls, the two halves of the hole, top and bottom.
         assert_eq!(solid.faces.len(), 8);
         assert_eq!(solid.edges.len(), 2 * (4 + 2) + 4 + 2);
     }
 
     #[test]
-    fn layers_whose_outlines_coincide_in_part_have_a_closed_surface() {
+    fn layers_with_partly_coinciding_outlines_have_a_closed_surface() {
         // A sleeve: floor, two walls, roof.
         let case = Shape::rectangle(vector(0.0, 0.0), vector(40.0, 10.0), 1.0);
         let bore = Shape::rectangle(vector(0.0, 0.0), vector(60.0, 6.0), 0.0);
         let eye = Shape::disc(vector(-15.0, -6.0), 4.0);
         let sleeve = [
-            prism_of(vec![case.clone(), eye.clone()], vec![], [0.0, 1.0]),
-            prism_of(vec![case.clone(), eye], vec![bore.clone()], [1.0, 3.0]),
-            prism_of(vec![case.clone()], vec![bore], [3.0, 5.0]),
-            prism_of(vec![case], vec![], [5.0, 6.0]),
+            Prism::solid([case.clone(), eye.clone()], [0.0, 1.0]),
+            Prism::new([case.clone(), eye], [bore.clone()], [1.0, 3.0]),
+            Prism::new([case.clone()], [bore], [3.0, 5.0]),
+            Prism::solid([case], [5.0, 6.0]),
         ];
-        let solid = Solid::of(&sleeve);
-        assert!(solid.is_closed());
+        assert!(Solid::from_prisms(&sleeve).is_closed());
     }
 }

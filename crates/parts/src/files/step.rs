@@ -1,7 +1,7 @@
 //! A part as a STEP file (ISO 10303-21, AP214): a solid of planes, cylinders and cones.
 //!
-//! Existing writers turn circles into splines: then a CAD program no longer knows that a hole is round, or where its
-//! centre is. So this module has its own writer.
+//! Existing writers convert circles to splines, so a CAD program would not recognise a hole as round or find its
+//! centre. This module therefore has its own writer.
 
 use std::fmt::Write;
 
@@ -10,8 +10,8 @@ use lizard_kinematics::Vector;
 use crate::files::solid::{Face, Solid, Surface};
 use crate::layers::outline::Segment;
 
-/// The text of a STEP file.
-pub fn step(name: &str, solid: &Solid) -> String {
+/// Formats a solid as a STEP file.
+pub fn format_step(name: &str, solid: &Solid) -> String {
     let mut file = StepWriter::default();
     let solid_id = file.add_solid(name, solid);
     file.add_product(name, solid_id);
@@ -24,7 +24,7 @@ pub fn step(name: &str, solid: &Solid) -> String {
     )
 }
 
-/// The entities that describe the product and its units, one a line; see [`StepWriter::add_product`].
+/// The entities that describe the product and its units, one per line; see [`StepWriter::add_product`].
 const PRODUCT: &str = include_str!("product.step");
 
 /// The index of the entity PRODUCT_DEFINITION_SHAPE in [`PRODUCT`].
@@ -34,19 +34,18 @@ const PRODUCT_SHAPE_INDEX: usize = 7;
 #[derive(Default)]
 struct StepWriter {
     text: String,
-    /// The number of the entity added last.
+    /// Number of the entity added last.
     last_id: usize,
 }
 
-/// Formats a number as STEP requires, with a decimal point, and without an exponent, which some
-/// readers misread.
+/// Formats a number as STEP requires: with a decimal point, and without an exponent, which some readers misread.
 fn format_real(number: f64) -> String {
     let text = format!("{number:.9}");
     let text = text.trim_end_matches('0');
     if text == "-0." { "0." } else { text }.to_owned()
 }
 
-fn list_text(ids: &[usize]) -> String {
+fn format_list(ids: &[usize]) -> String {
     let ids: Vec<_> = ids.iter().map(|id| format!("#{id}")).collect();
     format!("({})", ids.join(","))
 }
@@ -97,21 +96,21 @@ impl StepWriter {
             .iter()
             .map(|face| self.add_face(solid, face, &edges));
         let faces: Vec<_> = faces.collect();
-        let shell_id = self.add(&format!("CLOSED_SHELL('',{})", list_text(&faces)));
+        let shell_id = self.add(&format!("CLOSED_SHELL('',{})", format_list(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell_id})"))
     }
 
     fn add_face(&mut self, solid: &Solid, face: &Face, edges: &[usize]) -> usize {
-        let logical_text = |value: bool| if value { "T" } else { "F" };
+        let format_logical = |value: bool| if value { "T" } else { "F" };
         let mut bounds = Vec::new();
         for edge_loop in &face.loops {
             let mut oriented_edges = Vec::new();
             for &(edge, is_forward) in edge_loop {
-                let (edge, orientation) = (edges[edge], logical_text(is_forward));
+                let (edge, orientation) = (edges[edge], format_logical(is_forward));
                 oriented_edges
                     .push(self.add(&format!("ORIENTED_EDGE('',*,*,#{edge},.{orientation}.)")));
             }
-            let edge_loop = self.add(&format!("EDGE_LOOP('',{})", list_text(&oriented_edges)));
+            let edge_loop = self.add(&format!("EDGE_LOOP('',{})", format_list(&oriented_edges)));
             let kind = match bounds.is_empty() {
                 true => "FACE_OUTER_BOUND",
                 false => "FACE_BOUND",
@@ -119,7 +118,7 @@ impl StepWriter {
             bounds.push(self.add(&format!("{kind}('',#{edge_loop},.T.)")));
         }
         let (surface, sense) = self.add_surface(solid, face.surface);
-        let (bounds, sense) = (list_text(&bounds), logical_text(sense));
+        let (bounds, sense) = (format_list(&bounds), format_logical(sense));
         self.add(&format!("ADVANCED_FACE('',{bounds},#{surface},.{sense}.)"))
     }
 
@@ -134,18 +133,15 @@ impl StepWriter {
             return self.add(&format!("CIRCLE('',#{frame},{})", format_real(radius)));
         }
         let direction = [0, 1, 2].map(|i| to[i] - from[i]);
-        let length = direction
-            .iter()
-            .map(|component| component * component)
-            .sum::<f64>()
-            .sqrt();
+        let squares = direction.map(|component| component * component);
+        let length = squares.iter().sum::<f64>().sqrt();
         let origin = self.add_triple("CARTESIAN_POINT", from);
         let direction = self.add_triple("DIRECTION", direction.map(|component| component / length));
         let vector = self.add(&format!("VECTOR('',#{direction},1.)"));
         self.add(&format!("LINE('',#{origin},#{vector})"))
     }
 
-    /// Adds the surface of a face. The second value is true if the surface's normal points out of the part.
+    /// Adds the surface of a face. Also returns true if the surface's normal points out of the part.
     fn add_surface(&mut self, solid: &Solid, surface: Surface) -> (usize, bool) {
         match surface {
             Surface::Top(level) | Surface::Bottom(level) => {
@@ -160,8 +156,7 @@ impl StepWriter {
             Surface::Slope(side, end, level, upper_radius) => {
                 let (centre, radius) = side.arc(end).expect("a slope's side is an arc");
                 let [low, high] = [level, level + 1].map(|level| solid.heights[level]);
-                // The angle of a cone in STEP is positive, so a cone that narrows upward gets a frame that points
-                // down.
+                // A cone's angle is positive in STEP, so a cone that narrows upward gets a frame that points down.
                 let is_narrowing = radius > upper_radius;
                 let z_direction = if is_narrowing { -1.0 } else { 1.0 };
                 let frame = self.add_frame(
@@ -194,10 +189,10 @@ impl StepWriter {
         }
     }
 
-    /// Adds the product's entities, which readers require, and its units.
+    /// Adds the entities of the product, which readers require, and the units.
     fn add_product(&mut self, name: &str, solid_id: usize) {
         let first_id = self.last_id + 1;
-        // `#+3` is the third entity of the list, `#NAME` the part's name.
+        // `#+3` stands for the third entity of the list, `#NAME` for the part's name.
         for entity in PRODUCT.lines() {
             let mut entity = entity.replace("#NAME", name);
             for number in (0..12).rev() {
@@ -226,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_a_point_no_exponent_and_no_negative_zero() {
+    fn numbers_are_formatted_with_a_point_and_without_exponent_or_negative_zero() {
         for (value, text) in [
             (0.0, "0."),
             (-1e-16, "0."),

@@ -2,8 +2,8 @@
 
 use crate::files::mesh::Mesh;
 
-/// The bytes of an STL file.
-pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
+/// Encodes a mesh as an STL file.
+pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
     bytes.resize(80, b' ');
     let count = u32::try_from(mesh.triangles.len()).unwrap_or(u32::MAX);
@@ -12,18 +12,12 @@ pub fn stl(name: &str, mesh: &Mesh) -> Vec<u8> {
         let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
         let [u, v] = [b, c].map(|end| [0, 1, 2].map(|i| end[i] - a[i]));
         let normal = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| u[i] * v[j] - u[j] * v[i]);
-        let length = normal
-            .iter()
-            .map(|component| component * component)
-            .sum::<f64>()
-            .sqrt();
-        let unit_normal = normal.map(|component| {
-            if length > 0.0 {
-                component / length
-            } else {
-                0.0
-            }
-        });
+        let squares = normal.map(|component| component * component);
+        let length = squares.iter().sum::<f64>().sqrt();
+        let unit_normal = match length > 0.0 {
+            true => normal.map(|component| component / length),
+            false => [0.0; 3],
+        };
         for corner in [unit_normal, a, b, c] {
             for component in corner {
                 // Adding 0 turns -0 into 0, so that equal meshes give equal bytes.

@@ -4,20 +4,19 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-use crate::files::sheet::{Layer, Sheet, extent};
+use crate::files::sheet::{Layer, Sheet, compute_extent};
 use crate::layers::outline::Loop;
 
-/// Margin around the part, mm.
+/// Margin around the sheet, mm.
 const MARGIN: f64 = 5.0;
-/// Colours of the lines: the first for lines to cut through, the others for pockets.
+/// Colours of the layers: the first for lines to cut through, the others for pockets.
 const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
-/// The text of an SVG file. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
-pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
-    let [low, high] = extent(sheet);
+/// Formats a sheet as SVG. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
+pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
+    let [low, high] = compute_extent(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
-    let page_point_of =
-        |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
+    let to_page = |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
     let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
@@ -31,16 +30,15 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
         for outline_loop in loops {
             let _ = match outline_loop
                 .circle()
-                .map(|(centre, radius)| (page_point_of(centre), radius))
+                .map(|(centre, radius)| (to_page(centre), radius))
             {
                 Some(((x, y), r)) => {
                     writeln!(text, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
-                None => writeln!(
-                    text,
-                    "<path d=\"{}\"/>",
-                    path_data(outline_loop, page_point_of)
-                ),
+                None => {
+                    let data = format_path(outline_loop, to_page);
+                    writeln!(text, "<path d=\"{data}\"/>")
+                }
             };
         }
         text.push_str("</g>\n");
@@ -49,15 +47,15 @@ pub fn sheet_svg(sheet: &Sheet, kerf: f64) -> String {
     text
 }
 
-/// The path data of a loop.
-fn path_data(outline_loop: &Loop, page_point_of: impl Fn(Vector) -> (f64, f64)) -> String {
+/// Formats the path data of a loop.
+fn format_path(outline_loop: &Loop, to_page: impl Fn(Vector) -> (f64, f64)) -> String {
     let mut data = String::new();
     for (index, (side, to)) in outline_loop.sides_with_end_points().enumerate() {
-        let (x, y) = page_point_of(side.from);
+        let (x, y) = to_page(side.from);
         if index == 0 {
             let _ = write!(data, "M{x:.6} {y:.6}");
         }
-        let (x, y) = page_point_of(to);
+        let (x, y) = to_page(to);
         let _ = match side.arc(to) {
             // The page's y axis points down, so a left turn has the sweep flag 0.
             Some((_, radius)) => write!(

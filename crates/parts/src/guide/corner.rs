@@ -1,8 +1,8 @@
-//! One corner of the robot, to be printed first: a seat for one servo with the pivots of
-//! its leg, the servo's link, the leg, its strut and its foot.
+//! One corner of the robot, to be printed first: a servo's seat with the pivots of its leg, the servo's link, and the
+//! leg with its strut and its foot.
 //!
-//! It takes three hours to print and shows what all parts together would show only after fifteen: whether the servo
-//! fits its opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
+//! Printing the corner takes three hours instead of fifteen, and shows whether the servo fits its opening and the horn
+//! its link, whether the bearings turn without play, and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::Builder;
@@ -13,21 +13,20 @@ use crate::layers::body::Mount;
 use crate::part::Part;
 
 impl Assembly {
-    /// The printed parts of the corner of A1, each once.
-    pub fn corner_parts(&self) -> Vec<Part> {
+    /// Collects the printed parts of the corner of A1, each once.
+    pub fn collect_corner_parts(&self) -> Vec<Part> {
         let (name, leg) = servo_and_leg_names(CORNER_SERVO);
-        let prisms = chassis::corner_prisms(&Builder::new(self.robot()), CORNER_SERVO);
+        let prisms = chassis::make_corner_prisms(&Builder::new(self.robot()), CORNER_SERVO);
         let mut parts = vec![Part::single(&format!("seat {name}"), prisms)];
-        let is_in_corner = |body: &str| {
-            let body = self.body(body);
-            body.is_some_and(|body| {
+        let is_in_corner = |body_name: &str| {
+            self.body(body_name).is_some_and(|body| {
                 let is_coupler = matches!(body.mount, Mount::Coupler(_));
                 let has_suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
                 !is_coupler && has_suffix && body.kind.is_printed()
             })
         };
-        for mut part in self.parts() {
-            part.body_names.retain(|body| is_in_corner(body));
+        for mut part in self.collect_parts() {
+            part.body_names.retain(|body_name| is_in_corner(body_name));
             if !part.body_names.is_empty() && !part.name.starts_with("spacer") {
                 parts.push(part);
             }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// Replaces each pair of marks with an element around the text between them.
+/// Replaces each pair of marks by an element around the text between them.
 fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();
@@ -12,8 +12,8 @@ fn replace_marks(text: &str, mark: &str, element: &str) -> String {
     result
 }
 
-/// The guide's Markdown as a page. Only headings, pictures, tables, code, bold text and paragraphs are supported.
-pub fn html(markdown: &str) -> String {
+/// Converts the guide's Markdown to a page. Supports only headings, pictures, tables, code, bold text and paragraphs.
+pub fn markdown_to_html(markdown: &str) -> String {
     let escape = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
         replace_marks(&replace_marks(&text, "`", "code"), "**", "b")
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn a_page_has_headings_tables_code_and_pictures() {
-        let page = html(
+        let page = markdown_to_html(
             "# A\n\n| a | b |\n|---|---|\n| 1 | x < y |\n\n![p](q.svg)\nrun `z`\n```toml\nk = 1\n```\n",
         );
         for fragment in [
@@ -85,7 +85,7 @@ mod tests {
             "<p>run <code>z</code></p>",
             "<pre>k = 1\n</pre>",
         ] {
-            assert!(page.contains(fragment), "{fragment} in {page}");
+            assert!(page.contains(fragment), "{fragment} is missing in {page}");
         }
     }
 }

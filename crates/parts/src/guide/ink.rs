@@ -1,12 +1,12 @@
-//! Polygons on a page, and labels at and beside them, as SVG.
+//! Polygons and labels on a page, as SVG.
 
 use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-use crate::layers::outline::bounds;
+use crate::layers::outline::compute_bounds;
 
-/// Margin around the robot, pixels.
+/// Margin around the drawing, pixels.
 const MARGIN: f64 = 12.0;
 /// Space for labels on each side of a picture, pixels.
 const LABEL_MARGIN: f64 = 165.0;
@@ -15,37 +15,36 @@ const LINE_HEIGHT: f64 = 16.0;
 /// SVG attributes of the labels' text.
 const FONT_ATTRIBUTES: &str = "font-family=\"sans-serif\" font-size=\"12\" fill=\"#111\"";
 
-/// The vertices of a closed outline in the drawing, mm, before it is scaled to the page.
+/// The vertices of a closed outline in the drawing, mm, before scaling to the page.
 pub(super) type Ring = Vec<(f64, f64)>;
-/// The point of the drawing that a label names, mm, and the label.
+/// A label, and the point of the drawing that it names, mm.
 pub(super) type PlacedLabel<'a> = ((f64, f64), &'a Label);
 
 /// A label in a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
-    /// The point that the label names, chassis frame, mm.
+    /// Named point, chassis frame, mm.
     pub position: Vector,
     /// Height of the named point, mm.
     pub z: f64,
-    /// The text of the label.
+    /// Text of the label.
     pub text: String,
-    /// True for a text beside the picture with a line to the named point, as for parts; false for a text at the
-    /// point.
+    /// True for a text beside the picture with a line to the named point; false for a text at the point.
     pub is_beside: bool,
 }
 
-/// The part of the drawing that is shown, mm, before it is scaled to pixels.
+/// The visible part of the drawing, mm, before scaling to pixels.
 pub(super) struct Frame {
     low: Vector,
     high: Vector,
 }
 
 impl Frame {
-    /// The smallest frame around some points, with a margin in a close-up.
+    /// Creates the smallest frame around some points, with a margin in a close-up.
     pub(super) fn around(points: impl Iterator<Item = (f64, f64)>, is_close_up: bool) -> Self {
         /// Margin of a close-up, mm.
         const CLOSE_UP_MARGIN: f64 = 12.0;
-        let [low, high] = bounds(points.map(|(x, y)| Vector::new(x, y)));
+        let [low, high] = compute_bounds(points.map(|(x, y)| Vector::new(x, y)));
         let margin = if is_close_up { CLOSE_UP_MARGIN } else { 0.0 };
         Self {
             low: Vector::new(low.x - margin, low.y - margin),
@@ -58,22 +57,22 @@ impl Frame {
     }
 }
 
-/// A drawing, as its shapes in the order in which they are drawn.
+/// A drawing: its shapes in drawing order.
 #[derive(Default)]
 pub(super) struct Drawing {
-    /// The colour and the loops of each shape, and true if its edge is drawn.
+    /// Colour and loops of each shape, and true if the shape's edge is drawn.
     shapes: Vec<(String, Vec<Ring>, bool)>,
 }
 
 impl Drawing {
-    /// Draws a polygon over everything drawn so far; loops within its outer loop are holes.
+    /// Draws a polygon on top; loops within its outer loop are holes.
     pub(super) fn draw_polygon(&mut self, loops: &[Ring], colour: [f64; 3], has_edge: bool) {
         let [r, g, b] = colour.map(|channel| channel.clamp(0.0, 255.0).round() as u8);
         self.shapes
             .push((format!("#{r:02x}{g:02x}{b:02x}"), loops.to_vec(), has_edge));
     }
 
-    /// Returns the picture as SVG, `width` pixels wide, with the labels that lie within the frame.
+    /// Converts the drawing to SVG, `width` pixels wide, with the labels within the frame.
     pub(super) fn into_svg(self, width: f64, frame: &Frame, labels: &[PlacedLabel]) -> String {
         let (low, high) = (frame.low, frame.high);
         let side_margin = match labels.iter().any(|(_, label)| label.is_beside) {
@@ -84,11 +83,11 @@ impl Drawing {
         let scale = drawing_width / (high.x - low.x);
         let height = ((high.y - low.y) * scale + 2.0 * MARGIN).ceil();
         let left_offset = MARGIN + side_margin;
-        // Each colour is named once, and points are given in whole tenths of a pixel from the previous one. That makes
+        // Each colour occurs once, and points are whole tenths of a pixel relative to the previous point. This makes
         // the text a quarter as long.
         let mut styles: Vec<(&str, bool)> = Vec::new();
         let mut paths = String::new();
-        let tenths_of = |x: f64, offset: f64| (10.0 * (x * scale + offset)).round() as i64;
+        let to_tenths = |x: f64, offset: f64| (10.0 * (x * scale + offset)).round() as i64;
         for (colour, loops, has_edge) in &self.shapes {
             let style = (colour.as_str(), *has_edge);
             let style_index = styles.iter().position(|listed| *listed == style);
@@ -102,11 +101,11 @@ impl Drawing {
                 let mut start = None;
                 for (x, y) in ring {
                     let point = (
-                        tenths_of(x - low.x, left_offset),
-                        tenths_of(y - low.y, MARGIN),
+                        to_tenths(x - low.x, left_offset),
+                        to_tenths(y - low.y, MARGIN),
                     );
                     let (dx, dy) = (point.0 - position.0, point.1 - position.1);
-                    // After the first point each pair is a relative line, and a minus sign separates numbers.
+                    // After the first point, each pair is a relative line, and a minus sign separates numbers.
                     let _ = match (start, dx < 0) {
                         (None, _) => write!(data, "m{dx}"),
                         (Some(_), _) if (dx, dy) == (0, 0) => continue,
@@ -127,31 +126,25 @@ impl Drawing {
              width=\"{width}\" height=\"{height}\">\n<style>\n"
         );
         for (class, (colour, has_edge)) in styles.into_iter().enumerate() {
-            // Without an edge, a thin stroke in the polygon's own colour closes the seams to its neighbours.
+            // Without an edge, a thin stroke in the polygon's own colour closes the seams between neighbours.
             let (stroke, stroke_width) = if has_edge { ("#333", 5) } else { (colour, 4) };
             let style = format!("fill:{colour};stroke:{stroke};stroke-width:{stroke_width}");
             let _ = writeln!(text, ".c{class}{{{style}}}");
         }
-        let _ = write!(
+        let _ = writeln!(
             text,
             "</style>\n<rect width=\"{width}\" height=\"{height}\" fill=\"white\"/>\n\
-             <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}"
+             <g transform=\"scale(.1)\" fill-rule=\"evenodd\" stroke-linejoin=\"round\">\n{paths}</g>"
         );
-        text.push_str("</g>\n");
-        let page_point_of = |(x, y): (f64, f64)| {
-            (
-                (x - low.x) * scale + left_offset,
-                (y - low.y) * scale + MARGIN,
-            )
-        };
-        let shown_labels: Vec<_> = labels
-            .iter()
-            .filter(|(point, _)| frame.contains(*point))
-            .collect();
-        for (point, Label { text: name, .. }) in
-            shown_labels.iter().filter(|(_, label)| !label.is_beside)
-        {
-            let (x, y) = page_point_of(*point);
+        // The labels within the frame, each with its point on the page.
+        let shown_labels = labels.iter().filter(|(point, _)| frame.contains(*point));
+        let page_labels = shown_labels.map(|((x, y), label)| {
+            let page_x = (x - low.x) * scale + left_offset;
+            ((page_x, (y - low.y) * scale + MARGIN), *label)
+        });
+        let (beside_labels, point_labels): (Vec<PlacedLabel>, Vec<PlacedLabel>) =
+            page_labels.partition(|(_, label)| label.is_beside);
+        for ((x, y), Label { text: name, .. }) in point_labels {
             let _ = writeln!(
                 text,
                 "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" {FONT_ATTRIBUTES} font-weight=\"bold\" \
@@ -159,11 +152,9 @@ impl Drawing {
             );
         }
         for is_left in [true, false] {
-            let middle = width / 2.0;
-            let beside_labels = shown_labels.iter().filter(|(_, label)| label.is_beside);
-            let page_labels = beside_labels.map(|(point, label)| (page_point_of(*point), *label));
-            let mut column: Vec<_> = page_labels
-                .filter(|((x, _), _)| (*x < middle) == is_left)
+            let labels = beside_labels.iter().copied();
+            let mut column: Vec<_> = labels
+                .filter(|((x, _), _)| (*x < width / 2.0) == is_left)
                 .collect();
             column.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
             write_column(&mut text, &column, is_left, width, height);
@@ -173,7 +164,7 @@ impl Drawing {
     }
 }
 
-/// Writes a column of labels on one side of the picture, each with a line to its point.
+/// Writes a column of labels on one side of the picture, each with a line to the named point.
 fn write_column(text: &mut String, labels: &[PlacedLabel], is_left: bool, width: f64, height: f64) {
     let count = labels.len() as f64;
     let mut min_y = LINE_HEIGHT;
@@ -181,21 +172,12 @@ fn write_column(text: &mut String, labels: &[PlacedLabel], is_left: bool, width:
         let max_y = height - (count - index as f64) * LINE_HEIGHT + 8.0;
         let text_y = (y + 4.0).min(max_y).max(min_y);
         min_y = text_y + LINE_HEIGHT;
-        let (text_x, line_start_limit, anchor) = match is_left {
-            true => (8.0, LABEL_MARGIN - 4.0, "start"),
-            false => (width - 8.0, width - LABEL_MARGIN + 4.0, "end"),
-        };
         // The line begins about where the text ends.
         let text_width = 6.4 * label.text.chars().count() as f64;
-        let line_start = if is_left {
-            text_x + text_width
-        } else {
-            text_x - text_width
-        };
-        let line_start = if is_left {
-            line_start.min(line_start_limit)
-        } else {
-            line_start.max(line_start_limit)
+        let line_offset = (8.0 + text_width).min(LABEL_MARGIN - 4.0);
+        let (text_x, line_start, anchor) = match is_left {
+            true => (8.0, line_offset, "start"),
+            false => (width - 8.0, width - line_offset, "end"),
         };
         let _ = writeln!(
             text,

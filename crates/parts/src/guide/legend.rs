@@ -1,5 +1,4 @@
-//! Labels in the pictures of the guide: the new bodies of a step with their counts, the
-//! servos, and the two ends of the robot.
+//! Labels in the guide's pictures: the new bodies of a step with their counts, the servos, and the robot's two ends.
 
 use std::collections::BTreeMap;
 
@@ -12,9 +11,9 @@ use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
-/// A body's name in the guide, such as `M3 x 12` for a screw, or a noun and the engraved mark for a printed part, such
-/// as `link, marked 13`. `None` for a lead, and for a printed body that is in none of `parts`.
-pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
+/// Formats a body's name for the guide, such as `M3 x 12` for a screw, or noun and engraved mark for a printed part,
+/// such as `link, marked 13`. Returns `None` for a lead, and for a printed body without a part in `parts`.
+pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),
         Kind::HexScrew(length) => format!("M3 x {length}, hexagon head"),
@@ -32,7 +31,7 @@ pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
             let part = parts
                 .iter()
                 .find(|part| part.body_names.contains(&body.name))?;
-            // The noun ends before the names of servos or legs: `link` of `link A1 A3`.
+            // The noun ends before the names of servos or legs, as in `link A1 A3`.
             let name = part.name.split(" A").next()?;
             let noun = name.split(['L', 'R']).next()?.trim();
             match part.mark.is_empty() {
@@ -43,11 +42,11 @@ pub fn display_name(body: &Body, parts: &[Part]) -> Option<String> {
     })
 }
 
-/// The names of bodies with their counts, such as `4 x M3 x 12`; printed parts first.
-pub fn counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
+/// Lists the names of bodies with their counts, such as `4 x M3 x 12`, beginning with the printed parts.
+pub fn list_counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     let mut counts: BTreeMap<(bool, usize, String), usize> = BTreeMap::new();
     for body in bodies {
-        if let Some(name) = display_name(body, parts) {
+        if let Some(name) = format_name(body, parts) {
             let is_bought = !body.kind.is_printed();
             // Shorter names come first: M3 x 8 before M3 x 12.
             *counts.entry((is_bought, name.len(), name)).or_default() += 1;
@@ -58,37 +57,35 @@ pub fn counted_names(bodies: &[&Body], parts: &[Part]) -> Vec<String> {
     texts.collect()
 }
 
-/// A label for all bodies of one name, at the body that is nearest to [`FRONT_LEFT_CORNER`].
+/// A label for all bodies with one name, at the body nearest to [`FRONT_LEFT_CORNER`].
 struct CountedLabel {
     /// Distance of the labelled body from the corner, mm.
     distance: f64,
-    /// The number of bodies of this name.
+    /// Number of bodies with this name.
     count: usize,
     /// The label, without the count.
     label: Label,
 }
 
-/// The point near which the labelled body of each name is chosen: in front of the robot on its left, chassis frame, mm.
+/// A point in front of the robot on its left, chassis frame, mm. Of the bodies with one name, the nearest is labelled.
 const FRONT_LEFT_CORNER: Vector = Vector::new(-60.0, 80.0);
 
-/// Labels for the bodies in a picture that are not grey: each name once, with its count, at the body nearest to
+/// Makes labels for the bodies in a picture that are not grey: each name once, with its count, at the body nearest to
 /// [`FRONT_LEFT_CORNER`].
-pub fn part_labels(
+pub fn make_part_labels(
     assembly: &Assembly,
     parts: &[Part],
     picture_bodies: &[PictureBody],
     pose: &Solution,
 ) -> Vec<Label> {
     let mut labels_by_name: BTreeMap<String, CountedLabel> = BTreeMap::new();
-    for PictureBody { body, lift, .. } in picture_bodies
-        .iter()
-        .filter(|picture_body| !picture_body.is_grey)
-    {
-        let (Some(name), Some(prism)) = (display_name(body, parts), body.prisms.last()) else {
+    let coloured_bodies = picture_bodies.iter().filter(|body| !body.is_grey);
+    for PictureBody { body, lift, .. } in coloured_bodies {
+        let (Some(name), Some(prism)) = (format_name(body, parts), body.prisms.last()) else {
             continue;
         };
         let position = assembly
-            .place(body.mount, pose)
+            .placement(body.mount, pose)
             .map(prism.filled_shapes[0].middle());
         let distance = (position - FRONT_LEFT_CORNER).length();
         let label = Label {
@@ -115,8 +112,8 @@ pub fn part_labels(
     labels.collect()
 }
 
-/// Labels for the four servos and for both ends of the robot.
-pub fn servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
+/// Makes labels for the four servos and for both ends of the robot.
+pub fn make_servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<Label> {
     /// Height of the links, mm.
     const LINK_HEIGHT: f64 = 18.0;
     let label_at = |position: Vector, text: &str| Label {
@@ -125,10 +122,10 @@ pub fn servo_and_end_labels(assembly: &Assembly, pose: &Solution) -> Vec<Label> 
         text: text.to_owned(),
         is_beside: false,
     };
-    // The label is on the link and not at the shaft, which the board may hide.
+    // The label is on the link, because the board may hide the shaft.
     let point_on_link = |servo: usize| {
         let link_point = Vector::new(0.7 * assembly.layout().crank_lengths[servo], 0.0);
-        assembly.place(Mount::Link(servo), pose).map(link_point)
+        assembly.placement(Mount::Link(servo), pose).map(link_point)
     };
     let servos = (0..4).map(|servo| label_at(point_on_link(servo), SERVO_NAMES[servo]));
     let end_y = assembly.layout().plate.half_size.y + 16.0;

@@ -1,6 +1,6 @@
 //! The guide to building the robot, step by step, with pictures of the model.
 //!
-//! In the order of the steps a screwdriver reaches every screw, and the electronics are tested before anything can jam.
+//! In this order a screwdriver reaches every screw, and the electronics are tested before any part can jam.
 
 pub(crate) mod corner;
 pub(crate) mod documents;
@@ -17,15 +17,15 @@ use lizard_kinematics::Solution;
 use crate::bill::Bill;
 use crate::bodies::assembly::Assembly;
 use crate::bodies::names::servo_and_leg_names;
-use crate::build_problem::BuildProblem;
+use crate::build_error::BuildError;
 use crate::files::File;
-use crate::guide::html::html;
+use crate::guide::html::markdown_to_html;
 use crate::guide::ink::Label;
-use crate::guide::picture::{PictureBody, View, picture};
+use crate::guide::picture::{PictureBody, View, draw_picture};
 use crate::layers::body::{Body, Mount};
 use crate::layers::roof::PRINT_LAYER_MM;
 use crate::order::reach::AccessPose;
-use crate::order::steps::{ExtraView, Step, TurningPlace, steps};
+use crate::order::steps::{ExtraView, Step, TurningPlace, build_steps};
 use crate::part::Part;
 
 /// Lift of new bodies in the exploded pictures, mm.
@@ -35,37 +35,41 @@ const PICTURE_WIDTH: f64 = 950.0;
 /// Index of the servo whose corner is printed first and shown in close-ups: A1.
 pub const CORNER_SERVO: usize = 0;
 
-/// The guide's introduction.
-const INTRODUCTION: &str = "No printed robot has walked yet. So print in this order, and stop where something is not as it should be:\n\n\
-1. the **coupon** (`lizard parts DIR --coupon`): the first column into which everything goes by hand is your printer's `fit`;\n\
-2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Put it together as in steps 1, 5 and 7 to 9;\n\
-3. everything.\n\n\
-Print all parts as they lie, in layers of 0.2 mm, **without supports**. A slicer may offer some under the two ends of a sleeve's \
-roof: that is a bridge of 6.4 mm, which needs none.";
+/// Introduction of the guide.
+const INTRODUCTION: &str = "No printed robot has walked yet. Therefore print in this order, and stop if something does not fit:\n\n\
+1. the **coupon** (`lizard parts DIR --coupon`): the first column into which all counterparts go by hand is your printer's `fit`;\n\
+2. one **corner** (`lizard parts DIR --corner`): a seat, a link, a leg, a strut and a foot, three hours. Assemble it as in steps 1, 5 and 7 to 9;\n\
+3. all parts.\n\n\
+Print all parts in the given orientation, in layers of 0.2 mm, **without supports**. A slicer may suggest supports under the two ends \
+of a sleeve's roof, but a bridge of 6.4 mm needs none.";
 
 /// Title of the step in which the pads are pressed onto their screws.
 const BENCH_TITLE: &str = "Legs, on the bench";
-/// Text added to the step in which the pads are pressed on, for pads with a strip.
+/// Text for pads with a strip, added to the step in which the pads are pressed on.
 const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
-Take all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
-/// Title of the step that levels the feet, after which no pad is turned again.
+Cut all four from one piece, since each lifts its foot by its thickness, and cut a hole of 4 mm over the hole for the key.";
+/// Title of the step that levels the feet, the last step that turns pads.
 const LEVEL_TITLE: &str = "Level the feet";
-/// Text added to the step that levels the feet, for pads with a grain.
+/// Text for pads with a grain, added to the step that levels the feet.
 const GRAIN_TEXT: &str = " Finally, turn each pad on its screw until its grain is right: a finger glides smoothly over it \
-from head to tail. docs/gaits.md says more about pads with a grain.";
-/// Text added to the step that levels the feet, for pads with a strip.
+from head to tail. docs/gaits.md has more about pads with a grain.";
+/// Text for pads with a strip, added to the step that levels the feet.
 const NOTCH_TEXT: &str =
     " The notches of all four pads, LF, RF, RH and LH, then point straight to the head.";
 
-/// The guide as Markdown and HTML, with pictures of the robot at `pose`, usually neutral.
+/// Makes the guide as Markdown and HTML, with pictures of the robot at `pose`, usually neutral.
 ///
 /// # Errors
-/// Returns [`BuildProblem::Blocked`] for a screw that cannot be reached.
-pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<File>, BuildProblem> {
-    let mut steps = steps(assembly.robot().drive().strut().is_some());
+/// Returns [`BuildError::Blocked`] for a screw that cannot be reached.
+pub fn make_guide(
+    assembly: &Assembly,
+    bill: &Bill,
+    pose: &Solution,
+) -> Result<Vec<File>, BuildError> {
+    let mut steps = build_steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
-    for (title, text, applies) in [
+    for (title, text, is_needed) in [
         (BENCH_TITLE, STRIP_TEXT, has_strip),
         (
             LEVEL_TITLE,
@@ -76,23 +80,23 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
     ] {
         let step = steps.iter_mut().find(|step| step.title == title);
         let step = step.expect("a step has this title");
-        if applies {
+        if is_needed {
             step.instructions += text;
         }
     }
-    let access_poses = assembly.access_poses(&steps)?;
-    let parts = assembly.parts();
+    let access_poses = assembly.find_access_poses(&steps)?;
+    let parts = assembly.collect_parts();
     let mut files = Vec::new();
     let bodies = assembly.bodies().iter();
     let picture_bodies: Vec<_> = bodies
-        .map(|body| PictureBody::at_place(body, false))
+        .map(|body| PictureBody::without_lift(body, false))
         .collect();
-    let labels = legend::servo_and_end_labels(assembly, pose);
-    let robot_picture = picture(assembly, &picture_bodies, pose, &View::default(), &labels);
+    let labels = legend::make_servo_and_end_labels(assembly, pose);
+    let robot_picture = draw_picture(assembly, &picture_bodies, pose, &View::default(), &labels);
     files.push(File::text("guide/robot.svg".to_owned(), robot_picture));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
-        drilling_text(&parts)
+        format_drilling_text(&parts)
     );
     let _ = writeln!(text, "## What is needed\n\n{bill}");
     let mut added_bodies: Vec<&Body> = Vec::new();
@@ -111,7 +115,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         let _ = writeln!(
             text,
             "Take {}.\n",
-            legend::counted_names(&new_bodies, &parts).join("; ")
+            legend::list_counted_names(&new_bodies, &parts).join("; ")
         );
         let step_poses = access_poses
             .iter()
@@ -120,13 +124,13 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             .stages
             .iter()
             .any(|stage| stage.turning_place == TurningPlace::Bench);
-        let turns =
-            step_poses.map(|access_pose| turns_in_words(assembly, access_pose, is_at_bench));
-        let turns: Vec<_> = turns.collect();
+        let turns: Vec<_> = step_poses
+            .map(|access_pose| format_turns(assembly, access_pose, is_at_bench))
+            .collect();
         if !turns.is_empty() {
             let _ = writeln!(
                 text,
-                "In the pose drawn, some screws cannot be reached. Seen from above, turn {}.\n",
+                "Some screws cannot be reached in the pose of the picture. Seen from above, turn {}.\n",
                 turns.join("; ")
             );
         }
@@ -138,7 +142,7 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
             earlier_bodies: &added_bodies,
             new_bodies: &new_bodies,
         };
-        for (view_name, caption, drawing) in scene.pictures() {
+        for (view_name, caption, drawing) in scene.draw_pictures() {
             let name = format!("step-{number}-{view_name}.svg");
             let _ = writeln!(text, "![{}, {caption}]({name})", step.title);
             files.push(File::text(format!("guide/{name}"), drawing));
@@ -146,27 +150,30 @@ pub fn guide(assembly: &Assembly, bill: &Bill, pose: &Solution) -> Result<Vec<Fi
         text.push('\n');
         added_bodies.extend(new_bodies);
     }
-    files.push(File::text("guide/guide.html".to_owned(), html(&text)));
+    files.push(File::text(
+        "guide/guide.html".to_owned(),
+        markdown_to_html(&text),
+    ));
     files.push(File::text("guide/guide.md".to_owned(), text));
     Ok(files)
 }
 
-/// The guide's text about holes that have to be drilled, and about the marks on the parts.
-fn drilling_text(parts: &[Part]) -> String {
-    let hole_text_of = |part: &Part| match part.printed_layers() {
+/// Formats the guide's text about holes to drill, and about the marks on the parts.
+fn format_drilling_text(parts: &[Part]) -> String {
+    let format_holes = |part: &Part| match part.build_printed_layers() {
         (_, 0) => None,
         (_, 1) => Some(format!("a hole in each {}", part.name)),
         (_, count) => Some(format!("{count} holes in each {}", part.name)),
     };
-    let hole_texts: Vec<_> = parts.iter().filter_map(hole_text_of).collect();
+    let hole_texts: Vec<_> = parts.iter().filter_map(format_holes).collect();
     format!(
-        "Where a pocket is on the underside in printing, the hole in its roof is closed by one layer of {PRINT_LAYER_MM} mm; open it with a drill of 3 mm, \
-         or a screw: {}. Parts that differ only as left and right have the numbers of their servos engraved: 13 is for A1 and A3.",
+        "Where a pocket is on the underside during printing, one layer of {PRINT_LAYER_MM} mm closes the hole in its roof. Open the hole with a 3 mm drill \
+         or a screw: {}. Parts that are mirror images have the numbers of their servos engraved: 13 is for A1 and A3.",
         hole_texts.join(", ")
     )
 }
 
-/// A step of the guide, the bodies that were added before it, and those that it adds.
+/// A step of the guide, the bodies of earlier steps, and the bodies that the step adds.
 struct StepScene<'a> {
     assembly: &'a Assembly,
     parts: &'a [Part],
@@ -177,8 +184,8 @@ struct StepScene<'a> {
 }
 
 impl StepScene<'_> {
-    /// The pictures of the step, each as a word for the file's name, a caption, and the drawing as SVG.
-    fn pictures(&self) -> Vec<(&'static str, &'static str, String)> {
+    /// Draws the step's pictures, each with a word for the file's name, a caption, and the drawing as SVG.
+    fn draw_pictures(&self) -> Vec<(&'static str, &'static str, String)> {
         let view = View {
             width: PICTURE_WIDTH,
             ..View::default()
@@ -222,46 +229,50 @@ impl StepScene<'_> {
         let mut pictures = vec![(
             "exploded",
             "apart",
-            self.picture(&view, EXPLODED_LIFT, true, all_bodies),
+            self.draw_picture(&view, EXPLODED_LIFT, true, all_bodies),
         )];
         pictures.extend(extra.map(|(view_name, caption, view, lift, filter)| {
             (
                 view_name,
                 caption,
-                self.picture(&view, lift * EXPLODED_LIFT, true, filter),
+                self.draw_picture(&view, lift * EXPLODED_LIFT, true, filter),
             )
         }));
-        pictures.push(("done", "done", self.picture(&view, 0.0, false, all_bodies)));
+        pictures.push((
+            "done",
+            "done",
+            self.draw_picture(&view, 0.0, false, all_bodies),
+        ));
         pictures
     }
 
-    fn picture(
+    fn draw_picture(
         &self,
         view: &View,
         lift: f64,
         has_labels: bool,
-        is_highlighted: fn(&Body) -> bool,
+        is_coloured: fn(&Body) -> bool,
     ) -> String {
         let earlier_bodies = self
             .earlier_bodies
             .iter()
-            .map(|body| PictureBody::at_place(body, true));
+            .map(|body| PictureBody::without_lift(body, true));
         let new_bodies = self.new_bodies.iter().map(|&body| PictureBody {
             body,
             lift: lift * (self.step.lift)(body),
-            is_grey: !is_highlighted(body),
+            is_grey: !is_coloured(body),
         });
         let drawn_bodies: Vec<_> = earlier_bodies.chain(new_bodies).collect();
-        let mut labels: Vec<Label> = legend::servo_and_end_labels(self.assembly, self.pose);
+        let mut labels: Vec<Label> = legend::make_servo_and_end_labels(self.assembly, self.pose);
         if has_labels {
-            labels.extend(legend::part_labels(
+            labels.extend(legend::make_part_labels(
                 self.assembly,
                 self.parts,
                 &drawn_bodies,
                 self.pose,
             ));
         }
-        picture(self.assembly, &drawn_bodies, self.pose, view, &labels)
+        draw_picture(self.assembly, &drawn_bodies, self.pose, view, &labels)
     }
 }
 
@@ -276,8 +287,8 @@ fn is_at_corner(body: &Body) -> bool {
     }
 }
 
-/// The guide's text about the links to turn so that a tool can reach some screws.
-fn turns_in_words(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
+/// Formats the guide's text about the links to turn so that a tool can reach some screws.
+fn format_turns(assembly: &Assembly, access_pose: &AccessPose, is_at_bench: bool) -> String {
     let neutral: [f64; 4] = assembly.robot().neutral_pose().into();
     let turns = (0..4).map(|servo| (servo, access_pose.pose[servo] - neutral[servo]));
     let turns = turns
@@ -315,10 +326,10 @@ mod tests {
             let text = format!("{text}\n[leg.drive]\nkind = \"{kind}\"");
             let robot = lizard_robot::Robot::parse(&text)
                 .expect("paper.toml is valid with either kind of strut");
-            let steps = steps(is_slotted);
+            let steps = build_steps(is_slotted);
             for body in Assembly::new(&robot).bodies() {
                 let count = steps.iter().filter(|step| step.adds(body)).count();
-                assert_eq!(count, 1, "{}", body.name);
+                assert_eq!(count, 1, "steps that add {}", body.name);
             }
         }
     }

@@ -1,9 +1,8 @@
 //! A perspective drawing of the robot, or of some of its bodies.
 //!
-//! Every body is a stack of flat layers, so the drawing order is known without a search. Space is cut into slices at
-//! every height at which a layer begins or ends, and the slices are drawn from the lowest to the highest. In each
-//! slice, the walls are drawn from far to near and then the tops: a wall never rises above its own slice, so it cannot
-//! hide a top of that slice.
+//! Every body is a stack of flat layers, so the drawing order needs no search. Every height at which a layer begins or
+//! ends cuts space into slices, which are drawn from the lowest to the highest. In each slice, the walls are drawn from
+//! far to near, then the tops: a wall never rises above its own slice, so it cannot hide a top of that slice.
 
 use lizard_kinematics::{Solution, Vector, sin_cos};
 
@@ -18,15 +17,15 @@ use super::ink::{Drawing, Frame, Label, Ring};
 pub struct PictureBody<'a> {
     /// The body to draw.
     pub body: &'a Body,
-    /// Lift above the body's place, mm.
+    /// Lift of the body in the picture, mm.
     pub lift: f64,
-    /// True to draw the body in grey, because the picture is about other bodies.
+    /// True to draw the body in grey, because the picture shows other bodies.
     pub is_grey: bool,
 }
 
 impl<'a> PictureBody<'a> {
-    /// A body in its place, grey or in colour.
-    pub fn at_place(body: &'a Body, is_grey: bool) -> Self {
+    /// Creates a body without a lift, grey or in colour.
+    pub fn without_lift(body: &'a Body, is_grey: bool) -> Self {
         Self {
             body,
             lift: 0.0,
@@ -38,15 +37,15 @@ impl<'a> PictureBody<'a> {
 /// A view of the robot.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// Direction of the eye in plan view, deg counter-clockwise from the robot's right.
+    /// Direction of the eye in plan view, deg, counter-clockwise from the robot's right.
     pub azimuth: f64,
     /// Elevation of the eye above the floor, deg.
     pub elevation: f64,
     /// Width of the picture, pixels.
     pub width: f64,
-    /// True to turn the robot over about its long axis and show it from below.
+    /// True to show the robot from below, turned over about its long axis.
     pub is_from_below: bool,
-    /// True to frame only the bodies that are not grey, with a margin around them.
+    /// True to frame only the bodies in colour, with a margin around them.
     pub is_close_up: bool,
 }
 
@@ -64,16 +63,15 @@ impl Default for View {
 
 /// Distance of the eye from the robot's middle, mm.
 const EYE_DISTANCE: f64 = 900.0;
-/// Largest angle of an arc that a chord spans, rad.
+/// Largest angle that a chord spans, rad.
 const MAX_CHORD_ANGLE: f64 = 0.55;
 /// Least height of a slice, mm.
 const MIN_SLICE_HEIGHT: f64 = 0.45;
-/// Radius below which a hole is not drawn, mm, since a screw fills it. A lifted body that is not grey has all its
-/// holes drawn.
+/// Radius below which a hole is not drawn, mm, since a screw fills it. All holes of a lifted body in colour are drawn.
 const HIDDEN_HOLE_RADIUS: f64 = 1.75;
 
-/// Colours of the bodies that servos A1 to A4 move, 0 to 255 for red, green and blue: three from the palette of Okabe
-/// and Ito, and a purple from Tol's.
+/// Red, green and blue (0 to 255) of the bodies that servos A1 to A4 move: three colours from the palette of Okabe and
+/// Ito, and a purple from Tol's.
 const SERVO_COLOURS: [[f64; 3]; 4] = [
     [0.0, 114.0, 178.0],
     [213.0, 94.0, 0.0],
@@ -81,11 +79,11 @@ const SERVO_COLOURS: [[f64; 3]; 4] = [
     [170.0, 68.0, 153.0],
 ];
 
-/// The viewer's eye, which looks at the robot's middle.
+/// The eye, which looks at the robot's middle.
 struct Eye {
-    /// Direction to the right in the picture, in plan view, of length one.
+    /// Unit vector to the right in the picture, in plan view.
     right: Vector,
-    /// Direction from the robot's middle to the eye, in plan view, of length one.
+    /// Unit vector from the robot's middle to the eye, in plan view.
     away: Vector,
     /// Sine of the eye's elevation.
     sin: f64,
@@ -105,7 +103,7 @@ impl Eye {
         }
     }
 
-    /// Projects a point in space onto the page: mm before the page is scaled, y down.
+    /// Projects a point in space onto the page, mm before scaling, y down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
         let (x, floor_depth) = (point.dot(self.right), point.dot(self.away));
         let eye_depth = floor_depth * self.cos + z * self.sin;
@@ -114,7 +112,7 @@ impl Eye {
         (x * scale, -height * scale)
     }
 
-    /// The position of the eye in plan view.
+    /// Position of the eye in plan view.
     fn position(&self) -> Vector {
         self.away * (EYE_DISTANCE * self.cos)
     }
@@ -135,7 +133,7 @@ struct Layer {
 }
 
 /// Draws bodies at a pose, with labels, as SVG.
-pub fn picture(
+pub fn draw_picture(
     assembly: &Assembly,
     picture_bodies: &[PictureBody],
     pose: &Solution,
@@ -143,7 +141,7 @@ pub fn picture(
     labels: &[Label],
 ) -> String {
     let eye = Eye::new(view);
-    let mut layers = layers_of(assembly, picture_bodies, pose);
+    let mut layers = collect_layers(assembly, picture_bodies, pose);
     if view.is_from_below {
         for layer in &mut layers {
             layer.turn_over();
@@ -167,18 +165,16 @@ pub fn picture(
         }
         for layer in slice_layers() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
-                let page_points_of = |layer_loop: &Vec<Vector>| {
-                    layer_loop
-                        .iter()
-                        .map(|point| eye.project(*point, high))
-                        .collect()
+                let to_ring = |layer_loop: &Vec<Vector>| -> Ring {
+                    let points = layer_loop.iter();
+                    points.map(|point| eye.project(*point, high)).collect()
                 };
-                let loops: Vec<Ring> = layer.loops.iter().map(page_points_of).collect();
+                let loops: Vec<_> = layer.loops.iter().map(to_ring).collect();
                 drawing.draw_polygon(&loops, layer.colour, true);
             }
         }
     }
-    // The frame is around all bodies, or in a close-up around those that are not grey.
+    // The frame encloses all bodies, or in a close-up the bodies in colour.
     let framed_layers = layers
         .iter()
         .filter(|layer| !view.is_close_up || !layer.is_grey);
@@ -186,14 +182,11 @@ pub fn picture(
         let loop_points = layer.loops.iter().flatten();
         loop_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
-    let page_point_of = |label: &Label| match view.is_from_below {
+    let to_page = |label: &Label| match view.is_from_below {
         true => eye.project(turn_over_point(label.position), -label.z),
         false => eye.project(label.position, label.z),
     };
-    let placed_labels: Vec<_> = labels
-        .iter()
-        .map(|label| (page_point_of(label), label))
-        .collect();
+    let placed_labels: Vec<_> = labels.iter().map(|label| (to_page(label), label)).collect();
     drawing.into_svg(
         view.width,
         &Frame::around(points, view.is_close_up),
@@ -201,13 +194,13 @@ pub fn picture(
     )
 }
 
-/// A point of the robot after it is turned over about its long axis.
+/// Turns a point over about the robot's long axis.
 fn turn_over_point(point: Vector) -> Vector {
     Vector::new(-point.x, point.y)
 }
 
-/// Returns the heights at which layers begin or end. Heights nearer to each other than [`MIN_SLICE_HEIGHT`]
-/// become one, and the layers are moved to it.
+/// Returns the heights at which layers begin or end. Merges heights that are less than [`MIN_SLICE_HEIGHT`] apart, and
+/// moves the layers to the merged height.
 fn merge_heights(layers: &mut [Layer]) -> Vec<f64> {
     let mut heights: Vec<f64> = layers.iter().flat_map(|layer| layer.z).collect();
     heights.sort_by(f64::total_cmp);
@@ -221,7 +214,11 @@ fn merge_heights(layers: &mut [Layer]) -> Vec<f64> {
     heights
 }
 
-fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solution) -> Vec<Layer> {
+fn collect_layers(
+    assembly: &Assembly,
+    picture_bodies: &[PictureBody],
+    pose: &Solution,
+) -> Vec<Layer> {
     let mut layers = Vec::new();
     for PictureBody {
         body,
@@ -229,30 +226,25 @@ fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solutio
         is_grey,
     } in picture_bodies
     {
-        let placement = assembly.place(body.mount, pose);
-        let colour = colour_of(body, *is_grey);
+        let placement = assembly.placement(body.mount, pose);
+        let colour = select_colour(body, *is_grey);
         for prism in &body.prisms {
-            let outline = Outline::of(prism);
+            let outline = Outline::from_prism(prism);
             let is_drawn = |outline_loop: &&Loop| {
                 let circle = outline_loop.circle().filter(|_| *is_grey || *lift == 0.0);
                 !circle.is_some_and(|(_, radius)| {
                     radius < HIDDEN_HOLE_RADIUS && outline_loop.area() < 0.0
                 })
             };
-            let placed_points_of = |outline_loop: &Loop| {
-                points_of(outline_loop)
-                    .into_iter()
-                    .map(|point| placement.map(point))
-                    .collect()
+            let to_placed_points = |outline_loop: &Loop| {
+                let points = divide_loop(outline_loop).into_iter();
+                points.map(|point| placement.map(point)).collect()
             };
+            let loops = outline.loops().filter(is_drawn);
             layers.push(Layer {
                 colour,
                 is_grey: *is_grey,
-                loops: outline
-                    .loops()
-                    .filter(is_drawn)
-                    .map(placed_points_of)
-                    .collect(),
+                loops: loops.map(to_placed_points).collect(),
                 z: prism.z.map(|z| z + lift),
             });
         }
@@ -260,8 +252,8 @@ fn layers_of(assembly: &Assembly, picture_bodies: &[PictureBody], pose: &Solutio
     layers
 }
 
-/// The points of a loop, with arcs divided into chords.
-fn points_of(outline_loop: &Loop) -> Vec<Vector> {
+/// Returns the points of a loop, with arcs divided into chords.
+fn divide_loop(outline_loop: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, to) in outline_loop.sides_with_end_points() {
         points.push(side.from);
@@ -271,7 +263,7 @@ fn points_of(outline_loop: &Loop) -> Vec<Vector> {
 }
 
 impl Layer {
-    /// Turns the layer over about the robot's long axis; its loops keep the material on their left.
+    /// Turns the layer over about the robot's long axis; the loops keep the material on their left.
     fn turn_over(&mut self) {
         for layer_loop in &mut self.loops {
             for point in layer_loop.iter_mut() {
@@ -283,7 +275,7 @@ impl Layer {
         self.z = [-high, -low];
     }
 
-    /// Adds those walls of a loop that the eye sees; adjacent walls of equal shade become one.
+    /// Adds the visible walls of a loop; adjacent walls of equal shade become one wall.
     fn add_walls(
         &self,
         layer_loop: &[Vector],
@@ -292,7 +284,7 @@ impl Layer {
         walls: &mut Vec<Wall>,
     ) {
         let n = layer_loop.len();
-        let shade_of = |i: usize| {
+        let compute_shade = |i: usize| {
             let (a, b) = (layer_loop[i], layer_loop[(i + 1) % n]);
             let normal = (b - a).rotated_right();
             let is_visible = normal.dot(eye.position() - a) > 0.0;
@@ -303,12 +295,12 @@ impl Layer {
         };
         let mut i = 0;
         while i < n {
-            let Some(shade) = shade_of(i) else {
+            let Some(shade) = compute_shade(i) else {
                 i += 1;
                 continue;
             };
             let mut chain = vec![layer_loop[i]];
-            while i < n && shade_of(i) == Some(shade) {
+            while i < n && compute_shade(i) == Some(shade) {
                 chain.push(layer_loop[(i + 1) % n]);
                 i += 1;
             }
@@ -326,8 +318,8 @@ impl Layer {
     }
 }
 
-/// The colour of a body.
-fn colour_of(body: &Body, is_grey: bool) -> [f64; 3] {
+/// Selects the colour of a body.
+fn select_colour(body: &Body, is_grey: bool) -> [f64; 3] {
     if is_grey {
         return [222.0, 222.0, 218.0];
     }

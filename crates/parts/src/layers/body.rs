@@ -10,42 +10,41 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: a union of shapes less some holes, between two heights. Its walls are vertical, or lean outward
-/// by the difference of its insets.
+/// A layer of a body: a union of shapes minus some holes, between two heights. The walls are vertical, or slope by the
+/// difference of the insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
-    /// Shapes whose union is filled, in the body's frame, mm.
+    /// Shapes whose union is filled, mount frame, mm.
     pub filled_shapes: Vec<Shape>,
-    /// Holes cut out of the union, in the body's frame, mm.
+    /// Holes cut out of the union, mount frame, mm.
     pub cut_shapes: Vec<Shape>,
     /// Bottom and top, mm above the chassis plate's top.
     pub z: Span,
-    /// Reductions of the filled shapes' radius at the bottom and at the top, mm; above 0 only for discs.
-    pub inset: [f64; 2],
+    /// Reductions of the filled shapes' radii at the bottom and at the top, mm; above 0 only for discs.
+    pub insets: [f64; 2],
 }
 
 impl Prism {
-    /// A layer with holes.
+    /// Creates a layer with holes.
     pub fn new(filled: impl Into<Vec<Shape>>, holes: impl Into<Vec<Shape>>, z: Span) -> Self {
-        let (filled, holes) = (filled.into(), holes.into());
         Self {
-            filled_shapes: filled,
-            cut_shapes: holes,
+            filled_shapes: filled.into(),
+            cut_shapes: holes.into(),
             z,
-            inset: [0.0; 2],
+            insets: [0.0; 2],
         }
     }
 
-    /// A layer of a cone, by its radii at the bottom and at the top, mm.
+    /// Creates a layer of a cone from the radii at the bottom and at the top, mm.
     pub(crate) fn cone(middle: Vector, radii: [f64; 2], hole: Shape, z: Span) -> Self {
         let widest = radii[0].max(radii[1]);
         Self {
-            inset: radii.map(|radius| widest - radius),
+            insets: radii.map(|radius| widest - radius),
             ..Self::new([Shape::disc(middle, widest)], [hole], z)
         }
     }
 
-    /// A layer without holes.
+    /// Creates a layer without holes.
     pub fn solid(filled: impl Into<Vec<Shape>>, z: Span) -> Self {
         Self::new(filled, [], z)
     }
@@ -55,27 +54,27 @@ impl Prism {
         self.z[1] > self.z[0] + 1e-9
     }
 
-    /// Returns the layer between two other heights; its walls keep their slope.
+    /// Returns the layer between two other heights; the walls keep their slope.
     pub fn at_heights(&self, z: Span) -> Self {
-        let [low, high] = self.inset;
+        let [low, high] = self.insets;
         let slope = (high - low) / (self.z[1] - self.z[0]);
-        let inset = match low == high {
-            true => self.inset,
+        let insets = match low == high {
+            true => self.insets,
             false => z.map(|height| low + slope * (height - self.z[0])),
         };
         Self {
             z,
-            inset,
+            insets,
             ..self.clone()
         }
     }
 
-    /// The layer with vertical walls and the cross-section at a share of its height: 0 at the bottom, 1 at the top.
-    pub(crate) fn cross_section(&self, share: f64) -> Cow<'_, Self> {
-        if self.inset == [0.0; 2] {
+    /// Returns a layer with vertical walls and the cross-section at a fraction of the height; 0 is the bottom.
+    pub(crate) fn cross_section(&self, fraction: f64) -> Cow<'_, Self> {
+        if self.insets == [0.0; 2] {
             return Cow::Borrowed(self);
         }
-        let inset = self.inset[0] + share * (self.inset[1] - self.inset[0]);
+        let inset = self.insets[0] + fraction * (self.insets[1] - self.insets[0]);
         let shrink = |shape: &Shape| Shape {
             points: shape.points.clone(),
             radius: shape.radius - inset,
@@ -85,10 +84,10 @@ impl Prism {
     }
 }
 
-/// A body's kind, which decides how it is bought or made.
+/// The kind of a body, which decides how the body is bought or made.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
-    /// A part to print, or to cut if all its layers have one outline.
+    /// A part to print, or to cut if all its layers have the same outline.
     Printed,
     /// A servo without its horn.
     Servo,
@@ -96,16 +95,15 @@ pub enum Kind {
     Horn,
     /// A screw that forms a joint or holds parts together, by its length below the head, mm.
     Screw(f64),
-    /// A screw with a hexagonal head, by its length below the head, mm; a pocket in the part keeps the head from
-    /// turning.
+    /// A screw with a hexagonal head, by its length below the head, mm; a pocket in the part holds the head.
     HexScrew(f64),
     /// A self-tapping screw that comes with a servo.
     ServoScrew,
     /// A small self-tapping screw that holds a horn in its link, by its length, mm.
     HornScrew(f64),
-    /// The wires of a servo, as far as they lie in the robot.
+    /// The wires of a servo within the robot.
     Lead,
-    /// A bought thing that has a place on the robot but no role in the mechanism.
+    /// A bought part with a place on the robot but no role in the mechanism.
     Fitting(Fitting),
     /// A lock nut.
     Nut,
@@ -122,12 +120,12 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// True for a body that is printed.
+    /// True for a printed body.
     pub fn is_printed(self) -> bool {
         matches!(self, Self::Printed | Self::Pad)
     }
 
-    /// The word for the kind in placements.json and on the page.
+    /// Word for the kind in placements.json and on the page.
     pub fn word(self) -> &'static str {
         match self {
             Self::Printed => "printed",
@@ -149,7 +147,7 @@ impl Kind {
     }
 }
 
-/// The moving frame that a body is fixed to. Servos are numbered in servo order, 0 to 3.
+/// The moving frame to which a body is fixed. Servos have numbers from 0 to 3 in servo order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mount {
     /// The chassis, which does not move.
@@ -160,14 +158,12 @@ pub enum Mount {
     Crank(usize),
     /// A leg's follower. Origin at its pivot; it turns with its servo's link.
     Follower(usize),
-    /// A leg's coupler, which carries the foot and never turns. Origin at its joint
-    /// with the crank, x towards the follower.
+    /// A leg's coupler, which carries the foot and never turns. Origin at the crank's joint, x towards the follower.
     Foot(usize),
-    /// A leg's strut, which does not turn as long as the leg does not lag behind its servo. Origin at the anchor on
-    /// the servo's link, x towards the leg.
+    /// A leg's strut, which does not turn unless the leg lags behind its servo. Origin at the anchor on the servo's
+    /// link, x towards the leg.
     Strut(usize),
-    /// The coupler of head or tail on the crank of this servo. Origin at the crank's
-    /// tip, x along the coupler.
+    /// The coupler of head or tail on this servo's crank. Origin at the crank's tip, x along the coupler.
     Coupler(usize),
     /// The rear half of a slider. Origin at the rear arm's tip, x along the slider from rear to front.
     Sleeve(Side),
@@ -176,16 +172,16 @@ pub enum Mount {
 }
 
 impl Mount {
-    /// The servos that determine the mount's position, in servo order.
+    /// Servos that determine the mount's placement, in servo order.
     pub fn servos(self) -> Vec<usize> {
         match self {
-            Self::Coupler(servo) => sort_pair(End::of_servo(servo).servos()),
+            Self::Coupler(servo) => sort_pair(End::from_servo(servo).servos()),
             Self::Sleeve(side) | Self::Rod(side) => sort_pair(side.servos()),
             _ => self.servo().into_iter().collect(),
         }
     }
 
-    /// The servo that the mount is assigned to; `None` for the chassis and the sliders.
+    /// Servo of the mount; `None` for the chassis and the sliders.
     pub fn servo(self) -> Option<usize> {
         match self {
             Self::Link(servo)
@@ -206,21 +202,21 @@ fn sort_pair([a, b]: [usize; 2]) -> Vec<usize> {
 /// A rigid body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Body {
-    /// The unique name, such as `link A1` or `strut LF`.
+    /// Unique name, such as `link A1` or `strut LF`.
     pub name: String,
-    /// The body's kind.
+    /// Kind of the body.
     pub kind: Kind,
-    /// The mount that the body moves with.
+    /// Mount that the body moves with.
     pub mount: Mount,
-    /// The layers from bottom to top, in the mount's frame.
+    /// Layers from bottom to top, mount frame.
     pub prisms: Vec<Prism>,
     /// Names of bodies on other mounts that this body touches or passes through by design, such as the parts that a
-    /// screw holds. A separate test checks each such pair.
+    /// screw holds. A separate test checks these pairs.
     pub allowed_contacts: Vec<String>,
 }
 
 impl Body {
-    /// The lowest and the highest z of the body, mm.
+    /// Lowest and highest z of the body, mm.
     pub fn z(&self) -> Span {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         for prism in &self.prisms {
@@ -230,9 +226,9 @@ impl Body {
     }
 }
 
-/// The end of the robot that a servo drives, and the servo's index at that end: 0 for left, 1 for right.
+/// The end that a servo drives, and the servo's index at that end: 0 for left, 1 for right.
 pub(crate) fn end_and_index(servo: usize) -> (End, usize) {
-    let end = End::of_servo(servo);
+    let end = End::from_servo(servo);
     (end, usize::from(end.servos()[1] == servo))
 }
 

@@ -1,8 +1,7 @@
-//! Parts that the robot carries besides its mechanism: supply, terminal strips, plugs.
+//! Parts that the robot carries in addition to its mechanism: supply, terminal strips, plugs.
 //!
-//! Shops sell such parts in many sizes, so the robot reserves a space for each one, into
-//! which common products fit. Two products are named with their sizes; a test checks that
-//! they fit.
+//! Shops sell such parts in many sizes, so the robot reserves a space for each, into which common products fit. Two
+//! products are named with their sizes; a test checks that they fit.
 
 use std::fmt;
 
@@ -10,44 +9,42 @@ use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
 use crate::price::Price;
 
-/// Width and thickness of the battery's strap, mm.
+/// Width and thickness of the battery strap, mm.
 pub const STRAP_SECTION: [f64; 2] = [16.0, 1.5];
 /// Pitch of the ways of a terminal strip of the 3 A size, mm.
 pub const STRIP_PITCH: f64 = 8.0;
 
-/// Batteries of two lithium cells that fit into the space of `[parts] battery`.
+/// Batteries with two lithium cells that fit into the space `battery` of `[parts]`.
 pub const BATTERY_EXAMPLES: [Example; 2] = [
     Example::from_shops("GL Racing 2S 450 mAh", [21.0, 56.0, 14.0]),
     Example::from_shops("JJRC H8D 2S 500 mAh", [25.0, 55.0, 12.5]),
 ];
 
-/// A product, or a kind of product if shops name no make, that fits into a reserved space.
+/// A product, or a kind of product without a common make, that fits into a reserved space.
 #[derive(Clone, Copy, Debug)]
 pub struct Example {
-    /// The maker's name or number for the product.
+    /// The maker's name or number of the product.
     pub name: &'static str,
-    /// Size to the right, forward, up, mm; includes tolerances if the data sheet gives any.
+    /// Size to the right, forward, up, mm; includes the tolerances of the data sheet, if any.
     pub size: [f64; 3],
-    /// True if the size is from a data sheet or drawing; false if from shops or users.
+    /// True if the size is from a data sheet or drawing; false if it is from shops or users.
     pub is_from_drawing: bool,
 }
 
 impl Example {
     const fn from_drawing(name: &'static str, size: [f64; 3]) -> Self {
-        let is_from_drawing = true;
         Self {
             name,
             size,
-            is_from_drawing,
+            is_from_drawing: true,
         }
     }
 
     const fn from_shops(name: &'static str, size: [f64; 3]) -> Self {
-        let is_from_drawing = false;
         Self {
             name,
             size,
-            is_from_drawing,
+            is_from_drawing: false,
         }
     }
 }
@@ -60,28 +57,28 @@ impl fmt::Display for Example {
     }
 }
 
-/// A part that is bought and mounted on the robot.
+/// A kind of bought part that is mounted on the robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fitting {
     /// A converter from the battery's voltage to 5 V for the servos.
     Converter,
     /// A capacitor that supports the servos' supply while they start.
     Capacitor,
-    /// An alarm that beeps before the battery is damaged.
+    /// An alarm that beeps at a low battery voltage.
     Alarm,
     /// A terminal strip that joins all grounds.
     GroundStrip,
-    /// Six ways of a terminal strip that join the servos' supply.
+    /// Six ways of a terminal strip that distribute the servos' supply.
     SupplyStrip,
     /// Five ways of a terminal strip for the servos' signals, the middle one for ground.
     SignalStrip,
-    /// One way of a terminal strip behind the switch: the battery's plus.
+    /// One way of a terminal strip behind the switch, for the battery's positive line.
     PlusTerminal,
     /// A resistor from a signal to ground.
     Resistor,
-    /// The switch in the battery's plus wire.
+    /// The switch in the battery's positive line.
     Switch,
-    /// The fuse in its holder, in the battery's plus wire.
+    /// The fuse in its holder, in the battery's positive line.
     Fuse,
     /// The battery's plug and its counterpart.
     BatteryPlug,
@@ -93,26 +90,26 @@ pub enum Fitting {
     RadioSpace,
 }
 
-/// The facts about a fitting.
+/// Name, mass, space and examples of a fitting.
 #[derive(Clone, Copy, Debug)]
 pub struct FittingFacts {
-    /// The name of the fitting's body; the bodies of several equal fittings are numbered.
+    /// Name of the fitting's body; the bodies of several equal fittings are numbered.
     pub name: &'static str,
-    /// The mass, g, as stated by shops.
+    /// Mass according to shops, g.
     pub grams: f64,
-    /// The space reserved for the fitting: to the right, forward, up, mm.
+    /// Size of the reserved space: to the right, forward, up, mm.
     pub size: [f64; 3],
-    /// The article to buy, without rating and size.
+    /// Article to buy, without rating and size.
     pub article: &'static str,
-    /// The fitting's position on the robot.
+    /// Position on the robot, in words.
     pub place: &'static str,
-    /// The means by which the fitting is fastened there.
+    /// Means of fastening.
     pub fastening: &'static str,
     /// Two products that fit into the space.
     pub examples: [Example; 2],
 }
 
-/// The two common makes of terminal strips with a pitch of 8 mm, cut to `ways` ways.
+/// The two common makes of terminal strips with a pitch of 8 mm, cut to a number of ways.
 const fn strip_examples(ways: f64) -> [Example; 2] {
     let length = ways * STRIP_PITCH;
     [
@@ -122,7 +119,7 @@ const fn strip_examples(ways: f64) -> [Example; 2] {
 }
 
 impl Fitting {
-    /// Every kind of fitting, roughly in the order of the current's path from the battery.
+    /// All kinds of fittings, roughly in the order of the current's path from the battery.
     pub const ALL: [Self; 14] = [
         Self::Strap,
         Self::BatteryPlug,
@@ -140,7 +137,7 @@ impl Fitting {
         Self::RadioSpace,
     ];
 
-    /// Returns the facts about this kind of fitting.
+    /// Returns name, mass, space and examples of this kind of fitting.
     pub fn facts(self) -> FittingFacts {
         match self {
             Self::Converter => FittingFacts {
@@ -305,13 +302,13 @@ impl Fitting {
         }
     }
 
-    /// The name of the fitting's body.
+    /// Name of the fitting's body.
     pub fn name(self) -> &'static str {
         self.facts().name
     }
 
-    /// The row in the shopping list; empty for a piece of another strip and for an optional part.
-    pub fn shopping_list_row(self) -> String {
+    /// Formats the row of the bill of materials; empty for a piece of another strip and for an optional part.
+    pub fn format_bill_row(self) -> String {
         let FittingFacts { article, size, .. } = self.facts();
         let [x, y, z] = size;
         match self {
@@ -321,7 +318,7 @@ impl Fitting {
                 )
             }
             // A second strip is cut into the supply, signal and plus pieces.
-            Self::SupplyStrip => Self::GroundStrip.shopping_list_row(),
+            Self::SupplyStrip => Self::GroundStrip.format_bill_row(),
             Self::SignalStrip | Self::PlusTerminal | Self::RadioSpace => String::new(),
             Self::Resistor | Self::Strap | Self::BatteryPlug | Self::BarrelPlug => {
                 article.to_owned()
@@ -337,7 +334,7 @@ impl Fitting {
         }
     }
 
-    /// The price class of the fitting's row in the bill of materials.
+    /// Price class of the row in the bill of materials.
     pub fn price(self) -> Price {
         match self {
             Self::Resistor => Price::A,

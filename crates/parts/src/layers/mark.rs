@@ -1,13 +1,12 @@
-//! Engraved marks for parts that differ only as left and right do.
+//! Engraved marks for parts that are mirror images of each other.
 //!
-//! A link for A1 and its mirror image for A2 look alike in the hand. So if a part comes in several kinds, each kind has
-//! the numbers of its servos engraved: 13 is for A1 and A3. Digits are made of straight strokes, as on a pocket
-//! calculator.
+//! A link for A1 and its mirror image for A2 look alike in the hand. If a part has several kinds, each kind therefore
+//! has the numbers of its servos engraved: 13 is for A1 and A3. Digits consist of straight strokes.
 
 use lizard_kinematics::Vector;
 
 use crate::layers::body::Prism;
-use crate::layers::outline::{Loop, Outline, bounds};
+use crate::layers::outline::{Loop, Outline, compute_bounds};
 use crate::layers::shape::Shape;
 
 /// Width and height of a digit between the middles of its strokes, mm.
@@ -20,11 +19,10 @@ const STROKE_HALF_WIDTH: f64 = 0.35;
 pub const MARK_DEPTH: f64 = 0.4;
 /// Least width of the face around a mark, mm.
 const MIN_BORDER: f64 = 0.7;
-/// Distance in x between the positions that are tried for a mark, mm; in y it is half of
-/// this.
+/// Distance in x between the positions tried for a mark, mm; twice the distance in y.
 const POSITION_STEP: f64 = 0.8;
 
-/// The strokes of a digit, each by its two end points, in a unit square.
+/// The strokes of a digit in a unit square, each as its two end points.
 fn digit_strokes(digit: char) -> &'static [[(f64, f64); 2]] {
     const TOP: [(f64, f64); 2] = [(0.0, 1.0), (1.0, 1.0)];
     const MIDDLE: [(f64, f64); 2] = [(0.0, 0.5), (1.0, 0.5)];
@@ -42,16 +40,16 @@ fn digit_strokes(digit: char) -> &'static [[(f64, f64); 2]] {
     }
 }
 
-/// The strokes of a mark whose lower left corner is at a position.
-pub fn strokes(text: &str, position: Vector) -> Vec<Shape> {
+/// Draws the strokes of a mark whose lower left corner is at `position`.
+pub fn draw_strokes(text: &str, position: Vector) -> Vec<Shape> {
     let [width, height] = DIGIT_SIZE;
     let mut strokes = Vec::new();
     for (index, digit) in text.chars().enumerate() {
         let corner = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
-        let point_of = |(x, y): (f64, f64)| corner + Vector::new(x * width, y * height);
+        let to_point = |(x, y): (f64, f64)| corner + Vector::new(x * width, y * height);
         let bars = digit_strokes(digit).iter();
         strokes.extend(
-            bars.map(|[from, to]| Shape::bar(point_of(*from), point_of(*to), STROKE_HALF_WIDTH)),
+            bars.map(|[from, to]| Shape::bar(to_point(*from), to_point(*to), STROKE_HALF_WIDTH)),
         );
     }
     strokes
@@ -63,19 +61,16 @@ pub fn mark_size(text: &str) -> [f64; 2] {
     [DIGIT_PITCH * (count - 1.0) + DIGIT_SIZE[0], DIGIT_SIZE[1]]
 }
 
-/// Layers with a mark engraved on an upper face; `None` if no face has room for it.
+/// Returns the layers with a mark engraved on an upper face; `None` if no face has room for the mark.
 pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
-    let outlines: Vec<_> = prisms.iter().map(Outline::of).collect();
+    let outlines: Vec<_> = prisms.iter().map(Outline::from_prism).collect();
     for (layer, prism) in prisms.iter().enumerate().rev() {
         let [low, high] = prism.z;
         if high - low < 2.0 * MARK_DEPTH {
             continue;
         }
-        let is_covered = |point| {
-            outlines
-                .get(layer + 1)
-                .is_some_and(|upper_outline| upper_outline.contains(point))
-        };
+        let upper_outline = outlines.get(layer + 1);
+        let is_covered = |point| upper_outline.is_some_and(|outline| outline.contains(point));
         let is_free = |point: Vector| outlines[layer].contains(point) && !is_covered(point);
         let Some(position) = find_position(&outlines[layer], text, is_free) else {
             continue;
@@ -83,22 +78,21 @@ pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
         let mut layers = prisms.to_vec();
         let lower = prism.at_heights([low, high - MARK_DEPTH]);
         let mut upper = prism.at_heights([high - MARK_DEPTH, high]);
-        upper.cut_shapes.extend(strokes(text, position));
+        upper.cut_shapes.extend(draw_strokes(text, position));
         layers.splice(layer..=layer, [lower, upper]);
         return Some(layers);
     }
     None
 }
 
-/// Lower left corner of a position in an outline that has room for a mark; `None` if there
-/// is no room.
+/// Finds the lower left corner of a free place for a mark in an outline; `None` if there is no room.
 fn find_position(
     outline: &Outline,
     text: &str,
     is_free: impl Fn(Vector) -> bool,
 ) -> Option<Vector> {
     let ends = outline.loops().flat_map(Loop::sides_with_end_points);
-    let [low, high] = bounds(ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]));
+    let [low, high] = compute_bounds(ends.flat_map(|(side, to)| [side.from, side.midpoint(to)]));
     let [width, height] = mark_size(text);
     let margin = STROKE_HALF_WIDTH + MIN_BORDER;
     let positions_between = |from: f64, to: f64, step: f64| {

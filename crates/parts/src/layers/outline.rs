@@ -1,6 +1,6 @@
 //! The outline of a layer: loops of lines and arcs.
 //!
-//! A layer is a union of shapes less some holes. The library that computes the union keeps arcs as arcs, so a round
+//! A layer is a union of shapes minus some holes. The library that computes the union keeps arcs as arcs, so a round
 //! hole stays a circle in every file.
 
 use cavalier_contours::core::math::Vector2;
@@ -13,8 +13,8 @@ use lizard_kinematics::Vector;
 use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 
-/// The smallest and the largest x and y of these points.
-pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
+/// Computes the smallest and the largest x and y of these points.
+pub(crate) fn compute_bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
     let [low, high] = [f64::INFINITY, f64::NEG_INFINITY].map(|bound| Vector::new(bound, bound));
     points.fold([low, high], |[low, high], point| {
         [
@@ -27,40 +27,35 @@ pub(crate) fn bounds(points: impl Iterator<Item = Vector>) -> [Vector; 2] {
 /// Distance below which two points count as one, mm.
 pub(crate) const SAME_POINT_MM: f64 = 1e-5;
 
-/// A closed line of straight sides and arcs, with the material on its left:
-/// counter-clockwise around a part, clockwise around a hole.
+/// A closed line of straight sides and arcs, with the material on its left: clockwise only around a hole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// The sides, each from its start point to the start point of the next side.
+    /// Sides, each from its start point to the start point of the next side.
     pub sides: Vec<Segment>,
 }
 
 /// One side of a loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segment {
-    /// The start point, mm.
+    /// Start point, mm.
     pub from: Vector,
-    /// The tangent of a quarter of the arc's angle: 0 for a straight side, 1 for a semicircle, positive for a left
-    /// turn.
+    /// Tangent of a quarter of the arc's angle: 0 for a straight side, 1 for a semicircle, positive for a left turn.
     pub bulge: f64,
 }
 
 /// The outline of a layer, as separate pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// The pieces, each as its outer loop and then the loops of its holes.
+    /// Pieces, each as its outer loop and then the loops of its holes.
     pub pieces: Vec<Vec<Loop>>,
 }
 
 impl Outline {
-    /// The outline of a layer.
-    pub fn of(prism: &Prism) -> Self {
-        let (outer_lines, gaps) = unite(prism.filled_shapes.iter().map(polyline_of));
-        let (mut cuts, _) = unite(
-            gaps.into_iter()
-                .chain(prism.cut_shapes.iter().map(polyline_of)),
-        );
-        let mut pieces = outer_lines;
+    /// Computes the outline of a layer.
+    pub fn from_prism(prism: &Prism) -> Self {
+        let (mut pieces, gaps) = unite(prism.filled_shapes.iter().map(to_polyline));
+        let cut_lines = prism.cut_shapes.iter().map(to_polyline);
+        let (mut cuts, _) = unite(gaps.into_iter().chain(cut_lines));
         // Cuts that open a piece change its outer loop; the others are holes.
         cuts.retain(|cut| {
             let mut changes_piece = false;
@@ -80,17 +75,17 @@ impl Outline {
             pieces = remaining_pieces;
             !changes_piece
         });
-        let loops_of = |piece: Polyline<f64>| {
+        let to_loops = |piece: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
                 let result_info = piece.boolean(*cut, BooleanOp::Not).result_info;
                 matches!(result_info, BooleanResultInfo::Pline2InsidePline1)
             });
-            let holes = holes.map(|hole| Loop::of(hole, false));
-            std::iter::once(Loop::of(&piece, true))
+            let holes = holes.map(|hole| Loop::from_polyline(hole, false));
+            std::iter::once(Loop::from_polyline(&piece, true))
                 .chain(holes)
                 .collect()
         };
-        let pieces = pieces.into_iter().map(loops_of).collect();
+        let pieces = pieces.into_iter().map(to_loops).collect();
         Self { pieces }
     }
 
@@ -99,12 +94,12 @@ impl Outline {
         self.pieces.iter().flatten()
     }
 
-    /// The enclosed area, mm^2.
+    /// Computes the enclosed area, mm^2.
     pub fn area(&self) -> f64 {
         self.loops().map(Loop::area).sum()
     }
 
-    /// The area times its centroid: the first moment of area, mm^3.
+    /// Computes the first moment of area (the area times its centroid), mm^3.
     pub fn first_moment(&self) -> Vector {
         self.loops().fold(Vector::default(), |sum, outline_loop| {
             sum + outline_loop.first_moment()
@@ -113,39 +108,38 @@ impl Outline {
 
     /// True if a point is in the material.
     pub fn contains(&self, point: Vector) -> bool {
-        let winding_numbers = self
-            .loops()
-            .map(|outline_loop| outline_loop.winding_number(point));
+        let loops = self.loops();
+        let winding_numbers = loops.map(|outline_loop| outline_loop.winding_number(point));
         winding_numbers.sum::<i32>() > 0
     }
 }
 
 impl Loop {
-    fn of(line: &Polyline<f64>, is_outer: bool) -> Self {
+    fn from_polyline(line: &Polyline<f64>, is_outer: bool) -> Self {
         let mut line = line
             .remove_redundant(SAME_POINT_MM)
             .unwrap_or_else(|| line.clone());
         if (line.area() > 0.0) != is_outer {
             line.invert_direction_mut();
         }
-        let segment_of = |vertex: PlineVertex<f64>| {
+        let to_segment = |vertex: PlineVertex<f64>| {
             let is_straight = vertex.bulge.abs() < 1e-9;
             Segment {
                 from: Vector::new(vertex.x, vertex.y),
                 bulge: if is_straight { 0.0 } else { vertex.bulge },
             }
         };
-        let sides = line.iter_vertexes().map(segment_of).collect();
+        let sides = line.iter_vertexes().map(to_segment).collect();
         Self { sides }
     }
 
-    /// The sides, each with its end point.
+    /// Returns the sides, each with its end point.
     pub fn sides_with_end_points(&self) -> impl Iterator<Item = (Segment, Vector)> {
         let n = self.sides.len();
         (0..n).map(move |i| (self.sides[i], self.sides[(i + 1) % n].from))
     }
 
-    /// The centre and the radius if the loop is a circle.
+    /// Returns centre and radius if the loop is a circle.
     pub fn circle(&self) -> Option<(Vector, f64)> {
         let mut arcs = self.sides_with_end_points().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
@@ -159,28 +153,27 @@ impl Loop {
         arcs.all(is_same_circle).then_some((centre, radius))
     }
 
-    /// The enclosed area, mm^2; negative around a hole.
+    /// Computes the enclosed area, mm^2; negative around a hole.
     pub fn area(&self) -> f64 {
         self.polyline().area()
     }
 
-    /// The enclosed area times its centroid, mm^3.
+    /// Computes the enclosed area times its centroid, mm^3.
     fn first_moment(&self) -> Vector {
         let mut sum = Vector::default();
         for (side, to) in self.sides_with_end_points() {
             let (a, b) = (side.from, to);
-            // A triangle from the origin, and the arc's segment beside its chord.
+            // A triangle from the origin, and the circular segment between arc and chord.
             sum = sum + (a + b) * (a.cross(b) / 6.0);
             if let Some((centre, radius)) = side.arc(to) {
                 let half_angle = 2.0 * libm::atan(side.bulge.abs());
                 let area =
                     radius * radius * (half_angle - libm::sin(half_angle) * libm::cos(half_angle));
-                // Half the chord's length; with it, the distance of the segment's centroid from the centre is 2 r^3
-                // sin^3 / (3 area).
+                // The distance of the segment's centroid from the circle's centre is 2 half_chord^3 / (3 area).
                 let half_chord = radius * libm::sin(half_angle);
                 let centroid_distance = 2.0 / 3.0 * (half_chord * half_chord * half_chord) / area;
                 let chord = (b - a) * (1.0 / (b - a).length());
-                // A left turn bulges out to the right of its chord.
+                // A left turn bulges to the right of its chord.
                 let outward_direction = chord.rotated_right() * side.bulge.signum();
                 let centroid = centre + outward_direction * centroid_distance;
                 sum = sum + centroid * (area * side.bulge.signum());
@@ -204,38 +197,38 @@ impl Loop {
 }
 
 impl Segment {
-    /// The side as a vertex of the library's polylines.
-    pub(crate) fn vertex(&self) -> PlineVertex<f64> {
+    /// Converts the side to a vertex of the library's polylines.
+    pub(crate) fn to_vertex(&self) -> PlineVertex<f64> {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
     }
 
-    /// Centre and radius of the side's arc to its end point; `None` for a straight side.
+    /// Returns centre and radius of the side's arc to its end point; `None` for a straight side.
     pub fn arc(&self, to: Vector) -> Option<(Vector, f64)> {
         (self.bulge != 0.0).then(|| {
             let end = PlineVertex::new(to.x, to.y, 0.0);
-            let (radius, centre) = seg_arc_radius_and_center(self.vertex(), end);
+            let (radius, centre) = seg_arc_radius_and_center(self.to_vertex(), end);
             (Vector::new(centre.x, centre.y), radius)
         })
     }
 
-    /// The midpoint of the side, given its end point.
+    /// Returns the midpoint of the side, given its end point.
     pub fn midpoint(&self, to: Vector) -> Vector {
-        let midpoint = seg_midpoint(self.vertex(), PlineVertex::new(to.x, to.y, 0.0));
+        let midpoint = seg_midpoint(self.to_vertex(), PlineVertex::new(to.x, to.y, 0.0));
         Vector::new(midpoint.x, midpoint.y)
     }
 
-    /// Points that divide the arc to the side's end point into as many parts as `count` returns for its radius and
-    /// its angle, rad. The start and end points are left out; a straight side has no such points.
+    /// Returns the points that divide the arc to the side's end point into equal parts. `count_parts` returns the
+    /// number of parts from the arc's radius and angle, rad. A straight side has no such points.
     pub(crate) fn division_points(
         &self,
         to: Vector,
-        count: impl Fn(f64, f64) -> u32,
+        count_parts: impl Fn(f64, f64) -> u32,
     ) -> Vec<Vector> {
         let Some((centre, radius)) = self.arc(to) else {
             return Vec::new();
         };
         let angle = 4.0 * libm::atan(self.bulge);
-        let count = count(radius, angle.abs());
+        let count = count_parts(radius, angle.abs());
         let arm = self.from - centre;
         let point_at = |i: u32| {
             let angle = angle * f64::from(i) / f64::from(count);
@@ -248,7 +241,7 @@ impl Segment {
 /// Closed polylines.
 type Polylines = Vec<Polyline<f64>>;
 
-/// The union of outlines: its outer lines, and the gaps that these enclose.
+/// Unites outlines. Returns the outer lines of the union, and the gaps that these lines enclose.
 fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines) {
     let (mut pieces, mut gaps) = (Polylines::new(), Polylines::new());
     for outline in outlines {
@@ -265,11 +258,9 @@ fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines
                 enclosed_gaps.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
             }
         }
-        let remainder_of = |gap: Polyline<f64>| gap.boolean(&outline, BooleanOp::Not).pos_plines;
-        let remaining_gaps = gaps
-            .into_iter()
-            .flat_map(remainder_of)
-            .map(|result| result.pline);
+        let cut_gap = |gap: Polyline<f64>| gap.boolean(&outline, BooleanOp::Not).pos_plines;
+        let remaining_gaps = gaps.into_iter().flat_map(cut_gap);
+        let remaining_gaps = remaining_gaps.map(|result| result.pline);
         gaps = remaining_gaps.chain(enclosed_gaps).collect();
         separate_pieces.push(union_line);
         pieces = separate_pieces;
@@ -277,8 +268,8 @@ fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines
     (pieces, gaps)
 }
 
-/// The outline of one shape, counter-clockwise.
-fn polyline_of(shape: &Shape) -> Polyline<f64> {
+/// Converts a shape to its outline, counter-clockwise.
+fn to_polyline(shape: &Shape) -> Polyline<f64> {
     let Shape { points, radius } = shape;
     let mut line = Polyline::new_closed();
     let n = points.len();
@@ -300,7 +291,7 @@ fn polyline_of(shape: &Shape) -> Polyline<f64> {
         }
         let [arc_start, arc_end] =
             [incoming, outgoing].map(|direction| corner + direction.rotated_right() * *radius);
-        // Tangent of a quarter of the turn: the half-angle formula, applied twice.
+        // The half-angle formula, applied twice, gives the tangent of a quarter of the turn.
         let (sin, cos) = (incoming.cross(outgoing), incoming.dot(outgoing));
         let bulge = if n == 2 {
             1.0
@@ -314,10 +305,10 @@ fn polyline_of(shape: &Shape) -> Polyline<f64> {
     line
 }
 
-/// The volume of a layer, mm^3.
-pub(crate) fn volume(prism: &Prism) -> f64 {
-    let area_at = |share| Outline::of(&prism.cross_section(share)).area();
-    let mean_area = match prism.inset[0] == prism.inset[1] {
+/// Computes the volume of a layer, mm^3.
+pub(crate) fn compute_volume(prism: &Prism) -> f64 {
+    let area_at = |fraction| Outline::from_prism(&prism.cross_section(fraction)).area();
+    let mean_area = match prism.insets[0] == prism.insets[1] {
         true => area_at(0.0),
         // Simpson's rule, which is exact for a cone.
         false => (area_at(0.0) + 4.0 * area_at(0.5) + area_at(1.0)) / 6.0,
@@ -335,20 +326,19 @@ mod tests {
         Vector::new(x, y)
     }
 
-    fn outline_of(filled: Vec<Shape>, cut: Vec<Shape>) -> Outline {
-        let z = [0.0, 1.0];
-        Outline::of(&Prism::new(filled, cut, z))
+    fn build_outline(filled: Vec<Shape>, cut: Vec<Shape>) -> Outline {
+        Outline::from_prism(&Prism::new(filled, cut, [0.0, 1.0]))
     }
 
     #[test]
-    fn a_bar_less_two_holes_has_the_exact_area_and_two_circles() {
+    fn a_bar_with_two_holes_has_the_exact_area_and_two_circles() {
         let (a, b) = (vector(0.0, 0.0), vector(30.0, 10.0));
-        let bar = outline_of(
+        let bar = build_outline(
             vec![Shape::bar(a, b, 4.5)],
             vec![Shape::disc(a, 1.6), Shape::disc(b, 1.6)],
         );
         let area = 1000f64.sqrt() * 9.0 + PI * (4.5 * 4.5 - 2.0 * 1.6 * 1.6);
-        assert!((bar.area() - area).abs() < 1e-9);
+        assert!((bar.area() - area).abs() < 1e-9, "{} mm^2", bar.area());
         let circles: Vec<_> = bar.loops().filter_map(Loop::circle).collect();
         assert_eq!(circles.len(), 2);
         assert!((circles[1].0 - b).length() < 1e-9 && (circles[1].1 - 1.6).abs() < 1e-9);
@@ -363,7 +353,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_of_bars_encloses_a_gap_that_a_later_shape_may_fill() {
+    fn a_ring_of_bars_encloses_a_gap_until_a_later_shape_fills_it() {
         let corners = [
             vector(0.0, 0.0),
             vector(20.0, 0.0),
@@ -373,12 +363,12 @@ mod tests {
         let bars: Vec<_> = (0..4)
             .map(|i| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64))
             .collect();
-        let ring = outline_of(bars.clone(), Vec::new());
+        let ring = build_outline(bars.clone(), Vec::new());
         assert_eq!(ring.pieces.len(), 1);
         assert_eq!(ring.pieces[0].len(), 2);
         assert!(!ring.contains(vector(10.0, 10.0)) && ring.contains(vector(10.0, 0.0)));
         let crossing_bar = Shape::bar(vector(10.0, 0.0), vector(10.0, 20.0), 1.0);
-        let filled = outline_of([&bars[..], &[crossing_bar]].concat(), Vec::new());
+        let filled = build_outline([&bars[..], &[crossing_bar]].concat(), Vec::new());
         assert_eq!(filled.pieces[0].len(), 3);
         assert!(filled.contains(vector(10.0, 10.0)) && !filled.contains(vector(5.0, 10.0)));
     }
@@ -388,7 +378,7 @@ mod tests {
         let plate = Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 1.0);
         let slot = Shape::rectangle(vector(0.0, 0.0), vector(30.0, 2.0), 0.0);
         let hole = Shape::disc(vector(3.0, 3.0), 1.0);
-        let halves = outline_of(vec![plate], vec![slot, hole]);
+        let halves = build_outline(vec![plate], vec![slot, hole]);
         assert_eq!(halves.pieces.len(), 2);
         let area = 200.0 - (4.0 - PI) - 40.0 - PI;
         assert!((halves.area() - area).abs() < 1e-9);
@@ -396,10 +386,10 @@ mod tests {
     }
 
     #[test]
-    fn the_centroid_of_a_half_disc_is_4_r_over_3_pi_from_the_discs_centre() {
+    fn the_centroid_of_a_half_disc_is_4_r_over_3_pi_from_the_centre() {
         let disc = Shape::disc(vector(5.0, 2.0), 3.0);
         let lower_half = Shape::rectangle(vector(5.0, -8.0), vector(20.0, 20.0), 0.0);
-        let half = outline_of(vec![disc], vec![lower_half]);
+        let half = build_outline(vec![disc], vec![lower_half]);
         let centroid = half.first_moment() * (1.0 / half.area());
         assert!((centroid - vector(5.0, 2.0 + 4.0 * 3.0 / (3.0 * PI))).length() < 1e-9);
     }

@@ -2,12 +2,12 @@
 
 use lizard_kinematics::{Real, Vector};
 
-/// The position and rotation of a body's frame in the chassis frame, or in another body's.
+/// Position and rotation of a body's frame in the chassis frame or in another body's frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement<T = f64> {
-    /// The frame's origin, mm.
+    /// Origin of the frame, mm.
     pub origin: Vector<T>,
-    /// The direction of the frame's x axis, a unit vector.
+    /// Unit vector along the frame's x axis.
     pub x_axis: Vector<T>,
 }
 
@@ -18,7 +18,7 @@ impl Placement {
         x_axis: Vector::new(1.0, 0.0),
     };
 
-    /// Converts a point from the frame in which this placement is given to the body's frame, mm.
+    /// Converts a point from this placement's outer frame to the body's frame, mm.
     pub fn unmap(&self, point: Vector) -> Vector {
         let offset = point - self.origin;
         Vector::new(offset.dot(self.x_axis), self.x_axis.cross(offset))
@@ -26,12 +26,12 @@ impl Placement {
 }
 
 impl<T: Real> Placement<T> {
-    /// Converts a point from the body's frame to the frame in which this placement is given, mm.
+    /// Converts a point from the body's frame to this placement's outer frame, mm.
     pub fn map(&self, point: Vector) -> Vector<T> {
         self.origin + self.x_axis * point.x + self.x_axis.rotated_left() * point.y
     }
 
-    /// Converts this placement to another body's frame. Both are given in the chassis frame.
+    /// Converts this placement from the chassis frame to another body's frame, itself placed in the chassis frame.
     pub fn relative_to(&self, frame: &Self) -> Self {
         let to_frame = |v: Vector<T>| Vector::new(v.dot(frame.x_axis), frame.x_axis.cross(v));
         Self {

@@ -1,9 +1,8 @@
 //! Roofs that a printer can make without supports.
 //!
-//! A sunk pocket on the underside of a part, as it is printed, has a roof with a hole in
-//! the middle. A printer can span the pocket with straight lines from edge to edge, but
-//! cannot draw a ring in mid-air. So one layer closes the hole, and is drilled through
-//! after printing.
+//! A pocket on the underside of a part has a roof with a hole in the middle. A printer can span the pocket with
+//! straight lines from edge to edge, but cannot draw a ring in mid-air. One layer therefore closes the hole; it is
+//! drilled through after printing.
 
 use lizard_kinematics::Vector;
 
@@ -11,32 +10,29 @@ use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline};
 use crate::layers::shape::Shape;
 
-/// Height of a printer's layer, mm. A hole is closed by one layer.
+/// Height of a printed layer, mm; one layer closes a hole.
 pub const PRINT_LAYER_MM: f64 = 0.2;
 /// Distance from a hole's edge at which the layer below must support it, mm.
 const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
-/// Closes each hole that would begin in mid-air with one printed layer. Returns the layers and the number of these
-/// holes.
+/// Closes each hole that would begin in mid-air with one printed layer. Also returns the number of these holes.
 pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
     for (index, pair) in prisms.windows(2).enumerate() {
-        let outline_below = Outline::of(&pair[0]);
+        let outline_below = Outline::from_prism(&pair[0]);
         let layer_above = &prisms[index + 1];
         let low = layer_above.z[0];
-        let high = first_layer_top(low);
+        let high = compute_layer_top(low);
         for hole in &layer_above.cut_shapes {
             if !begins_in_air(hole, layer_above, &outline_below) {
                 continue;
             }
             count += 1;
-            layers = layers
-                .iter()
-                .flat_map(|layer| split_at(layer, high))
-                .collect();
+            let split_layers = layers.iter().flat_map(|layer| split_at(layer, high));
+            layers = split_layers.collect();
             for layer in &mut layers {
                 if layer.z[0] > low - SAME_HEIGHT_MM && layer.z[1] < high + SAME_HEIGHT_MM {
                     layer.cut_shapes.retain(|cut| cut != hole);
@@ -47,15 +43,14 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     (layers, count)
 }
 
-/// Top of the first printed layer above a height. A slicer samples each layer in its
-/// middle.
-fn first_layer_top(low: f64) -> f64 {
+/// Computes the top of the first printed layer above a height. A slicer samples each layer in the layer's middle.
+fn compute_layer_top(low: f64) -> f64 {
     let layer_index =
         ((low - PRINT_LAYER_MM / 2.0 + SAME_HEIGHT_MM) / PRINT_LAYER_MM).floor() + 1.0;
     PRINT_LAYER_MM * (layer_index + 1.0)
 }
 
-/// Cuts a layer in two at a height. Returns the layer alone if the height is outside it or at its bottom or top.
+/// Splits a layer in two at a height. Returns the whole layer if the height is not inside it.
 fn split_at(layer: &Prism, height: f64) -> Vec<Prism> {
     let [low, high] = layer.z;
     match height < low + SAME_HEIGHT_MM || height > high - SAME_HEIGHT_MM {
@@ -67,11 +62,11 @@ fn split_at(layer: &Prism, height: f64) -> Vec<Prism> {
     }
 }
 
-/// Returns the centres of the holes that begin in mid-air.
-pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
+/// Finds the centres of the holes that begin in mid-air.
+pub fn find_unsupported_holes(prisms: &[Prism]) -> Vec<Vector> {
     let mut centres = Vec::new();
     for pair in prisms.windows(2) {
-        let outline_below = Outline::of(&pair[0]);
+        let outline_below = Outline::from_prism(&pair[0]);
         let holes = pair[1].cut_shapes.iter();
         let unsupported_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
         centres.extend(unsupported_holes.map(Shape::middle));
@@ -79,14 +74,14 @@ pub fn unsupported_hole_centres(prisms: &[Prism]) -> Vec<Vector> {
     centres
 }
 
-/// True if there is material all around a hole, and none below that material.
+/// True if material surrounds a hole, without material below it.
 fn begins_in_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
-    let outline = Outline::of(prism);
+    let outline = Outline::from_prism(prism);
     let widened_hole = Shape {
         points: hole.points.clone(),
         radius: hole.radius + SUPPORT_DISTANCE_MM,
     };
-    let hole_surround = Outline::of(&Prism::solid([widened_hole], prism.z));
+    let hole_surround = Outline::from_prism(&Prism::solid([widened_hole], prism.z));
     let mut points = hole_surround.loops().flat_map(Loop::sides_with_end_points);
     let is_in_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
     points.all(|(side, to)| is_in_air(side.from) && is_in_air(side.midpoint(to)))
@@ -97,16 +92,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_closing_layer_contains_exactly_one_height_that_a_slicer_samples() {
+    fn a_closing_layer_contains_exactly_one_sampled_height() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
-            let high = first_layer_top(low);
+            let high = compute_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.
             let sample_heights = (0..100).map(|i| 0.1 + PRINT_LAYER_MM * f64::from(i));
             let count = sample_heights
                 .filter(|z| low + 1e-9 < *z && *z < high - 1e-9)
                 .count();
-            assert_eq!(count, 1, "{low} {high}");
-            assert!(high - low < 0.31 && high - low > 0.09, "{low} {high}");
+            assert_eq!(count, 1, "{low} to {high} mm");
+            assert!((0.09..0.31).contains(&(high - low)), "{low} to {high} mm");
         }
     }
 }

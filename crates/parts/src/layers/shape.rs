@@ -1,25 +1,24 @@
 //! Flat convex shapes with round corners, of which all parts are made.
 //!
-//! A bar is a line that has a width; a hub is a point that has one; a plate is a polygon whose corners are rounded.
-//! Each of them is the convex hull of a few points, grown by a radius. The distance between two such shapes is the
-//! distance between their polygons, less both radii, which suits a collision test. Their outlines are lines and arcs,
-//! which suits a drawing.
+//! A bar is a line with a width, a hub a point with a width, a plate a polygon with rounded corners. Each shape is the
+//! convex hull of a few points, grown by a radius. The distance between two shapes is the distance between their
+//! polygons minus both radii, which suits a collision test. The outlines are lines and arcs, which suits a drawing.
 
 use lizard_kinematics::Vector;
 
 use crate::layers::placement::Placement;
 
-/// The convex hull of some points, grown by a radius; mm.
+/// The convex hull of some points, grown by a radius.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
-    /// Corners of a convex polygon, counter-clockwise; one for a disc, two for a bar.
+    /// Corners of a convex polygon, counter-clockwise, mm; one for a disc, two for a bar.
     pub points: Vec<Vector>,
-    /// Distance by which the hull is grown, mm: 0 for sharp corners.
+    /// Distance by which the hull is grown, mm; 0 for sharp corners.
     pub radius: f64,
 }
 
 impl Shape {
-    /// A disc about a centre.
+    /// Creates a disc about a centre.
     pub fn disc(centre: Vector, radius: f64) -> Self {
         Self {
             points: vec![centre],
@@ -27,7 +26,7 @@ impl Shape {
         }
     }
 
-    /// A bar with round ends about two points.
+    /// Creates a bar with round ends about two points.
     pub fn bar(from: Vector, to: Vector, radius: f64) -> Self {
         if from == to {
             return Self::disc(from, radius);
@@ -38,14 +37,14 @@ impl Shape {
         }
     }
 
-    /// A rectangle by its middle and its size, with rounded corners.
+    /// Creates a rectangle with rounded corners from its middle and its size.
     pub fn rectangle(middle: Vector, size: Vector, radius: f64) -> Self {
         let (x, y) = (size.x / 2.0 - radius, size.y / 2.0 - radius);
         let corners = [(-x, -y), (x, -y), (x, y), (-x, y)];
         Self::hull(&corners.map(|(x, y)| middle + Vector::new(x, y)), radius)
     }
 
-    /// A nut's hexagon by its width across flats; one corner points along x.
+    /// Creates a hexagon from its width across flats; one corner points along x.
     pub fn hexagon(centre: Vector, across_flats: f64) -> Self {
         let circumradius = across_flats / f64::sqrt(3.0);
         let angles = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
@@ -53,13 +52,13 @@ impl Shape {
         Self::hull(&corners, 0.0)
     }
 
-    /// The convex hull of any points, grown by a radius.
+    /// Creates the convex hull of any points, grown by a radius.
     pub fn hull(points: &[Vector], radius: f64) -> Self {
         let mut sorted_points = points.to_vec();
         sorted_points.sort_by(|a, b| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
         sorted_points.dedup();
-        // Andrew's monotone chain: the lower half, then the upper one.
-        let half_chain_of = |points: &mut dyn Iterator<Item = &Vector>| {
+        // Andrew's monotone chain: the lower half, then the upper half.
+        let build_half_chain = |points: &mut dyn Iterator<Item = &Vector>| {
             let mut chain: Vec<Vector> = Vec::new();
             for &point in points {
                 while let [.., a, b] = chain[..]
@@ -71,8 +70,8 @@ impl Shape {
             }
             chain
         };
-        let mut chain = half_chain_of(&mut sorted_points.iter());
-        let upper = half_chain_of(&mut sorted_points.iter().rev());
+        let mut chain = build_half_chain(&mut sorted_points.iter());
+        let upper = build_half_chain(&mut sorted_points.iter().rev());
         if sorted_points.len() > 1 {
             chain.pop();
             chain.extend(&upper[..upper.len() - 1]);
@@ -83,40 +82,35 @@ impl Shape {
         }
     }
 
-    /// The mean of the polygon's corners.
+    /// Mean of the polygon's corners.
     pub fn middle(&self) -> Vector {
         let sum = self.points.iter().fold(Vector::default(), |a, b| a + *b);
         sum * (1.0 / self.points.len() as f64)
     }
 
-    /// The largest distance of any point of the shape from a given point, mm.
+    /// Largest distance between a point and any point of the shape, mm.
     pub fn max_distance_from(&self, from: Vector) -> f64 {
         let distances = self.points.iter().map(|&point| (point - from).length());
         distances.fold(0.0, f64::max) + self.radius
     }
 
-    /// The largest distance between two points of the shape, mm.
+    /// Largest distance between two points of the shape, mm.
     pub fn diameter(&self) -> f64 {
-        let distances = self
-            .points
-            .iter()
-            .map(|&point| self.max_distance_from(point));
+        let points = self.points.iter();
+        let distances = points.map(|&point| self.max_distance_from(point));
         distances.fold(0.0, f64::max) + self.radius
     }
 
-    /// The shape moved to a place.
+    /// Converts the shape from the body's frame to the placement's outer frame.
     pub fn placed(&self, placement: &Placement) -> Self {
+        let points = self.points.iter();
         Self {
-            points: self
-                .points
-                .iter()
-                .map(|&point| placement.map(point))
-                .collect(),
+            points: points.map(|&point| placement.map(point)).collect(),
             radius: self.radius,
         }
     }
 
-    /// The mirror image in the x axis.
+    /// Returns the mirror image about the x axis.
     pub fn mirrored(&self) -> Self {
         Self {
             points: self.points.iter().rev().map(|p| p.mirrored()).collect(),
@@ -124,8 +118,8 @@ impl Shape {
         }
     }
 
-    /// The distance to another shape, mm: 0 if they touch; if they overlap, minus the length of the shortest shift that
-    /// separates them. If a point moves by some length, the distance changes by no more than that length.
+    /// Computes the distance to another shape, mm: 0 if the shapes touch; if they overlap, minus the length of the
+    /// shortest shift that separates them. A shift of a point changes the distance by at most the shift's length.
     pub fn distance(&self, other: &Self) -> f64 {
         let mut distance = f64::INFINITY;
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
@@ -142,31 +136,30 @@ impl Shape {
                 .max_side_separation(other)
                 .max(other.max_side_separation(self));
             // Two discs have no sides.
-            distance = if separation.is_finite() {
-                separation.min(0.0)
-            } else {
-                0.0
+            distance = match separation.is_finite() {
+                true => separation.min(0.0),
+                false => 0.0,
             };
         }
         distance - self.radius - other.radius
     }
 
-    /// Depth of this shape within a hole, mm; negative if the shape sticks out. The result is a lower bound for every
-    /// displacement of its points by up to `max_displacement` along x and y.
+    /// Computes the depth of this shape in a hole, mm; negative if the shape protrudes. The result is a lower bound for
+    /// all displacements of the points by up to `max_displacement` along x and y.
     pub fn depth_in(&self, hole: &Self, max_displacement: Vector) -> f64 {
         let sharp_hole = Self {
             points: hole.points.clone(),
             radius: 0.0,
         };
         let clearance = hole.radius - self.radius;
-        let outside_distance_of = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp_hole);
+        let outside_distance = |point: &Vector| Self::disc(*point, 0.0).distance(&sharp_hole);
         let max_outside = self
             .points
             .iter()
-            .map(outside_distance_of)
+            .map(outside_distance)
             .fold(f64::NEG_INFINITY, f64::max);
         let general_bound = clearance - max_outside - max_displacement.length();
-        // A sharper bound for a long hole with a shape that slides along it.
+        // A sharper bound for a shape that slides along a long hole.
         let outside_distances = hole.side_lines().flat_map(|(from, normal)| {
             let normal_displacement =
                 normal.x.abs() * max_displacement.x + normal.y.abs() * max_displacement.y;
@@ -182,8 +175,8 @@ impl Shape {
         }
     }
 
-    /// The lines along the polygon's sides: a point on each line, and the line's outward unit
-    /// normal. A bar has two, one for each direction; a disc has none.
+    /// Returns the lines along the polygon's sides, each as a point and an outward unit normal. A bar has two lines,
+    /// one for each direction; a disc has none.
     fn side_lines(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         (0..if n > 1 { n } else { 0 }).map(move |i| {
@@ -195,9 +188,8 @@ impl Shape {
         })
     }
 
-    /// The separation along this polygon's side normals (separating-axis test): for each side, the other polygon's
-    /// least distance in front of the side's line, and of these the largest. Minus infinity for a disc, which has no
-    /// sides.
+    /// Computes the largest separation along this polygon's side normals (separating-axis test). A side's separation is
+    /// the other polygon's least distance in front of the side's line. Minus infinity for a disc, which has no sides.
     fn max_side_separation(&self, other: &Self) -> f64 {
         let separations = self.side_lines().map(|(from, normal)| {
             let distances = other.points.iter().map(|&point| normal.dot(point - from));
@@ -206,25 +198,23 @@ impl Shape {
         separations.fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// True if a point is in the polygon or on its edge; always false for discs and bars.
+    /// True if a point is inside the polygon or on its edge; always false for discs and bars.
     fn contains(&self, point: Vector) -> bool {
         self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
     }
 
-    /// The sides of the polygon; a bar has one, a disc has one of length 0.
+    /// Returns the sides of the polygon; a bar has one, a disc has one of length 0.
     fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
-        let sides = if n == 2 { 1 } else { n };
-        (0..sides).map(move |i| (self.points[i], self.points[(i + 1) % n]))
+        let side_count = if n == 2 { 1 } else { n };
+        (0..side_count).map(move |i| (self.points[i], self.points[(i + 1) % n]))
     }
 }
 
-/// The distance between two line segments, mm.
+/// Computes the distance between two line segments, mm.
 fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
-    let side_of = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
-    let is_crossing =
-        side_of(a, b, c) * side_of(a, b, d) < 0.0 && side_of(c, d, a) * side_of(c, d, b) < 0.0;
-    if is_crossing {
+    let turn = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
+    if turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0 {
         return 0.0;
     }
     let end_distance = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
@@ -233,15 +223,15 @@ fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
         .min(segment_point_distance(d, a, b))
 }
 
-/// The distance between a point and a line segment, mm.
+/// Computes the distance between a point and a line segment, mm.
 fn segment_point_distance(point: Vector, from: Vector, to: Vector) -> f64 {
     let line = to - from;
     let length_squared = line.length_squared();
-    let share = match length_squared > 0.0 {
+    let fraction = match length_squared > 0.0 {
         true => ((point - from).dot(line) / length_squared).clamp(0.0, 1.0),
         false => 0.0,
     };
-    (point - from - line * share).length()
+    (point - from - line * fraction).length()
 }
 
 #[cfg(test)]
@@ -253,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn the_distance_of_a_disc_from_a_bar_is_that_of_their_middles_less_their_radii() {
+    fn the_distance_between_disc_and_bar_is_that_of_their_middles_minus_both_radii() {
         let disc = Shape::disc(vector(10.0, 3.0), 2.0);
         let bar = Shape::bar(vector(0.0, 0.0), vector(20.0, 0.0), 0.5);
         assert_eq!(disc.distance(&bar), 0.5);
@@ -263,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn the_distance_is_negative_for_overlapping_shapes_and_positive_for_separate_ones() {
+    fn the_distance_is_negative_for_overlapping_shapes_and_positive_for_separate_shapes() {
         let plate = Shape::rectangle(vector(0.0, 0.0), vector(10.0, 8.0), 0.0);
         assert_eq!(plate.distance(&Shape::disc(vector(1.0, 1.0), 0.5)), -3.5);
         let crossing_bar = Shape::bar(vector(-20.0, 0.0), vector(20.0, 0.0), 1.0);
@@ -273,15 +263,20 @@ mod tests {
         assert_eq!(plate.distance(&side_plate), -1.0);
         let vertical_bar = Shape::bar(vector(3.0, -9.0), vector(3.0, 2.0), 1.0);
         assert_eq!(crossing_bar.distance(&vertical_bar), -4.0);
-        let disc_of = |radius: f64| Shape::disc(vector(1.0, 0.0), radius);
-        assert_eq!(disc_of(2.0).distance(&disc_of(3.0)), -5.0);
+        let [small_disc, disc] = [2.0, 3.0].map(|radius| Shape::disc(vector(1.0, 0.0), radius));
+        assert_eq!(small_disc.distance(&disc), -5.0);
         assert_eq!(plate.distance(&Shape::disc(vector(8.0, 0.0), 1.0)), 2.0);
         assert_eq!(plate.distance(&Shape::disc(vector(8.0, 8.0), 1.0)), 4.0);
     }
 
     #[test]
     fn the_depth_in_a_hole_is_the_least_clearance_to_its_edge() {
-        let assert_near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+        let assert_near = |value: f64, expected: f64| {
+            assert!(
+                (value - expected).abs() < 1e-12,
+                "expected {expected}, got {value}"
+            )
+        };
         let no_shift = vector(0.0, 0.0);
         let slot = Shape::bar(vector(0.0, 0.0), vector(5.0, 0.0), 1.6);
         let pin_depth_at =
@@ -292,8 +287,7 @@ mod tests {
         let bore = Shape::rectangle(vector(0.0, 0.0), vector(50.0, 6.4), 0.0);
         let rod = Shape::rectangle(vector(1.0, 0.0), vector(40.0, 6.0), 1.0);
         assert_near(rod.depth_in(&bore, no_shift), 0.2);
-        // A shift along the bore keeps the clearance until the rod gets close to the bore's end; a shift across
-        // reduces it by the whole shift.
+        // A shift along the bore keeps the clearance until the rod nears the bore's end; a shift across it does not.
         assert_near(rod.depth_in(&bore, vector(3.0, 0.1)), 0.1);
         assert_near(rod.depth_in(&bore, vector(3.9, 0.0)), 0.1);
         assert!(bore.depth_in(&rod, no_shift) < 0.0);

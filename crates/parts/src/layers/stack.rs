@@ -1,8 +1,8 @@
 //! The heights of the parts, in one table that all other modules use.
 //!
-//! z is up, 0 the top of the chassis plate. All parts are flat and all joint axes are vertical, so a mechanism without
-//! collisions is a table in which parts that overlap as seen from above have different heights. From below: the floor,
-//! the foot's leaf, the plate with the couplers of the legs beside it, the legs' cranks, the struts, the servos' links,
+//! z is up; 0 is the top of the chassis plate. All parts are flat and all joint axes are vertical, so a mechanism
+//! without collisions is a table in which parts that overlap in plan view have different heights. From below: the
+//! floor, the foot's leaf, the plate and the legs' couplers beside it, the legs' cranks, the struts, the servos' links,
 //! the couplers of head and tail with the sliders, the deck.
 
 use lizard_robot::Parts;
@@ -10,21 +10,20 @@ use lizard_robot::Parts;
 /// Heights of a layer's bottom and top, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
-/// Lengths of screws that every shop has, mm. ISO 7380 and ISO 4017 define more, but few
-/// shops stock those.
+/// Common screw lengths, mm. ISO 7380 and ISO 4017 define more, but few shops stock these.
 pub const SCREW_LENGTHS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
-/// Lengths of standoffs that shops have, mm.
+/// Common standoff lengths, mm.
 const STANDOFF_LENGTHS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
 
-/// Gap between a head or a nut and the part that turns under it, mm.
+/// Gap between a screw's head or nut and the part that turns under it, mm.
 pub const HEAD_PLAY: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
 pub const HEX_HEAD_HEIGHT: f64 = 2.0;
-/// Height of the seat under a servo's flange, mm. It lifts the horn above the strut.
+/// Height of the seat under a servo's flange, mm; the seat lifts the horn above the strut.
 const SEAT_HEIGHT: f64 = 2.6;
-/// Height of a leg's bearing on the plate, mm. The foot is six times as far away: play of 0.2 mm in the bearing
-/// moves it by 1.2 mm.
+/// Height of a leg's bearing on the plate, mm. The foot is six times as far away, so play of 0.2 mm in the bearing
+/// moves the foot by 1.2 mm.
 const BEARING_HEIGHT: f64 = 8.5;
 /// Distance from the underside of a leg's crank up to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;
@@ -42,12 +41,12 @@ const STRUT_HEAD_GAP: f64 = 0.3;
 const HORN_FLOOR_THICKNESS: f64 = 1.8;
 /// Thickness of a sleeve's floor and roof, mm.
 const SLEEVE_WALL_THICKNESS: f64 = 1.3;
-/// Thickness of the leaf that carries a foot, mm: five layers of a printer.
+/// Thickness of the leaf that carries a foot, mm: five printed layers.
 pub const LEAF_THICKNESS: f64 = 1.0;
 /// Height of a pad above the head that snaps into it, mm.
 pub const PAD_LIP_HEIGHT: f64 = 0.8;
-/// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot,
-/// and the width of the hex key that measures the gap. The screw can lower a foot by more.
+/// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot, and the width of the hex
+/// key that measures the gap. The screw can lower a foot by more.
 const MAX_FOOT_RAISE: f64 = 2.0;
 /// Thickness above the nut of a foot's screw, mm.
 const FOOT_NUT_COVER: f64 = 1.6;
@@ -59,7 +58,7 @@ pub struct Stack {
     pub floor: f64,
     /// The pads under the feet.
     pub pad: Span,
-    /// The leaf on which a foot yields; the foot's nut is sunk into it.
+    /// The leaf on which a foot yields, with the foot's sunk nut.
     pub leaf: Span,
     /// The boss on the leaf, around and above the foot's nut.
     pub foot_boss: Span,
@@ -89,7 +88,7 @@ pub struct Stack {
     pub rigid_strut: Span,
     /// The servos' links.
     pub link: Span,
-    /// The face under the hexagonal heads that the links hold.
+    /// The face under the hexagonal heads in the links.
     pub hex_head_face: f64,
     /// The pocket in the links' tops for the horns.
     pub horn_pocket: Span,
@@ -105,7 +104,7 @@ pub struct Stack {
     pub bore: Span,
     /// The rods of the sliders.
     pub rod: Span,
-    /// The deck. Its bottom is at the length of the standoffs.
+    /// The deck, on the standoffs.
     pub deck: Span,
     /// The bosses that carry the board.
     pub board_boss: Span,
@@ -127,7 +126,7 @@ impl Stack {
         // The anchor's screw must not touch the plate under its crank.
         let tip = crank[0] + ANCHOR_TIP_GAP;
         let anchor_head_face =
-            tip + stock_screw_length(coil + parts.spring.wire_diameter / 2.0 + HOOK_GAP - tip);
+            tip + find_screw_length(coil + parts.spring.wire_diameter / 2.0 + HOOK_GAP - tip);
         let wall_top = anchor_head_face - STRUT_HEAD_GAP;
         // The underside of the horn's arm on the shaft.
         let hub_z = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
@@ -142,7 +141,7 @@ impl Stack {
         let bore = [bore_low, bore_low + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
         let slider_top =
-            stock_screw_length(rod[1] + HEAD_PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
+            find_screw_length(rod[1] + HEAD_PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
                 + link[0]
                 + HEX_HEAD_HEIGHT;
         let deck = STANDOFF_LENGTHS
@@ -186,34 +185,34 @@ impl Stack {
         }
     }
 
-    /// Height of the top of the pocket for a leg anchor's nut, and the length of the anchor's screw, mm. The screw's
-    /// tip must not touch the plate.
-    pub fn anchor_nut(&self, parts: &Parts) -> (f64, f64) {
+    /// Height of the pocket's top for a leg anchor's nut, and the length of the anchor's screw, mm. The screw's tip
+    /// must not touch the plate.
+    pub fn anchor_nut_height_and_screw_length(&self, parts: &Parts) -> (f64, f64) {
         let tip = self.crank[0] + ANCHOR_TIP_GAP;
         (tip + parts.screw.nut_height, self.anchor_head_face - tip)
     }
 
-    /// Height of the head of a pad's screw above the floor, mm.
+    /// Height of a pad screw's head above the floor, mm.
     pub fn pad_head_height(&self, parts: &Parts) -> f64 {
         self.pad[1] - PAD_LIP_HEIGHT - parts.screw.head_height - self.floor
     }
 
-    /// True if a leg's crank is thick enough above the nut that is sunk into it.
+    /// True if a leg's crank is thick enough above its sunk nut.
     pub fn crank_holds_nut(&self, parts: &Parts) -> bool {
-        let (pocket_top, _) = self.anchor_nut(parts);
+        let (pocket_top, _) = self.anchor_nut_height_and_screw_length(parts);
         self.anchor[1] - pocket_top >= MIN_NUT_COVER
     }
 }
 
-/// The shortest screw length on sale of at least `min`, mm; `min` if all screws on sale are shorter.
-pub fn stock_screw_length(min: f64) -> f64 {
+/// Finds the shortest common screw length of at least `min`, mm; `min` if all common lengths are shorter.
+pub fn find_screw_length(min: f64) -> f64 {
     SCREW_LENGTHS
         .into_iter()
         .find(|length| *length >= min - 1e-9)
         .unwrap_or(min)
 }
 
-/// True if shops have a screw of this length, mm.
+/// True if this is a common screw length, mm.
 pub fn is_screw_sold(length: f64) -> bool {
     SCREW_LENGTHS
         .iter()

@@ -1,7 +1,7 @@
-//! Mass, mass centre and inertia of a body, from the triangles of its surface.
+//! Mass, centre of mass and inertia of a body, from the triangles of its surface.
 //!
-//! Each triangle makes a tetrahedron with the origin, whose signed volume and moments
-//! have closed forms; summed over a closed surface, they are the body's volume and moments.
+//! Each triangle forms a tetrahedron with the origin. The signed volumes and moments of these tetrahedra have closed
+//! forms; their sums over a closed surface are the body's volume and moments.
 
 use crate::files::mesh::Mesh;
 
@@ -17,8 +17,8 @@ pub(crate) struct Inertia {
 }
 
 impl Inertia {
-    /// The moments of the volume that a surface encloses, at 1 g/mm^3.
-    pub fn of(mesh: &Mesh) -> Self {
+    /// Computes the moments of the volume within a surface, at 1 g/mm^3.
+    pub fn from_mesh(mesh: &Mesh) -> Self {
         let mut sum = Self::default();
         for triangle in &mesh.triangles {
             let [a, b, c] = triangle.map(|corner| mesh.corners[corner]);
@@ -40,7 +40,7 @@ impl Inertia {
         sum
     }
 
-    /// A point mass at the origin; `mass` in g.
+    /// Creates a point mass at the origin; `mass` in g.
     pub fn point_mass(mass: f64) -> Self {
         Self {
             mass,
@@ -48,7 +48,7 @@ impl Inertia {
         }
     }
 
-    /// The moments of the body with its density multiplied by a factor.
+    /// Returns the moments at `factor` times the density.
     pub fn scaled(mut self, factor: f64) -> Self {
         self.mass *= factor;
         self.first_moments = self.first_moments.map(|component| component * factor);
@@ -58,7 +58,7 @@ impl Inertia {
         self
     }
 
-    /// The moments of the body after a translation by an offset, mm.
+    /// Returns the moments after a translation by `offset` (mm).
     pub fn translated(mut self, offset: [f64; 3]) -> Self {
         for i in 0..3 {
             for j in 0..3 {
@@ -73,7 +73,7 @@ impl Inertia {
         self
     }
 
-    /// The moments of this body and another one together.
+    /// Returns the moments of this body together with another body.
     pub fn plus(mut self, other: &Self) -> Self {
         self.mass += other.mass;
         for i in 0..3 {
@@ -85,31 +85,29 @@ impl Inertia {
         self
     }
 
-    /// The mass centre, mm.
-    pub fn mass_centre(&self) -> [f64; 3] {
+    /// Centre of mass, mm.
+    pub fn centre_of_mass(&self) -> [f64; 3] {
         self.first_moments.map(|component| component / self.mass)
     }
 
-    /// The inertia about the mass centre, g mm^2: xx, yy, zz, xy, xz, yz. The products have the sign that they have
-    /// in the inertia tensor.
-    pub fn tensor(&self) -> [f64; 6] {
-        let centre = self.mass_centre();
-        let central_moment_of =
+    /// Computes the inertia tensor about the centre of mass, g mm^2: xx, yy, zz, xy, xz, yz.
+    pub fn compute_tensor(&self) -> [f64; 6] {
+        let centre = self.centre_of_mass();
+        let central_moment =
             |i: usize, j: usize| self.second_moments[i][j] - self.mass * centre[i] * centre[j];
-        let [x, y, z] = [0, 1, 2].map(|i| central_moment_of(i, i));
+        let [x, y, z] = [0, 1, 2].map(|i| central_moment(i, i));
         let [xy, xz, yz] = [
-            central_moment_of(0, 1),
-            central_moment_of(0, 2),
-            central_moment_of(1, 2),
+            central_moment(0, 1),
+            central_moment(0, 2),
+            central_moment(1, 2),
         ];
         [y + z, x + z, x + y, -xy, -xz, -yz]
     }
 
-    /// Formats [`Self::tensor`] in kg m^2, as the model files write numbers.
-    pub fn formatted_tensor(&self) -> [String; 6] {
-        // kg m^2 per g mm^2.
+    /// Formats [`Self::compute_tensor`] in kg m^2 for the model files.
+    pub fn format_tensor(&self) -> [String; 6] {
         const KG_M2_PER_G_MM2: f64 = 1e-9;
-        self.tensor()
+        self.compute_tensor()
             .map(|component| format!("{:.6e}", component * KG_M2_PER_G_MM2))
     }
 }
@@ -123,78 +121,54 @@ mod tests {
     use crate::layers::body::Prism;
     use crate::layers::shape::Shape;
 
-    fn inertia_of(filled: Shape, z: [f64; 2]) -> Inertia {
-        let (filled, cut) = (vec![filled], Vec::new());
-        Inertia::of(&Mesh::of(&Solid::of(&[Prism::new(filled, cut, z)])))
+    fn compute_inertia(filled: Shape, z: [f64; 2]) -> Inertia {
+        Inertia::from_mesh(&Mesh::from_solid(&Solid::from_prisms(&[Prism::solid(
+            [filled],
+            z,
+        )])))
+    }
+
+    #[track_caller]
+    fn assert_all_near<const N: usize>(actual: [f64; N], expected: [f64; N], max_error: f64) {
+        for (actual, expected) in actual.into_iter().zip(expected) {
+            let is_near = (actual - expected).abs() < max_error;
+            assert!(is_near, "expected {expected}, got {actual}");
+        }
     }
 
     #[test]
-    fn a_box_has_the_mass_centre_and_the_inertia_of_the_closed_forms() {
+    fn centre_of_mass_and_inertia_of_a_box_match_the_closed_forms() {
         let (middle, size) = (Vector::new(7.0, -3.0), Vector::new(20.0, 10.0));
-        let inertia = inertia_of(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
-        assert!((inertia.mass - 800.0).abs() < 1e-9);
-        for (component, expected) in inertia.mass_centre().into_iter().zip([7.0, -3.0, 4.0]) {
-            assert!((component - expected).abs() < 1e-9);
-        }
-        let twelfth_of_mass = 800.0 / 12.0;
-        let expected = [
-            twelfth_of_mass * 116.0,
-            twelfth_of_mass * 416.0,
-            twelfth_of_mass * 500.0,
-            0.0,
-            0.0,
-            0.0,
-        ];
-        for (component, expected) in inertia.tensor().into_iter().zip(expected) {
-            assert!(
-                (component - expected).abs() < 1e-6,
-                "{component} {expected}"
-            );
-        }
+        let inertia = compute_inertia(Shape::rectangle(middle, size, 0.0), [2.0, 6.0]);
+        assert_all_near([inertia.mass], [800.0], 1e-9);
+        assert_all_near(inertia.centre_of_mass(), [7.0, -3.0, 4.0], 1e-9);
+        let expected = [116.0, 416.0, 500.0, 0.0, 0.0, 0.0].map(|square| 800.0 / 12.0 * square);
+        assert_all_near(inertia.compute_tensor(), expected, 1e-6);
     }
 
     #[test]
-    fn translated_moments_equal_those_of_the_body_at_the_new_place() {
+    fn translated_moments_match_a_body_at_the_new_position() {
         let block_at = |x: f64, y: f64, z: f64| {
             let (middle, size) = (Vector::new(x, y), Vector::new(20.0, 10.0));
-            inertia_of(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
+            compute_inertia(Shape::rectangle(middle, size, 0.0), [z, z + 4.0])
         };
-        let (translated_block, expected_block) = (
-            block_at(7.0, -3.0, 2.0).translated([-9.0, 5.0, 1.0]),
-            block_at(-2.0, 2.0, 3.0),
-        );
-        let pairs = translated_block
-            .mass_centre()
-            .into_iter()
-            .zip(expected_block.mass_centre());
-        let pairs = pairs.chain(
-            translated_block
-                .tensor()
-                .into_iter()
-                .zip(expected_block.tensor()),
-        );
-        for (component, expected) in pairs {
-            assert!(
-                (component - expected).abs() < 1e-6,
-                "{component} {expected}"
-            );
-        }
+        let translated = block_at(7.0, -3.0, 2.0).translated([-9.0, 5.0, 1.0]);
+        let expected = block_at(-2.0, 2.0, 3.0);
+        assert_all_near(translated.centre_of_mass(), expected.centre_of_mass(), 1e-6);
+        assert_all_near(translated.compute_tensor(), expected.compute_tensor(), 1e-6);
     }
 
     #[test]
-    fn two_halves_at_half_the_density_have_half_the_inertia_of_the_whole() {
-        let block_of = |x: f64, length: f64| {
+    fn two_halves_at_half_density_have_half_the_inertia_of_the_whole() {
+        let build_block = |x: f64, length: f64| {
             let (middle, size) = (Vector::new(x, 1.0), Vector::new(length, 8.0));
-            inertia_of(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
+            compute_inertia(Shape::rectangle(middle, size, 0.0), [0.0, 3.0])
         };
-        let whole_block = block_of(5.0, 20.0);
-        let two_halves = block_of(0.0, 10.0).plus(&block_of(10.0, 10.0)).scaled(0.5);
-        assert!((two_halves.mass - whole_block.mass / 2.0).abs() < 1e-9);
-        for (component, expected) in two_halves.tensor().into_iter().zip(whole_block.tensor()) {
-            assert!(
-                (component - expected / 2.0).abs() < 1e-6,
-                "{component} {expected}"
-            );
-        }
+        let whole = build_block(5.0, 20.0);
+        let halves = build_block(0.0, 10.0).plus(&build_block(10.0, 10.0));
+        let halves = halves.scaled(0.5);
+        assert_all_near([halves.mass], [whole.mass / 2.0], 1e-9);
+        let expected = whole.compute_tensor().map(|component| component / 2.0);
+        assert_all_near(halves.compute_tensor(), expected, 1e-6);
     }
 }

@@ -11,22 +11,22 @@ use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
 
 impl Node {
-    /// The node's name without spaces, as ROS requires.
+    /// Name of the node without spaces, as ROS requires.
     pub(super) fn identifier(self) -> String {
         self.name().replace(' ', "_")
     }
 }
 
 impl LoopJoint {
-    /// The joint's name without spaces.
+    /// Name of the joint without spaces.
     pub(super) fn identifier(&self) -> String {
         self.name.replace(' ', "_")
     }
 }
 
 impl Writer<'_> {
-    /// The name of the joint between a body and its parent: the name of the servo that drives the joint, or a name
-    /// made from the body's. In SDF no joint may have the name of a body.
+    /// Name of the joint between a body and its parent: the driving servo's name, or a name derived from the body's. In
+    /// SDF no joint may have the name of a body.
     pub(super) fn joint_name(&self, node: Node) -> String {
         match self.driving_servo(node) {
             Some(servo) => SERVO_NAMES[servo].to_owned(),
@@ -34,13 +34,13 @@ impl Writer<'_> {
         }
     }
 
-    /// The range of a body's joint, rad or m from neutral; `None` if it is unlimited.
+    /// Computes the range of a body's joint, rad or m from neutral; `None` for an unlimited joint.
     pub(super) fn joint_range(&self, node: Node) -> Option<[f64; 2]> {
         let robot = self.assembly.robot();
         let range = match (self.driving_servo(node), node) {
             (Some(servo), _) => {
-                let (smallest, largest) = robot.servos()[servo].travel();
-                [smallest, largest].map(f64::to_radians)
+                let (min, max) = robot.servos()[servo].travel();
+                [min, max].map(f64::to_radians)
             }
             (None, Node::OnMount(Mount::Link(_))) => {
                 let play = self.scene.play.to_radians();
@@ -53,22 +53,25 @@ impl Writer<'_> {
         Some(range.map(round))
     }
 
-    /// The smallest and largest change of a slider's length from neutral, mm.
+    /// Smallest and largest change of a slider's length from neutral, mm.
     fn stroke_range(&self, side: Side) -> [f64; 2] {
         let limits = self.assembly.robot().limits();
         let neutral_stroke = self.neutral.side(side).s;
         [limits.stroke_min, limits.stroke_max].map(|limit| limit - neutral_stroke)
     }
 
-    /// Damping, N m s or N s/m, and dry friction, N m or N, of a body's joint.
+    /// Damping (N m s or N s/m) and dry friction (N m or N) of a body's joint.
     pub(super) fn damping_and_friction(&self, node: Node) -> [f64; 2] {
         let motors = &self.scene.motors;
         let values = match (self.driving_servo(node), node) {
-            (Some(servo), _) => [motors.per_servo[servo].damping(), motors.joints.pin_torque]
-                .map(|value| value * MILLI),
-            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joints.slider_force],
+            (Some(servo), _) => [
+                motors.per_servo[servo].damping(),
+                motors.joint_friction.pin_torque,
+            ]
+            .map(|value| value * MILLI),
+            (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joint_friction.slider_force],
             (None, Node::Pad(_)) => [self.leaf_spring()[1], 0.0],
-            // Grease: it damps a link that moves freely within its play.
+            // Grease damps a link that moves freely within its play.
             (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],
             (None, Node::SlotPin(_)) => [0.1, 0.0],
             _ => [0.0, self.scene.pin_friction * MILLI],

@@ -1,4 +1,4 @@
-//! Joints at which the robot's closed loops are cut to make a tree of bodies. Constraints close them again.
+//! Joints at which the robot's closed loops are cut to obtain a tree of bodies. Constraints close the loops again.
 
 use lizard_kinematics::{End, Side, Vector};
 
@@ -6,19 +6,19 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
 use crate::model::node::Node;
 
-/// A cut joint: a point that two bodies share and at which a constraint closes the loop.
+/// A cut joint: a common point of two bodies at which a constraint closes a loop.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LoopJoint {
-    /// The name, such as `end head`.
+    /// Name, such as `end head`.
     pub name: String,
-    /// The two bodies that share the point.
+    /// The two bodies.
     pub bodies: [Node; 2],
-    /// The point in the first body's frame, mm.
+    /// The common point, frame of the first body, mm.
     pub point: Vector,
 }
 
-/// Returns all cut joints: those of head and tail, of the sliders, of the legs' parallelograms and of the struts.
-pub(crate) fn cut_joints(assembly: &Assembly, has_slotted_struts: bool) -> Vec<LoopJoint> {
+/// Lists the cut joints of head and tail, of the sliders, of the legs' parallelograms and of the struts.
+pub(crate) fn list_cut_joints(assembly: &Assembly, has_slotted_struts: bool) -> Vec<LoopJoint> {
     let (lizard, layout) = (assembly.robot().lizard(), assembly.layout());
     let mut joints = Vec::new();
     // Each point is on the x axis of the first body.
@@ -31,14 +31,9 @@ pub(crate) fn cut_joints(assembly: &Assembly, has_slotted_struts: bool) -> Vec<L
         });
     };
     for end in End::ALL {
-        let couplers = end
-            .servos()
-            .map(|servo| Node::OnMount(Mount::Coupler(servo)));
-        add_joint(
-            format!("end {end}"),
-            couplers,
-            lizard.end(end).left_coupler_length,
-        );
+        let bodies = end.servos().map(Mount::Coupler).map(Node::OnMount);
+        let length = lizard.end(end).left_coupler_length;
+        add_joint(format!("end {end}"), bodies, length);
     }
     for side in Side::ALL {
         let [front, _] = side.servos();
@@ -53,10 +48,8 @@ pub(crate) fn cut_joints(assembly: &Assembly, has_slotted_struts: bool) -> Vec<L
             true => Node::SlotPin(servo),
             false => Node::OnMount(Mount::Strut(servo)),
         };
-        let (bodies, length) = (
-            [strut, Node::OnMount(Mount::Crank(servo))],
-            layout.legs[servo].strut_length,
-        );
+        let bodies = [strut, Node::OnMount(Mount::Crank(servo))];
+        let length = layout.legs[servo].strut_length;
         add_joint(format!("leg anchor {leg}"), bodies, length);
     }
     joints

@@ -1,11 +1,11 @@
-//! Materials: the colours of the parts. All parts of a body that have the same material share one mesh file.
+//! Materials: the colours of the parts. All parts of a body with the same material have a common mesh file.
 
 use crate::layers::body::Kind;
 
-/// The colour of some kinds of parts, with a name.
+/// A named colour for some kinds of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Material {
-    /// The material's name, which is also part of the names of mesh files.
+    /// Name of the material, which is also part of the mesh files' names.
     pub name: &'static str,
     /// Red, green, blue and opacity, 0 to 1.
     pub colour: &'static str,
@@ -27,8 +27,8 @@ impl Material {
         Self { name, colour }
     }
 
-    /// The material of a kind of parts.
-    pub fn of(kind: Kind) -> Self {
+    /// Returns the material of a kind of parts.
+    pub fn for_kind(kind: Kind) -> Self {
         let [printed, servo, horn, board, battery, rubber, metal] = Self::ALL;
         match kind {
             Kind::Printed => printed,

@@ -1,18 +1,18 @@
 //! The robot as a model for physics engines and for ROS: MJCF, URDF and SDF.
 //!
-//! Every part of the assembly becomes part of a rigid body, with the mass and the inertia of its own volume, at its
-//! place in the assembly. Hinges and slides join the bodies as pins and sleeves do. MJCF and URDF require a tree,
-//! so each closed loop is cut at one of its joints (`loops.rs`); MJCF and SDF close it again. The files contain no
-//! gait logic. MJCF, with which an independent engine lets the robot walk, also has motors and a floor.
+//! Every part of the assembly becomes part of a rigid body, with the mass and inertia of its own volume and its
+//! placement in the assembly. Hinges and slides join the bodies as pins and sleeves do. MJCF and URDF require a tree,
+//! so each closed loop is cut at one of its joints (`loops.rs`); MJCF and SDF close the loop again. The files contain
+//! no gait logic. MJCF, with which an independent engine makes the robot walk, also has motors and a floor.
 //!
 //! # Simplifications
-//! - Only pads and floor touch each other. A separate proof shows that no two parts collide ([`crate::Proof`]).
-//! - A foot's leaf spring lets its post move straight up and down. Links do not bend.
-//! - A servo is a motor with a rotor, whose torque falls with its speed. Its gain applies the full torque at a few
-//!   degrees of error, as `[servo]` states. It has no dead band.
+//! - Only pads and floor have contact. A separate proof shows that no two parts collide ([`crate::Proof`]).
+//! - A foot's post moves straight up and down on its leaf spring. Links do not bend.
+//! - A servo is a motor with a rotor; the torque falls with the speed. The servo applies its full torque at the error
+//!   stated in `[servo]`. It has no dead band.
 //! - The friction of all pins that a servo moves acts at the servo's link.
-//! - The pads' friction is equal in all directions, as in MuJoCo. The file states the ratio of backward to forward
-//!   friction of the robot's pads, and `tools/physics/grain.py` applies it.
+//! - The pads' friction is equal in all directions, as in MuJoCo. The file has the pads' ratio of backward to forward
+//!   friction, and `tools/physics/grain.py` applies this ratio.
 
 mod floor;
 mod inertia;
@@ -32,7 +32,7 @@ mod writer;
 use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
-use crate::build_problem::BuildProblem;
+use crate::build_error::BuildError;
 use crate::files::File;
 pub use floor::{Block, Floor};
 use node::Node;
@@ -41,20 +41,19 @@ pub use scene::{Course, Pads, Scene, StrutSpring};
 use text::Xml;
 use writer::Writer;
 
-/// Returns a scene as an MJCF file for MuJoCo.
+/// Formats a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
-/// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
-pub fn mjcf(
+/// Returns [`BuildError::OpenSurface`] for a part whose layers do not form a closed surface.
+pub fn format_mjcf(
     assembly: &Assembly,
     neutral: &Solution,
     scene: &Scene,
-) -> Result<String, BuildProblem> {
-    Ok(Pieces::of(assembly, scene)?.mjcf(neutral, scene))
+) -> Result<String, BuildError> {
+    Ok(Pieces::compute(assembly, scene)?.format_mjcf(neutral, scene))
 }
 
-/// The shapes and masses of a robot. Several model files share them, because they take far longer to compute than
-/// the rest of a file.
+/// The shapes and masses of a robot. Model files share them because they take far longer to compute than the rest.
 pub struct Pieces<'a> {
     assembly: &'a Assembly,
     pieces: Vec<Piece>,
@@ -64,38 +63,36 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Returns [`BuildProblem::OpenSurface`] for a part whose layers do not form a closed surface.
-    pub fn of(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildProblem> {
+    /// Returns [`BuildError::OpenSurface`] for a part whose layers do not form a closed surface.
+    pub fn compute(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildError> {
         let pieces = compute_pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })
     }
 
-    /// Returns a scene as an MJCF file for MuJoCo. Its struts and play must equal those of the scene given to
-    /// [`Pieces::of`].
+    /// Formats a scene as an MJCF file for MuJoCo. Its struts and play must equal those in [`Pieces::compute`].
     #[must_use]
-    pub fn mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
+    pub fn format_mjcf(&self, neutral: &Solution, scene: &Scene) -> String {
         self.write_with(neutral, scene, |writer| writer.write_mjcf())
     }
 
-    /// Returns the robot of a scene as URDF; the scene must fit as in [`Pieces::mjcf`]. The file refers to meshes
-    /// ([`Pieces::meshes`]) in `folder`: a path or a URL that ends with a slash.
+    /// Formats the robot of a scene as URDF, with the condition of [`Pieces::format_mjcf`]. The file refers to meshes
+    /// ([`Pieces::make_meshes`]) in `folder`: a path or a URL that ends with a slash.
     #[must_use]
-    pub fn urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
+    pub fn format_urdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.write_with(neutral, scene, |writer| writer.write_urdf(folder))
     }
 
-    /// Returns the robot of a scene as SDF; the scene must fit as in [`Pieces::mjcf`], and `folder` is that of
-    /// [`Pieces::urdf`].
+    /// Formats the robot of a scene as SDF, with `scene` and `folder` as in [`Pieces::format_urdf`].
     #[must_use]
-    pub fn sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
+    pub fn format_sdf(&self, neutral: &Solution, scene: &Scene, folder: &str) -> String {
         self.write_with(neutral, scene, |writer| writer.write_sdf(folder))
     }
 
-    /// The meshes to which URDF and SDF refer, each with its file name in the mesh folder.
+    /// Makes the meshes for URDF and SDF, each with its file name in the mesh folder.
     #[must_use]
-    pub fn meshes(&self, scene: &Scene) -> Vec<File> {
+    pub fn make_meshes(&self, scene: &Scene) -> Vec<File> {
         let nodes = Node::all(scene.strut_spring.is_some(), scene.play > 0.0);
-        meshes::mesh_files(&self.pieces, &nodes)
+        meshes::make_mesh_files(&self.pieces, &nodes)
     }
 
     fn write_with(

@@ -1,4 +1,4 @@
-//! Rigid bodies of the model: the parent of each, and its motion on the parent.
+//! Rigid bodies of the model, each with its parent and its motion on the parent.
 //!
 //! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`loops.rs`).
 
@@ -10,13 +10,13 @@ use crate::layers::body::Mount;
 /// A rigid body of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
-    /// All bodies on one of the assembly's mounts.
+    /// All parts on one of the assembly's mounts.
     OnMount(Mount),
-    /// The horn of a servo that has play between horn and link.
+    /// The horn of a servo with play between horn and link.
     Horn(usize),
     /// The post of a foot with its pad, which moves up and down on the leaf.
     Pad(usize),
-    /// The pin in the slot of a strut, and the spring that pulls at it.
+    /// The pin in a strut's slot, and the spring that pulls at the pin.
     SlotPin(usize),
 }
 
@@ -25,7 +25,7 @@ pub(crate) enum Node {
 pub(crate) enum Freedom {
     /// Free in space.
     Free,
-    /// Turning about a vertical axis through its origin.
+    /// Turning about the vertical axis through its origin.
     TurnsAboutZ,
     /// Sliding along its own x axis.
     SlidesAlongX,
@@ -34,7 +34,7 @@ pub(crate) enum Freedom {
 }
 
 impl Node {
-    /// Every body of the robot, each after its parent.
+    /// Lists all bodies of the robot, each after its parent.
     pub fn all(has_slotted_struts: bool, has_play: bool) -> Vec<Self> {
         let mut nodes = vec![Self::OnMount(Mount::Chassis)];
         for servo in 0..4 {
@@ -61,7 +61,7 @@ impl Node {
         nodes
     }
 
-    /// The node's parent; `None` for the chassis.
+    /// Parent of the node; `None` for the chassis.
     pub fn parent(self, has_play: bool) -> Option<Self> {
         let chassis = Self::OnMount(Mount::Chassis);
         Some(match self {
@@ -80,7 +80,7 @@ impl Node {
         })
     }
 
-    /// The node's motion on its parent.
+    /// Motion of the node on its parent.
     pub fn freedom(self) -> Freedom {
         match self {
             Self::OnMount(Mount::Chassis) => Freedom::Free,
@@ -90,7 +90,7 @@ impl Node {
         }
     }
 
-    /// The mount whose frame the node uses.
+    /// Mount whose frame is the node's frame.
     pub fn frame_mount(self) -> Mount {
         match self {
             Self::OnMount(mount) => mount,
@@ -100,22 +100,22 @@ impl Node {
         }
     }
 
-    /// The node's name, which is also the name of its joint to the parent.
+    /// Name of the node, which is also the name of its joint to the parent.
     pub fn name(self) -> String {
-        let name_of = |kind: &str, name: &str| format!("{kind} {name}");
+        let format_name = |kind: &str, name: &str| format!("{kind} {name}");
         match self {
             Self::OnMount(Mount::Chassis) => "chassis".to_owned(),
-            Self::OnMount(Mount::Link(servo)) => name_of("link", SERVO_NAMES[servo]),
-            Self::OnMount(Mount::Coupler(servo)) => name_of("coupler", SERVO_NAMES[servo]),
-            Self::OnMount(Mount::Crank(servo)) => name_of("crank", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Follower(servo)) => name_of("follower", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Foot(servo)) => name_of("leg coupler", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Strut(servo)) => name_of("strut", LEG_NAMES[servo]),
-            Self::OnMount(Mount::Sleeve(side)) => name_of("sleeve", side.name()),
-            Self::OnMount(Mount::Rod(side)) => name_of("rod", side.name()),
-            Self::Horn(servo) => name_of("horn", SERVO_NAMES[servo]),
-            Self::Pad(servo) => name_of("foot", LEG_NAMES[servo]),
-            Self::SlotPin(servo) => name_of("slot", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Link(servo)) => format_name("link", SERVO_NAMES[servo]),
+            Self::OnMount(Mount::Coupler(servo)) => format_name("coupler", SERVO_NAMES[servo]),
+            Self::OnMount(Mount::Crank(servo)) => format_name("crank", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Follower(servo)) => format_name("follower", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Foot(servo)) => format_name("leg coupler", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Strut(servo)) => format_name("strut", LEG_NAMES[servo]),
+            Self::OnMount(Mount::Sleeve(side)) => format_name("sleeve", side.name()),
+            Self::OnMount(Mount::Rod(side)) => format_name("rod", side.name()),
+            Self::Horn(servo) => format_name("horn", SERVO_NAMES[servo]),
+            Self::Pad(servo) => format_name("foot", LEG_NAMES[servo]),
+            Self::SlotPin(servo) => format_name("slot", LEG_NAMES[servo]),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Shapes and masses of the parts, sorted by the rigid bodies of the model.
+//! Shapes and masses of the parts, grouped by the rigid bodies of the model.
 
 use lizard_kinematics::Vector;
 use lizard_robot::servo::LEG_NAMES;
@@ -8,66 +8,64 @@ use super::node::Node;
 use super::scene::Scene;
 use crate::bill;
 use crate::bodies::assembly::Assembly;
-use crate::build_problem::BuildProblem;
+use crate::build_error::BuildError;
 use crate::files::mesh::Mesh;
 use crate::files::solid::Solid;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::outline::Outline;
 use crate::layers::shape::Shape;
-use crate::part::volume;
+use crate::part::compute_volume;
 
-/// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to the leaf and
-/// the column.
+/// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to leaf and column.
 const POST_RADIUS: f64 = 8.0;
 
-/// The layers of one part that move with one body of the model.
+/// The layers of a part that move with one body of the model.
 pub(super) struct Piece {
-    /// The name of the part, which also names the mesh.
+    /// Name of the part, which also names the mesh.
     pub name: String,
-    /// The body of the model with which the layers move.
+    /// Body of the model with which the layers move.
     pub node: Node,
-    /// The kind of the part.
+    /// Kind of the part.
     pub kind: Kind,
-    /// The surface, mm, in the frame of `node`.
+    /// Surface, frame of `node`, mm.
     pub mesh: Mesh,
-    /// The moments of the mass about the origin of that frame.
+    /// Moments of the mass about the origin of that frame.
     pub inertia: Inertia,
 }
 
-/// Computes the pieces of all parts, with the kind of struts that the scene has.
-pub(super) fn compute_pieces(
-    assembly: &Assembly,
-    scene: &Scene,
-) -> Result<Vec<Piece>, BuildProblem> {
+/// Computes the pieces of all parts, with the scene's kind of struts.
+pub(super) fn compute_pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<Piece>, BuildError> {
     let has_slotted_struts = scene.strut_spring.is_some();
     let is_strut = |body: &&Body| matches!(body.mount, Mount::Strut(_));
     let has_spring = |bodies: &[Body]| bodies.iter().any(|body| body.kind == Kind::Spring);
-    // The scene may have another kind of struts than the assembly.
+    // The scene's kind of struts may differ from the assembly's.
     let swaps_struts = has_spring(assembly.bodies()) != has_slotted_struts;
     let all_bodies = assembly.bodies().iter();
     let kept_bodies = all_bodies.filter(|body| !(swaps_struts && is_strut(body)));
     let replacement_bodies = assembly.alternatives().iter().filter(|_| swaps_struts);
     let springs = (0..4).filter(|_| swaps_struts && has_slotted_struts);
-    let mut pieces: Vec<Piece> = springs.map(|servo| spring_piece(assembly, servo)).collect();
+    let mut pieces: Vec<Piece> = springs
+        .map(|servo| make_spring_piece(assembly, servo))
+        .collect();
     for body in kept_bodies.chain(replacement_bodies) {
         let grams = bill::body_grams(body, assembly);
-        let volume = volume(&body.prisms);
+        let volume = compute_volume(&body.prisms);
         for (node, prisms) in split_by_node(assembly, scene, body) {
             let name = match node {
                 Node::OnMount(_) => body.name.clone(),
                 node if body.kind == Kind::Printed => format!("{} of {}", node.name(), body.name),
                 _ => body.name.clone(),
             };
-            let solid = Solid::of(&prisms);
-            let mesh = Mesh::of(&solid);
+            let solid = Solid::from_prisms(&prisms);
+            let mesh = Mesh::from_solid(&solid);
             if !solid.is_closed() || !mesh.is_closed() {
-                return Err(BuildProblem::OpenSurface(name));
+                return Err(BuildError::OpenSurface(name));
             }
             pieces.push(Piece {
                 name,
                 node,
                 kind: body.kind,
-                inertia: Inertia::of(&mesh).scaled(grams / volume),
+                inertia: Inertia::from_mesh(&mesh).scaled(grams / volume),
                 mesh,
             });
         }
@@ -75,8 +73,8 @@ pub(super) fn compute_pieces(
     Ok(pieces)
 }
 
-/// The spring of a slotted strut that the assembly does not draw: a bar as wide as the coil, from screw to screw.
-fn spring_piece(assembly: &Assembly, servo: usize) -> Piece {
+/// Makes the spring of a slotted strut that is missing in the assembly: a bar as wide as the coil, from screw to screw.
+fn make_spring_piece(assembly: &Assembly, servo: usize) -> Piece {
     let spring = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
     let radius = spring.outer_diameter / 2.0;
@@ -84,35 +82,32 @@ fn spring_piece(assembly: &Assembly, servo: usize) -> Piece {
     let size = Vector::new(length - 2.0 * spring.outer_diameter, spring.outer_diameter);
     let bar = Shape::rectangle(Vector::new(length / 2.0, 0.0), size, 0.0);
     let bar = Prism::solid([bar], [middle_z - radius, middle_z + radius]);
-    let mesh = Mesh::of(&Solid::of(&[bar]));
-    let inertia_at_unit_density = Inertia::of(&mesh);
+    let mesh = Mesh::from_solid(&Solid::from_prisms(&[bar]));
+    let unit_inertia = Inertia::from_mesh(&mesh);
     Piece {
         name: format!("spring {}", LEG_NAMES[servo]),
         node: Node::SlotPin(servo),
         kind: Kind::Spring,
-        inertia: inertia_at_unit_density
-            .scaled(bill::spring_grams(&spring) / inertia_at_unit_density.mass),
+        inertia: unit_inertia.scaled(bill::spring_grams(&spring) / unit_inertia.mass),
         mesh,
     }
 }
 
-/// Sorts the layers of a body by the rigid body of the model with which they move. Only a foot's layers move with
-/// two of them.
+/// Groups the layers of a body by the rigid body of the model with which they move. Only a foot has two groups.
 fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, Vec<Prism>)> {
     let all_prisms_on = |node: Node| vec![(node, body.prisms.clone())];
     match body.mount {
         Mount::Foot(servo) => {
             let foot = assembly.layout().legs[servo].foot;
-            let is_post = |prism: &Prism| (centroid_of(prism) - foot).length() < POST_RADIUS;
+            let is_post = |prism: &Prism| (compute_centroid(prism) - foot).length() < POST_RADIUS;
             let (post_prisms, other_prisms): (Vec<_>, Vec<_>) =
                 body.prisms.iter().cloned().partition(is_post);
-            let groups = [
+            let mut groups = vec![
                 (Node::Pad(servo), post_prisms),
                 (Node::OnMount(body.mount), other_prisms),
-            ]
-            .into_iter();
-            let nonempty_groups = groups.filter(|(_, prisms)| !prisms.is_empty());
-            nonempty_groups.collect()
+            ];
+            groups.retain(|(_, prisms)| !prisms.is_empty());
+            groups
         }
         Mount::Link(servo) if body.kind == Kind::Horn && scene.play > 0.0 => {
             all_prisms_on(Node::Horn(servo))
@@ -122,8 +117,8 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
     }
 }
 
-/// The centroid of a layer, mm.
-fn centroid_of(prism: &Prism) -> Vector {
-    let outline = Outline::of(prism);
+/// Computes the centroid of a layer, mm.
+fn compute_centroid(prism: &Prism) -> Vector {
+    let outline = Outline::from_prism(prism);
     outline.first_moment() * (1.0 / outline.area())
 }

@@ -5,45 +5,43 @@ use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Motors, Robot};
 use super::floor::Floor;
 use crate::bodies::assembly::Assembly;
 
-/// Values that robot.toml leaves open or that an experiment changes.
+/// Values that are missing in robot.toml or that an experiment changes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// The model's name.
+    /// Name of the model.
     pub name: String,
     /// Excess length of each foot, mm, servo order.
     pub excess_lengths: [f64; 4],
     /// Stiffness of a foot's leaf, N/mm.
     pub leaf_stiffness: f64,
-    /// Friction of a pad that slides backward, divided by its friction when it slides forward.
+    /// Ratio of a pad's backward friction to its forward friction.
     pub friction_ratio: f64,
-    /// The spring in each slotted strut; `None` for rigid struts.
+    /// Spring in each slotted strut; `None` for rigid struts.
     pub strut_spring: Option<StrutSpring>,
-    /// Free play between a servo's horn and its link to either side, deg.
+    /// Play between a servo's horn and its link to either side, deg.
     pub play: f64,
-    /// The servos' motors, and the friction of the joints.
+    /// Motors of the servos, and friction of the joints.
     pub motors: Motors,
-    /// Dry friction of each pin, N mm, in addition to the friction in `motors`; pins at which loops
-    /// are closed have no friction.
+    /// Dry friction of each pin, N mm, in addition to the friction in `motors`; pins that close loops have no friction.
     pub pin_friction: f64,
-    /// The floor under the robot.
+    /// Floor under the robot.
     pub floor: Floor,
-    /// The shape of the robot's pads.
+    /// Shape of the pads.
     pub pads: Pads,
-    /// Factor applied to the masses of all parts that move relative to the chassis; the mass removed is added to the
-    /// chassis.
+    /// Factor of the masses of all parts that move relative to the chassis; the removed mass is added to the chassis.
     pub limb_mass_factor: f64,
     /// True if the servos drive in bursts, as analog ones do.
     pub drives_in_bursts: bool,
-    /// The servos' angles; `None` to let the robot stand.
+    /// Target angles of the servos; `None` for a standing robot.
     pub course: Option<Course>,
     /// True to include the parts' shapes; without them the file is a fiftieth as long.
     pub has_shapes: bool,
 }
 
 impl Scene {
-    /// The scene of the standing robot, with the values of its robot.toml.
+    /// Creates the scene of the standing robot according to its robot.toml.
     #[must_use]
-    pub fn of(assembly: &Assembly) -> Self {
+    pub fn for_assembly(assembly: &Assembly) -> Self {
         let (drive, ground) = (assembly.robot().drive(), assembly.robot().ground());
         let stance = ground.stance;
         Self {
@@ -52,13 +50,13 @@ impl Scene {
             leaf_stiffness: stance.stiffness,
             friction_ratio: ground.friction_ratio,
             strut_spring: drive.strut().map(|strut| StrutSpring {
-                preload: strut.force,
-                rate: strut.rate,
+                preload: strut.preload,
+                rate: strut.spring_rate,
             }),
             play: drive.play,
             motors: assembly.robot().motors(),
             pin_friction: 0.0,
-            floor: Floor::of(assembly.robot()),
+            floor: Floor::for_robot(assembly.robot()),
             pads: Pads::Domes(assembly.robot().parts().pad.radius),
             limb_mass_factor: 1.0,
             drives_in_bursts: false,
@@ -73,8 +71,7 @@ impl Scene {
 pub enum Pads {
     /// Smooth domes of this radius, mm.
     Domes(f64),
-    /// Domes of the radius of `[parts.pad]` as a printer makes them: stacked discs of this height,
-    /// mm, with sharp edges.
+    /// Printed domes with the radius of `[parts.pad]`: stacked discs of this height, mm, with sharp edges.
     Terraces(f64),
     /// Flat discs of this diameter, mm.
     Flat(f64),
@@ -83,7 +80,7 @@ pub enum Pads {
 /// A tension spring in a slotted strut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrutSpring {
-    /// Force of the spring while it holds the leg's screw at its end of the slot, N.
+    /// Tension of the spring while it holds the leg's screw at the slot's end, N.
     pub preload: f64,
     /// Rate of the spring, N/mm.
     pub rate: f64,
@@ -94,8 +91,7 @@ pub struct StrutSpring {
 pub struct Course {
     /// Name of the gait.
     pub gait: String,
-    /// The servos' targets in each frame of 20 ms: sweeps from neutral, deg,
-    /// counter-clockwise positive, servo order.
+    /// Servo targets in each frame of 20 ms: sweeps from neutral, deg, counter-clockwise positive, servo order.
     pub frames: Vec<[f64; 4]>,
     /// Start of the cycles to measure, s from the first frame.
     pub measure_start: f64,
@@ -105,24 +101,24 @@ pub struct Course {
     pub measured_cycles: u32,
 }
 
-/// Time of the motion from neutral to the gait's first pose, s.
+/// Duration of the motion from neutral to the gait's first pose, s.
 const APPROACH_DURATION_S: f64 = 0.4;
-/// Time to wait in the gait's first pose until the body is at rest, s.
+/// Duration of the pause in the gait's first pose, until the body is at rest, s.
 const SETTLE_DURATION_S: f64 = 0.3;
 
 impl Course {
-    /// Returns the course of `cycles` cycles of a gait at its own pace, after a slow approach from
-    /// neutral, with the angles of the firmware's tables. The last `measured_cycles` cycles are measured.
+    /// Creates the course of `cycles` cycles of a gait at its own pace, after a slow approach from neutral, with the
+    /// angles of the firmware's tables. The last `measured_cycles` cycles are measured.
     #[must_use]
-    pub fn of(robot: &Robot, gait: &CheckedGait, cycles: u32, measured_cycles: u32) -> Self {
+    pub fn for_gait(robot: &Robot, gait: &CheckedGait, cycles: u32, measured_cycles: u32) -> Self {
         let angles_at = |seconds: f64| {
             let phase = (gait.phase_at(seconds) * 65536.0).round() as i64;
             gait.table_angles(phase.rem_euclid(65536) as u16)
         };
-        let sweeps_of = |angles: [f64; 4]| -> [f64; 4] {
+        let to_sweeps = |angles: [f64; 4]| -> [f64; 4] {
             std::array::from_fn(|i| lizard_kinematics::wrap(angles[i] - robot.servos()[i].neutral))
         };
-        let start_sweeps = sweeps_of(angles_at(0.0));
+        let start_sweeps = to_sweeps(angles_at(0.0));
         let start_s = APPROACH_DURATION_S + SETTLE_DURATION_S;
         let period = gait.period();
         let end_s = start_s + f64::from(cycles) * period;
@@ -130,7 +126,7 @@ impl Course {
             let time_s = frame as f64 / FRAMES_PER_SECOND;
             match time_s < start_s {
                 true => start_sweeps.map(|sweep| sweep * (time_s / APPROACH_DURATION_S).min(1.0)),
-                false => sweeps_of(angles_at(time_s - start_s)),
+                false => to_sweeps(angles_at(time_s - start_s)),
             }
         };
         let last_frame = (end_s * FRAMES_PER_SECOND).ceil() as usize;

@@ -13,7 +13,7 @@ use crate::model::writer::Writer;
 const SDF_VERSION: &str = "1.7";
 
 impl Writer<'_> {
-    /// Writes the whole file. The meshes are in `folder`, a path or a URL.
+    /// Writes the whole file. `folder` is the path or URL of the meshes.
     pub(super) fn write_sdf(&mut self, folder: &str) {
         let name = escape_attribute(&self.scene.name);
         self.xml.write_declaration();
@@ -25,9 +25,9 @@ impl Writer<'_> {
         for node in self.nodes() {
             self.write_sdf_joint(node);
         }
-        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+        for loop_joint in loops::list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             let [first, second] = loop_joint.bodies.map(Node::identifier);
-            // A ball is enough: all axes are vertical already, and a hinge would constrain their direction twice.
+            // A ball joint is enough: all axes are vertical, and a hinge would constrain their direction twice.
             self.write_sdf_connection(&loop_joint.identifier(), "ball", &first, &second);
             let position = format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
@@ -39,32 +39,32 @@ impl Writer<'_> {
     fn write_sdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
-        let placement = self.place_on_parent(node);
+        let placement = self.placement_on_parent(node);
         let turn = placement.x_axis.angle().to_radians();
         match self.parent(node) {
             Some(parent) => {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
                 self.write_pose(&pose, [placement.origin.x, placement.origin.y, 0.0], turn);
             }
-            // The model's x axis points ahead, its y axis to the left.
+            // The model's x axis points forward, its y axis to the left.
             None => self.write_pose("pose", [0.0, 0.0, self.chassis_height()], turn - FRAC_PI_2),
         }
-        let inertia = self.inertia(node);
+        let inertia = self.compute_inertia(node);
         self.xml.open("inertial");
-        self.write_pose("pose", inertia.mass_centre(), 0.0);
+        self.write_pose("pose", inertia.centre_of_mass(), 0.0);
         self.xml.write_value("mass", round(inertia.mass * MILLI));
         self.xml.open("inertia");
         let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-        for (name, value) in names.into_iter().zip(inertia.formatted_tensor()) {
+        for (name, value) in names.into_iter().zip(inertia.format_tensor()) {
             self.xml.write_value(name, value);
         }
         self.xml.close();
         self.xml.close();
-        for material in meshes::materials_of(self.visible_pieces(), node) {
+        for material in meshes::list_materials(self.visible_pieces(), node) {
             self.xml.open(format!(r#"visual name="{}""#, material.name));
             self.xml.open("geometry");
             self.xml.open("mesh");
-            let file = format!("{folder}{}", meshes::mesh_file_name(node, material));
+            let file = format!("{folder}{}", meshes::format_mesh_name(node, material));
             self.xml.write_value("uri", escape_attribute(&file));
             self.xml.write_value("scale", "0.001 0.001 0.001");
             self.xml.close();
@@ -83,7 +83,7 @@ impl Writer<'_> {
 
     fn write_sdf_pad(&mut self, servo: usize) {
         self.xml.open(r#"collision name="pad""#);
-        self.write_pose("pose", self.pad_middle(servo), 0.0);
+        self.write_pose("pose", self.dome_centre(servo), 0.0);
         self.xml.open("geometry");
         self.xml.open("sphere");
         let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
@@ -111,18 +111,14 @@ impl Writer<'_> {
             Freedom::SlidesAlongX => ("prismatic", "1 0 0"),
             Freedom::SlidesVertically => ("prismatic", "0 0 1"),
         };
-        let (name, parent, child) = (
-            self.joint_name(node),
-            parent.identifier(),
-            node.identifier(),
-        );
-        self.write_sdf_connection(&name, kind, &parent, &child);
+        let (parent, child) = (parent.identifier(), node.identifier());
+        self.write_sdf_connection(&self.joint_name(node), kind, &parent, &child);
         self.xml.open("axis");
         self.xml.write_value("xyz", axis);
-        if let Some([smallest, largest]) = self.joint_range(node) {
+        if let Some([min, max]) = self.joint_range(node) {
             self.xml.open("limit");
-            self.xml.write_value("lower", smallest);
-            self.xml.write_value("upper", largest);
+            self.xml.write_value("lower", min);
+            self.xml.write_value("upper", max);
             if let Some(servo) = self.driving_servo(node) {
                 let motor = &self.scene.motors.per_servo[servo];
                 self.xml
@@ -145,8 +141,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// The position at which the spring of a body's joint is relaxed, m, and the spring's stiffness, N/m; `None` for
-    /// a joint without a spring.
+    /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` for a joint without a spring.
     fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.strut_spring) {
             (Node::Pad(_), _) => Some([0.0, self.leaf_spring()[0]]),
@@ -157,7 +152,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Opens the element of a joint and writes its parent and child. The caller closes the element.
+    /// Opens a joint's element and writes the joint's parent and child. The caller closes the element.
     fn write_sdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));

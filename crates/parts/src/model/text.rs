@@ -2,7 +2,7 @@
 
 use std::fmt::{Display, Write};
 
-/// Metres per mm, kg per g.
+/// Factor from mm to m, and from g to kg.
 pub(super) const MILLI: f64 = 1e-3;
 
 /// Formats a position in mm as three numbers in metres.
@@ -26,17 +26,17 @@ pub(super) fn join_numbers(numbers: impl IntoIterator<Item = impl ToString>) -> 
     numbers.join(" ")
 }
 
-/// Escapes a text for use as the value of an attribute.
+/// Escapes a text for use as an attribute's value.
 pub(super) fn escape_attribute(value: &str) -> String {
     let value = value.replace('&', "&amp;").replace('<', "&lt;");
     value.replace('"', "&quot;")
 }
 
-/// A writer of XML text, one element per line. Callers give an element as its name and attributes.
+/// A writer of XML text, one element per line. An element is passed as its name and attributes.
 #[derive(Default)]
 pub(super) struct Xml {
     text: String,
-    /// Names of the open elements, the outermost first.
+    /// Names of the open elements, outermost first.
     open_elements: Vec<String>,
 }
 
@@ -46,7 +46,7 @@ impl Xml {
         let _ = writeln!(self.text, "{:indent$}{text}", "");
     }
 
-    /// Writes the XML declaration, the first line of a document.
+    /// Writes the XML declaration, a document's first line.
     pub fn write_declaration(&mut self) {
         self.write_line(r#"<?xml version="1.0"?>"#);
     }
@@ -56,7 +56,7 @@ impl Xml {
         self.write_line(format_args!("<{element}/>"));
     }
 
-    /// Writes an element that holds a value.
+    /// Writes an element with a value.
     pub fn write_value(&mut self, element: impl Display, value: impl Display) {
         let element = element.to_string();
         let name = element.split(' ').next().unwrap_or_default();

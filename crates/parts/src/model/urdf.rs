@@ -1,8 +1,8 @@
 //! The robot as URDF, the format of ROS: a tree of links, without a floor.
 //!
-//! URDF cannot close a loop. The legs follow their servos exactly, as parallelograms do, so the legs' joints mimic
-//! the servos' joints. Couplers, sleeves and rods are free. At each joint where a loop is cut, a pair of frames
-//! marks the two points that must coincide.
+//! URDF cannot close a loop. The legs are parallelograms that follow their servos exactly, so the legs' joints mimic
+//! the servos' joints. Couplers, sleeves and rods are free. At each joint where a loop is cut, a pair of frames marks
+//! the two points that must coincide.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,11 +16,11 @@ use crate::model::node::{Freedom, Node};
 use crate::model::text::{MILLI, escape_attribute, format_metres, round};
 use crate::model::writer::Writer;
 
-/// The link on the floor under the chassis: x ahead, y to the left, z up, as ROS requires.
+/// The link on the floor under the chassis: x forward, y to the left, z up, as ROS requires.
 const BASE_LINK: &str = "base_link";
 
 impl Writer<'_> {
-    /// Writes the whole file. The meshes are in `folder`, a path or a URL.
+    /// Writes the whole file. `folder` is the path or URL of the meshes.
     pub(super) fn write_urdf(&mut self, folder: &str) {
         let name = escape_attribute(&self.scene.name);
         self.xml.write_declaration();
@@ -37,7 +37,7 @@ impl Writer<'_> {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+        for loop_joint in loops::list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             self.write_coinciding_frames(&loop_joint);
         }
     }
@@ -45,22 +45,22 @@ impl Writer<'_> {
     fn write_urdf_link(&mut self, node: Node, folder: &str) {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
-        let inertia = self.inertia(node);
-        let [xx, yy, zz, xy, xz, yz] = inertia.formatted_tensor();
+        let inertia = self.compute_inertia(node);
+        let [xx, yy, zz, xy, xz, yz] = inertia.format_tensor();
         self.xml.open("inertial");
-        self.write_origin(inertia.mass_centre(), 0.0);
+        self.write_origin(inertia.centre_of_mass(), 0.0);
         self.xml
             .write_empty_element(format!(r#"mass value="{}""#, round(inertia.mass * MILLI)));
         self.xml.write_empty_element(format!(
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
         self.xml.close();
-        for material in meshes::materials_of(self.visible_pieces(), node) {
+        for material in meshes::list_materials(self.visible_pieces(), node) {
             self.xml.open("visual");
             self.xml.open("geometry");
             let file = escape_attribute(&format!(
                 "{folder}{}",
-                meshes::mesh_file_name(node, material)
+                meshes::format_mesh_name(node, material)
             ));
             self.xml.write_empty_element(format!(
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
@@ -72,7 +72,7 @@ impl Writer<'_> {
         }
         if let Node::Pad(servo) = node {
             self.xml.open("collision");
-            self.write_origin(self.pad_middle(servo), 0.0);
+            self.write_origin(self.dome_centre(servo), 0.0);
             self.xml.open("geometry");
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
             self.xml
@@ -92,7 +92,7 @@ impl Writer<'_> {
             (Freedom::TurnsAboutZ, None) => "continuous",
             (Freedom::SlidesAlongX, _) => "prismatic",
         };
-        let placement = self.place_on_parent(node);
+        let placement = self.placement_on_parent(node);
         let (parent, height, base_turn) = match self.parent(node) {
             Some(parent) => (parent.identifier(), 0.0, 0.0),
             None => (BASE_LINK.to_owned(), self.chassis_height(), -FRAC_PI_2),
@@ -108,7 +108,7 @@ impl Writer<'_> {
             };
             self.xml
                 .write_empty_element(format!(r#"axis xyz="{axis}""#));
-            if let Some([smallest, largest]) = range {
+            if let Some([min, max]) = range {
                 let (effort, rate) = match self.driving_servo(node) {
                     Some(servo) => {
                         let motor = &self.scene.motors.per_servo[servo];
@@ -119,7 +119,7 @@ impl Writer<'_> {
                 };
                 let (effort, rate) = (round(effort), round(rate));
                 self.xml.write_empty_element(format!(
-                    r#"limit lower="{smallest}" upper="{largest}" effort="{effort}" velocity="{rate}""#
+                    r#"limit lower="{min}" upper="{max}" effort="{effort}" velocity="{rate}""#
                 ));
             }
             let [damping, friction] = self.damping_and_friction(node);
@@ -135,7 +135,7 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Opens the element of a joint and writes its parent and child. The caller closes the element.
+    /// Opens a joint's element and writes the joint's parent and child. The caller closes the element.
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
@@ -151,11 +151,11 @@ impl Writer<'_> {
             .write_empty_element(format!(r#"origin xyz="{position}" rpy="0 0 {turn}""#));
     }
 
-    /// Writes the two frames of a joint that closes a loop, one on each body.
+    /// Writes the two frames of a loop's cut joint, one on each body.
     fn write_coinciding_frames(&mut self, loop_joint: &LoopJoint) {
         let [first, second] = loop_joint.bodies;
-        let point = self.place(first).map(loop_joint.point);
-        let point_on_second = self.place(second).unmap(point);
+        let point = self.placement(first).map(loop_joint.point);
+        let point_on_second = self.placement(second).unmap(point);
         for (number, (node, position)) in [(first, loop_joint.point), (second, point_on_second)]
             .iter()
             .enumerate()
@@ -171,12 +171,11 @@ impl Writer<'_> {
     }
 }
 
-/// The servo whose angle a body's joint follows, and the factor (1 or -1); `None` if the joint follows no servo.
+/// The servo that a body's joint mimics, and the factor of the angle; `None` for a joint without such a servo.
 fn mimicked_servo(node: Node) -> Option<(usize, i8)> {
     match node {
         Node::OnMount(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),
-        // Feet and struts keep their direction on the chassis, so on their turning parent they turn by the
-        // opposite angle.
+        // Feet and struts keep their direction on the chassis, so they turn by the opposite angle on their parent.
         Node::OnMount(Mount::Foot(servo) | Mount::Strut(servo)) => Some((servo, -1)),
         _ => None,
     }

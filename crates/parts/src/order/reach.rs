@@ -1,18 +1,17 @@
 //! A check that every screw can be put in and turned in the order of the guide.
 //!
-//! A screw is pushed in along its axis from the side of its head. So the space above its head must be free, as long
-//! as the screw and as wide as its head. A hex key holds the head while the nut is turned, so a [`KEY_SIZE`] must also
-//! fit above the head. A socket goes over the nut and needs the room of a [`SOCKET_SIZE`]. A nut that is sunk into a
-//! part is pushed in with a finger; the part then keeps it from turning, as a pocket does for a hexagonal head.
+//! A screw is pushed in along its axis, head last, so a space as long as the screw and as wide as the head must be free
+//! above the head. A hex key of [`KEY_SIZE`], which holds the head while the nut is turned, must also fit there. A
+//! socket of [`SOCKET_SIZE`] must fit around the nut. A nut that is sunk into a part is pushed in with a finger; the
+//! part then keeps the nut from turning, as a pocket does for a hexagonal head.
 //!
-//! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of its own stage except
-//! the screw and its nut. So the order within a stage does not matter. On the bench, only those bodies count that
-//! the step has added to the link or leg of the same servo. A screw whose nut comes in a later step is pushed in at
-//! its own stage, and turned when the nut comes. A pad moves with the screw in it; the key reaches that screw
-//! through the pad's hole.
+//! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of the screw's own stage
+//! except the screw and its nut, so the order within a stage does not matter. On the bench, only the bodies count that
+//! the step has added to the link or leg of the same servo. A screw whose nut comes in a later step is pushed in at its
+//! own stage, and turned when the nut comes. A pad moves with its screw, which the key reaches through the pad.
 //!
-//! The servos are at neutral. If a screw cannot be reached at neutral, a search finds the nearest pose that the guard
-//! accepts and at which the screw can be reached, and the guide names that pose.
+//! The servos are at neutral. If a screw cannot be reached at neutral, a search finds the nearest accepted pose at
+//! which the screw can be reached, and the guide describes this pose.
 
 use std::fmt;
 
@@ -25,15 +24,15 @@ use crate::order::steps::{Step, TurningPlace};
 
 /// Radius of a screwdriver or hex key, and its length above the head, mm.
 pub const KEY_SIZE: [f64; 2] = [2.0, 30.0];
-/// Radius of the bare hex key for an M3 button head, 2 mm across flats, in the hole of a pad, mm.
+/// Radius of the hex key for an M3 button head (2 mm across flats) in a pad's hole, mm.
 const HEX_KEY_RADIUS: f64 = 1.2;
 /// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
 pub const SOCKET_SIZE: [f64; 2] = [1.0, 10.0];
-/// Angles by which one servo is turned in the search for a pose, deg.
+/// Angles by which the search for a pose turns one servo, deg.
 const SEARCH_ANGLES: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
 ];
-/// Number of angles per servo in the grid of poses that are searched if turning one servo is not enough.
+/// Number of angles per servo in the grid of poses that is searched if turning one servo is not enough.
 const GRID_ANGLES_PER_SERVO: u32 = 9;
 
 /// An operation on a screw.
@@ -43,7 +42,7 @@ pub enum ScrewOperation {
     Push,
     /// Turning or holding the screw at its head.
     Turn,
-    /// Pushing the screw's nut in, or turning it.
+    /// Pushing in or turning the screw's nut.
     FitNut,
 }
 
@@ -51,13 +50,13 @@ pub enum ScrewOperation {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{screw} {operation} at step {step} of the guide: {obstacle} is in the way")]
 pub struct BlockedScrew {
-    /// The step of the guide, from 1.
+    /// Step of the guide, from 1.
     pub step: usize,
-    /// The name of the screw.
+    /// Name of the screw.
     pub screw: String,
-    /// The operation that is impossible.
+    /// Impossible operation.
     pub operation: ScrewOperation,
-    /// The name of the body in the way.
+    /// Name of the body in the way.
     pub obstacle: String,
 }
 
@@ -66,25 +65,25 @@ impl fmt::Display for ScrewOperation {
         f.write_str(match self {
             Self::Push => "cannot be pushed in",
             Self::Turn => "cannot be turned",
-            Self::FitNut => "cannot be given its nut",
+            Self::FitNut => "cannot get its nut",
         })
     }
 }
 
-/// A pose to which the servos are turned so that some screws can be reached.
+/// A pose of the servos at which some screws can be reached.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AccessPose {
-    /// The step of the guide, from 1.
+    /// Step of the guide, from 1.
     pub step: usize,
-    /// The screws that cannot be reached at neutral.
+    /// Names of the screws that cannot be reached at neutral.
     pub screws: Vec<String>,
-    /// Angles, deg, servo order.
+    /// Servo angles, deg, servo order.
     pub pose: [f64; 4],
 }
 
 /// A space that must be free: a vertical prism over a shape, in the chassis frame.
 struct FreeSpace {
-    /// The outline as seen from above.
+    /// Outline as seen from above.
     shape: Shape,
     /// Heights of the bottom and the top, mm.
     z: [f64; 2],
@@ -92,7 +91,7 @@ struct FreeSpace {
 
 /// The axis of a screw in the robot.
 struct ScrewAxis {
-    /// The axis as seen from above, chassis frame, mm.
+    /// Position as seen from above, chassis frame, mm.
     position: Vector,
     /// Radius of the screw's head, mm.
     head_radius: f64,
@@ -100,12 +99,12 @@ struct ScrewAxis {
     length: f64,
     /// Height of the head's outer face, mm above the chassis plate's top.
     head_face_z: f64,
-    /// 1 if the head is at the top, else -1.
+    /// 1 if the head is at the top, otherwise -1.
     direction: f64,
 }
 
 impl ScrewAxis {
-    /// The cylinder about the axis that begins at a height and has a length; one of negative length extends down.
+    /// Makes a cylinder about the axis from a height up, or down if `length` is negative.
     fn cylinder(&self, radius: f64, from: f64, length: f64) -> FreeSpace {
         let to = from + length;
         FreeSpace {
@@ -115,15 +114,15 @@ impl ScrewAxis {
     }
 }
 
-/// The robot at the pose at which its screws are put in.
+/// The robot at the pose at which its screws are mounted.
 struct PosedAssembly<'a> {
     assembly: &'a Assembly,
     pose: &'a Solution,
 }
 
 impl PosedAssembly<'_> {
-    /// The axis of a screw; `None` for other bodies.
-    fn screw_axis(&self, body: &Body) -> Option<ScrewAxis> {
+    /// Finds the axis of a screw; `None` for other bodies.
+    fn find_screw_axis(&self, body: &Body) -> Option<ScrewAxis> {
         /// Length of a servo's own screws, mm.
         const SERVO_SCREW_LENGTH: f64 = 8.0;
         let length = match body.kind {
@@ -131,13 +130,13 @@ impl PosedAssembly<'_> {
             Kind::ServoScrew => SERVO_SCREW_LENGTH,
             _ => return None,
         };
-        let diameter_of = |i: usize| body.prisms[i].filled_shapes[0].diameter();
+        let layer_diameter = |i: usize| body.prisms[i].filled_shapes[0].diameter();
         let last_index = body.prisms.len().checked_sub(1)?;
         // A screw's head is its widest layer.
         let head_index =
-            (0..=last_index).max_by(|a, b| diameter_of(*a).total_cmp(&diameter_of(*b)))?;
+            (0..=last_index).max_by(|a, b| layer_diameter(*a).total_cmp(&layer_diameter(*b)))?;
         let (is_above, prism) = (head_index == last_index, &body.prisms[head_index]);
-        let placement = self.assembly.place(body.mount, self.pose);
+        let placement = self.assembly.placement(body.mount, self.pose);
         Some(ScrewAxis {
             position: placement.map(prism.filled_shapes[0].middle()),
             head_radius: prism.filled_shapes[0].diameter() / 2.0,
@@ -147,11 +146,11 @@ impl PosedAssembly<'_> {
         })
     }
 
-    /// True if a body extends into a space that none of the body's holes encloses.
+    /// True if a body extends into a space and none of the body's holes encloses the space.
     fn extends_into(&self, body: &Body, space: &FreeSpace) -> bool {
         /// Overlap that still counts as touching, mm.
         const TOUCH_TOLERANCE: f64 = 1e-6;
-        let placement = self.assembly.place(body.mount, self.pose);
+        let placement = self.assembly.placement(body.mount, self.pose);
         let [low, high] = space.z;
         let is_beside = |z: [f64; 2]| z[0] > high - TOUCH_TOLERANCE || z[1] < low + TOUCH_TOLERANCE;
         let no_motion = Vector::default();
@@ -166,14 +165,19 @@ impl PosedAssembly<'_> {
         })
     }
 
-    /// The space that a nut needs on its screw.
-    fn nut_space(&self, nut: &Body, axis: &ScrewAxis, surrounding_bodies: &[&Body]) -> FreeSpace {
-        let placement = self.assembly.place(nut.mount, self.pose);
+    /// Computes the space that a nut needs on its screw.
+    fn compute_nut_space(
+        &self,
+        nut: &Body,
+        axis: &ScrewAxis,
+        surrounding_bodies: &[&Body],
+    ) -> FreeSpace {
+        let placement = self.assembly.placement(nut.mount, self.pose);
         let nut_outline = nut.prisms[0].filled_shapes[0].placed(&placement);
         let corner_radius = (nut_outline.points[0] - axis.position).length();
         // The face that touches the part, and the outer face.
         let [low, high] = nut.z();
-        let (bearing_height, outer_height) = match axis.direction > 0.0 {
+        let (bearing_z, outer_z) = match axis.direction > 0.0 {
             true => (high, low),
             false => (low, high),
         };
@@ -181,37 +185,33 @@ impl PosedAssembly<'_> {
             let depth = nut_outline.depth_in(&hole.placed(&placement), Vector::default());
             hole.points.len() == 6 && depth > 0.0
         };
-        let mut mount_bodies = surrounding_bodies
-            .iter()
-            .filter(|body| body.mount == nut.mount);
-        let is_sunk = mount_bodies.any(|body| {
-            body.prisms
-                .iter()
-                .any(|prism| prism.cut_shapes.iter().any(encloses))
-        });
+        let bodies = surrounding_bodies.iter();
+        let mount_bodies = bodies.filter(|body| body.mount == nut.mount);
+        let mut prisms = mount_bodies.flat_map(|body| &body.prisms);
+        let is_sunk = prisms.any(|prism| prism.cut_shapes.iter().any(encloses));
         let length = -axis.direction * SOCKET_SIZE[1];
         match is_sunk {
             true => FreeSpace {
                 shape: nut_outline,
-                ..axis.cylinder(0.0, outer_height, length)
+                ..axis.cylinder(0.0, outer_z, length)
             },
             false => axis.cylinder(
                 corner_radius + SOCKET_SIZE[0],
-                bearing_height,
-                outer_height - bearing_height + length,
+                bearing_z,
+                outer_z - bearing_z + length,
             ),
         }
     }
 
-    /// The impossible operations on a screw once `new_bodies` are added, each with the name of the body in the way.
-    fn blocked_operations(
+    /// Finds the impossible operations on a screw once `new_bodies` are added, each with the name of the obstacle.
+    fn find_blocked_operations(
         &self,
         screw: &Body,
         new_bodies: &[&Body],
         surrounding_bodies: &[&Body],
         is_turned_later: bool,
     ) -> Vec<(ScrewOperation, String)> {
-        let Some(axis) = self.screw_axis(screw) else {
+        let Some(axis) = self.find_screw_axis(screw) else {
             return Vec::new();
         };
         let nut = self.assembly.body(&screw.name.replacen("screw", "nut", 1));
@@ -240,42 +240,40 @@ impl PosedAssembly<'_> {
             );
             spaces.push((ScrewOperation::Push, space));
         }
-        // A hexagonal head is held by its pocket.
+        // Its pocket holds a hexagonal head.
         let needs_turning = !matches!(screw.kind, Kind::HexScrew(_));
-        // The pad of a height screw, if the hex key does not fit through the pad's hole.
+        // The pad of a height screw if the hex key does not fit through the pad's hole.
         let mut blocking_pad = None;
         if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let key_space =
+            let make_key_space =
                 |radius| axis.cylinder(radius, axis.head_face_z, axis.direction * KEY_SIZE[1]);
-            spaces.push((ScrewOperation::Turn, key_space(KEY_SIZE[0])));
+            spaces.push((ScrewOperation::Turn, make_key_space(KEY_SIZE[0])));
             blocking_pad = pad.filter(|pad| {
-                is_in(surrounding_bodies, pad) && self.extends_into(pad, &key_space(HEX_KEY_RADIUS))
+                is_in(surrounding_bodies, pad)
+                    && self.extends_into(pad, &make_key_space(HEX_KEY_RADIUS))
             });
         }
         if let Some(nut) = new_nut {
-            spaces.push((
-                ScrewOperation::FitNut,
-                self.nut_space(nut, &axis, &other_bodies),
-            ));
+            let space = self.compute_nut_space(nut, &axis, &other_bodies);
+            spaces.push((ScrewOperation::FitNut, space));
         }
-        let obstacle_of = |(operation, space): (ScrewOperation, FreeSpace)| {
-            let obstacle = other_bodies
-                .iter()
-                .find(|body| self.extends_into(body, &space))?;
+        let find_obstacle = |(operation, space): (ScrewOperation, FreeSpace)| {
+            let mut bodies = other_bodies.iter();
+            let obstacle = bodies.find(|body| self.extends_into(body, &space))?;
             Some((operation, obstacle.name.clone()))
         };
         let pad_obstacle = blocking_pad.map(|pad| (ScrewOperation::Turn, pad.name.clone()));
         spaces
             .into_iter()
-            .filter_map(obstacle_of)
+            .filter_map(find_obstacle)
             .chain(pad_obstacle)
             .collect()
     }
 }
 
 impl Assembly {
-    /// The screws that cannot be inserted or turned in the order of these steps, with the servos at a pose.
-    pub fn blocked_screws(&self, steps: &[Step], pose: &Solution) -> Vec<BlockedScrew> {
+    /// Finds the screws that cannot be inserted or turned in the order of these steps, with the servos at a pose.
+    pub fn find_blocked_screws(&self, steps: &[Step], pose: &Solution) -> Vec<BlockedScrew> {
         let posed_assembly = PosedAssembly {
             assembly: self,
             pose,
@@ -303,7 +301,7 @@ impl Assembly {
                     };
                     let is_turned_later = (stage.turns_again)(screw);
                     let blocked_operations = posed_assembly
-                        .blocked_operations(
+                        .find_blocked_operations(
                             screw,
                             &new_bodies,
                             &surrounding_bodies,
@@ -324,23 +322,23 @@ impl Assembly {
         blocked_screws
     }
 
-    /// The poses to which the servos must be turned in some steps so that every screw can be reached; empty if all
-    /// screws can be reached at neutral, or if the linkages do not close at neutral.
+    /// Finds the poses to which the servos must be turned in some steps so that every screw can be reached; empty if
+    /// all screws can be reached at neutral, or if the linkages do not close at neutral.
     ///
     /// # Errors
-    /// Returns a screw that cannot be reached at neutral or at any of the poses that are tried.
-    pub fn access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, BlockedScrew> {
+    /// Returns a screw that cannot be reached at neutral or at any other tried pose.
+    pub fn find_access_poses(&self, steps: &[Step]) -> Result<Vec<AccessPose>, BlockedScrew> {
         let mut access_poses: Vec<AccessPose> = Vec::new();
         let neutral = self.robot().neutral_pose();
         let Ok(solution) = self.robot().lizard().solve(&neutral) else {
             return Ok(access_poses);
         };
-        let mut unreached_screws = self.blocked_screws(steps, &solution);
+        let mut unreached_screws = self.find_blocked_screws(steps, &solution);
         if unreached_screws.is_empty() {
             return Ok(access_poses);
         }
-        for pose in self.poses_near(neutral) {
-            let blocked_at_pose = self.blocked_screws(steps, &pose);
+        for pose in self.list_poses_near(neutral) {
+            let blocked_at_pose = self.find_blocked_screws(steps, &pose);
             let is_reached = |unreached: &mut BlockedScrew| {
                 let is_same_screw = |blocked: &BlockedScrew| {
                     blocked.step == unreached.step && blocked.screw == unreached.screw
@@ -370,9 +368,9 @@ impl Assembly {
         Err(unreached_screws.swap_remove(0))
     }
 
-    /// Poses that the guard accepts: first those with one servo turned from neutral, the smallest angle first, and
-    /// then the poses of a grid, the nearest to neutral first.
-    fn poses_near(&self, neutral: Pose) -> Vec<Solution> {
+    /// Lists accepted poses: poses with one servo turned from neutral, by ascending angle, then the poses of a grid, by
+    /// ascending distance from neutral.
+    fn list_poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let neutral_angles: [f64; 4] = neutral.into();
         let mut poses = Vec::new();
         for turn in SEARCH_ANGLES {
@@ -384,11 +382,8 @@ impl Assembly {
         }
         let distance_from_neutral = |solution: &Solution| {
             let angles: [f64; 4] = solution.pose.into();
-            let turns = angles
-                .iter()
-                .zip(neutral_angles)
-                .map(|(a, b)| (a - b).abs());
-            turns.fold(0.0, f64::max)
+            let turns = angles.iter().zip(neutral_angles);
+            turns.fold(0.0, |max, (a, b)| (a - b).abs().max(max))
         };
         let mut grid_poses: Vec<_> = self.grid_poses(GRID_ANGLES_PER_SERVO).collect();
         grid_poses.sort_by(|a, b| distance_from_neutral(a).total_cmp(&distance_from_neutral(b)));

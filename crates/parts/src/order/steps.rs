@@ -1,32 +1,31 @@
 //! The steps of the assembly, from the plate to the first walk.
 //!
-//! A step is one picture of the guide. It has stages, done one after another: some parts are joined on the bench before
-//! they are mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
+//! A step is one picture of the guide. It consists of successive stages, since some parts are joined on the bench
+//! before they are mounted on the robot. `reach.rs` checks which screws can be reached in which stage.
 //!
-//! A servo does not report its angle. So it is wired and driven to its middle before its link is pressed on, and
-//! its direction is tested before the links are joined: until then, a link that turns in the wrong direction moves
-//! nothing else.
+//! A servo does not report its angle. It is therefore wired and driven to its middle before its link is pressed on, and
+//! its direction is tested before the links are joined: until then, a wrong turn moves no other part.
 
 use crate::layers::body::{Body, Kind, Mount};
 
-/// The instructions of all steps, each below its title.
+/// Instructions of all steps, each below the step's title.
 const INSTRUCTIONS: &str = include_str!("steps.md");
 
-/// One step of the guide.
+/// A step of the guide.
 pub struct Step {
-    /// The headline.
+    /// Headline.
     pub title: &'static str,
-    /// The instructions, as Markdown with each paragraph in one line.
+    /// Instructions as Markdown, with each paragraph in one line.
     pub instructions: String,
-    /// The stages, each with the bodies to add and the screws to turn; empty for a step at the console.
+    /// Stages, each with the bodies to add and the screws to turn; empty for a step at the console.
     pub stages: Vec<Stage>,
     /// Lift of a body in the exploded picture, as a multiple of the standard lift; negative moves it down.
     pub lift: fn(&Body) -> f64,
-    /// An extra picture, if any.
+    /// Extra picture, if any.
     pub extra_view: ExtraView,
 }
 
-/// A picture besides the two of the complete robot.
+/// A picture in addition to the two pictures of the complete robot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExtraView {
     /// No extra picture.
@@ -41,15 +40,15 @@ pub enum ExtraView {
 
 /// A stage of a step: bodies that are added together.
 pub struct Stage {
-    /// The place where the stage's screws are turned.
+    /// Place where the stage's screws are turned.
     pub turning_place: TurningPlace,
     /// True for a body that the stage adds unless an earlier stage has added it.
     pub adds: fn(&Body) -> bool,
-    /// True for a screw that an earlier stage added and that is turned again.
+    /// True for a screw of an earlier stage that is turned again.
     pub turns_again: fn(&Body) -> bool,
 }
 
-/// The place where the screws of a stage are turned.
+/// The place where a stage's screws are turned.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum TurningPlace {
     /// On the robot, among all bodies added so far.
@@ -59,14 +58,14 @@ pub enum TurningPlace {
 }
 
 impl Step {
-    /// True if a body is added in this step.
+    /// True for a body that this step adds.
     pub fn adds(&self, body: &Body) -> bool {
         self.stages.iter().any(|stage| (stage.adds)(body))
     }
 }
 
-/// The numbers of the step and of the stage, each from 1, in which a body is added; zeros if no step adds it.
-pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
+/// Finds the numbers of the step and of the stage that add a body, each from 1; zeros if no step adds the body.
+pub(crate) fn find_step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
     for (number, step) in (1..).zip(steps) {
         if let Some(stage) = step.stages.iter().position(|stage| (stage.adds)(body)) {
             return (number, stage + 1);
@@ -75,32 +74,30 @@ pub(crate) fn step_and_stage(steps: &[Step], body: &Body) -> (usize, usize) {
     (0, 0)
 }
 
-/// True if a body's name starts with one of the given texts.
+/// True if a body's name starts with one of the prefixes.
 fn has_name_prefix(body: &Body, prefixes: &[&str]) -> bool {
     prefixes.iter().any(|prefix| body.name.starts_with(prefix))
 }
 
-/// A stage on the robot, without screws that are turned again.
+/// Creates a stage on the robot, without screws that are turned again.
 fn robot_stage(adds: fn(&Body) -> bool) -> Stage {
-    stage(TurningPlace::Robot, adds)
-}
-
-/// A stage on the bench, without screws that are turned again.
-fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
-    stage(TurningPlace::Bench, adds)
-}
-
-fn stage(turning_place: TurningPlace, adds: fn(&Body) -> bool) -> Stage {
-    let turns_again = |_: &Body| false;
     Stage {
-        turning_place,
+        turning_place: TurningPlace::Robot,
         adds,
-        turns_again,
+        turns_again: |_| false,
     }
 }
 
-/// A step with the instructions from `steps.md` below its title.
-fn step(
+/// Creates a stage on the bench, without screws that are turned again.
+fn bench_stage(adds: fn(&Body) -> bool) -> Stage {
+    Stage {
+        turning_place: TurningPlace::Bench,
+        ..robot_stage(adds)
+    }
+}
+
+/// Builds a step with the instructions below its title in `steps.md`.
+fn build_step(
     title: &'static str,
     lift: fn(&Body) -> f64,
     extra_view: ExtraView,
@@ -123,13 +120,13 @@ fn step(
     }
 }
 
-/// A step at the console, which adds no bodies.
+/// Builds a step at the console, which adds no bodies.
 fn console_step(title: &'static str) -> Step {
-    step(title, |_| 0.0, ExtraView::None, Vec::new())
+    build_step(title, |_| 0.0, ExtraView::None, Vec::new())
 }
 
-/// The steps of a robot with slotted or with rigid struts.
-pub fn steps(has_slotted_struts: bool) -> Vec<Step> {
+/// Builds the steps for a robot with slotted or with rigid struts.
+pub fn build_steps(has_slotted_struts: bool) -> Vec<Step> {
     vec![
         chassis_step(),
         supply_step(),
@@ -164,7 +161,7 @@ fn chassis_step() -> Step {
         );
         body.name == "plate" || has_added_kind || is_lower_screw
     });
-    step("Servos and standoffs", lift, ExtraView::Corner, vec![stage])
+    build_step("Servos and standoffs", lift, ExtraView::Corner, vec![stage])
 }
 
 fn supply_step() -> Step {
@@ -177,7 +174,7 @@ fn supply_step() -> Step {
         let names = ["battery", "ground strip", "supply strip", "capacitor"];
         has_name_prefix(body, &names)
     });
-    step(
+    build_step(
         "Strips, battery and capacitor",
         lift,
         ExtraView::Below,
@@ -211,7 +208,7 @@ fn board_step() -> Step {
             || is_upper_screw
     });
     let board_stage = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
-    step(
+    build_step(
         "Deck, board and wires",
         lift,
         ExtraView::None,
@@ -230,7 +227,7 @@ fn links_step() -> Step {
         let is_horn = matches!(body.kind, Kind::Horn | Kind::HornScrew(_));
         is_horn || has_name_prefix(body, &["link", "screw tip", "screw arm"])
     });
-    step("Horns and links", lift, ExtraView::Corner, vec![stage])
+    build_step("Horns and links", lift, ExtraView::Corner, vec![stage])
 }
 
 fn legs_step() -> Step {
@@ -248,7 +245,7 @@ fn legs_step() -> Step {
     });
     let foot_stage = bench_stage(|body| matches!(body.mount, Mount::Foot(_)) && !sets_height(body));
     let height_stage = bench_stage(sets_height);
-    step(
+    build_step(
         "Legs, on the bench",
         lift,
         ExtraView::Corner,
@@ -256,7 +253,7 @@ fn legs_step() -> Step {
     )
 }
 
-/// True for a pad and for the screw in it, which sets the height of its foot.
+/// True for a pad and for its screw, which sets the foot's height.
 fn sets_height(body: &Body) -> bool {
     body.kind == Kind::Pad || has_name_prefix(body, &["screw height"])
 }
@@ -266,7 +263,7 @@ fn level_step() -> Step {
         turns_again: |body| has_name_prefix(body, &["screw height"]),
         ..robot_stage(|_| false)
     };
-    step("Level the feet", |_| 0.0, ExtraView::None, vec![stage])
+    build_step("Level the feet", |_| 0.0, ExtraView::None, vec![stage])
 }
 
 fn legs_on_plate_step() -> Step {
@@ -275,7 +272,7 @@ fn legs_on_plate_step() -> Step {
         _ => 1.0,
     };
     let stage = robot_stage(|body| body.name.contains("pivot"));
-    step(
+    build_step(
         "Legs on the plate",
         lift,
         ExtraView::CornerBelow,
@@ -299,7 +296,7 @@ fn struts_step(has_slotted_struts: bool) -> Step {
         true => "Struts and springs",
         false => "Struts",
     };
-    step(title, lift, ExtraView::Corner, vec![leg_stage, link_stage])
+    build_step(title, lift, ExtraView::Corner, vec![leg_stage, link_stage])
 }
 
 fn sliders_step() -> Step {
@@ -312,7 +309,7 @@ fn sliders_step() -> Step {
         let is_slider = matches!(body.mount, Mount::Sleeve(_) | Mount::Rod(_));
         is_slider || has_name_prefix(body, &["arm spacer", "nut arm"])
     });
-    step("Sliders", lift, ExtraView::None, vec![stage])
+    build_step("Sliders", lift, ExtraView::None, vec![stage])
 }
 
 fn ends_step() -> Step {
@@ -330,7 +327,7 @@ fn ends_step() -> Step {
         matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])
     });
     let plug_stage = robot_stage(|body| has_name_prefix(body, &["barrel plug"]));
-    step(
+    build_step(
         "Head and tail",
         lift,
         ExtraView::None,

@@ -1,8 +1,8 @@
 //! The smallest distances between parts at given poses.
 //!
-//! Two parts can collide only at a height that they share. So pairs of layers are chosen once by height, and at each
-//! pose the distance of their shapes in plan view is measured. Holes are ignored, so the true distance is never smaller
-//! than the one found here.
+//! Two parts can collide only at a common height. Pairs of layers are therefore selected once by height, and at each
+//! pose the distance between their shapes in plan view is measured. Holes are ignored, so the true distance is never
+//! smaller than the measured distance.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -17,13 +17,13 @@ use crate::layers::shape::Shape;
 /// The least distance found between two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
-    /// The name of one body.
+    /// Name of one body.
     pub first: String,
-    /// The name of the other body.
+    /// Name of the other body.
     pub second: String,
     /// Servo angles at the least distance, deg, servo order.
     pub pose: [f64; 4],
-    /// The distance between the bodies, mm; negative if they overlap.
+    /// Distance between the bodies, mm; negative if they overlap.
     pub mm: f64,
 }
 
@@ -43,14 +43,15 @@ impl fmt::Display for Clearance {
 }
 
 impl Assembly {
-    /// Pairs of bodies that come closer than `limit_mm` at some pose, the nearest first, each pair once.
-    pub fn close_pairs(
+    /// Finds the pairs of bodies that come closer than `limit_mm` at some pose, by ascending distance, each pair once.
+    pub fn find_close_pairs(
         &self,
         poses: impl IntoIterator<Item = Solution>,
         limit_mm: f64,
     ) -> Vec<Clearance> {
-        // The pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
-        let disc_of = |shape: &Shape| (shape.middle(), shape.max_distance_from(shape.middle()));
+        // Pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
+        let enclosing_disc =
+            |shape: &Shape| (shape.middle(), shape.max_distance_from(shape.middle()));
         let bodies = self.bodies();
         let mut pairs = Vec::new();
         for (i, a) in bodies.iter().enumerate() {
@@ -68,13 +69,17 @@ impl Assembly {
                         .filled_shapes
                         .iter()
                         .flat_map(|a| q.filled_shapes.iter().map(move |b| (a, b)));
-                    pairs.extend(shapes.map(|(a, b)| ([i, j], [(a, disc_of(a)), (b, disc_of(b))])));
+                    pairs.extend(
+                        shapes.map(|(a, b)| {
+                            ([i, j], [(a, enclosing_disc(a)), (b, enclosing_disc(b))])
+                        }),
+                    );
                 }
             }
         }
         let mut least_by_pair: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
         for pose in poses {
-            let placements = bodies.iter().map(|body| self.place(body.mount, &pose));
+            let placements = bodies.iter().map(|body| self.placement(body.mount, &pose));
             let placements: Vec<_> = placements.collect();
             for (body_indices, [(a, (a_middle, a_radius)), (b, (b_middle, b_radius))]) in &pairs {
                 let [first, second] = body_indices.map(|body| &placements[body]);
@@ -91,18 +96,18 @@ impl Assembly {
                 }
             }
         }
-        let clearance_of = |([i, j], (pose, mm)): ([usize; 2], _)| Clearance {
+        let to_clearance = |([i, j], (pose, mm)): ([usize; 2], _)| Clearance {
             first: bodies[i].name.clone(),
             second: bodies[j].name.clone(),
             pose,
             mm,
         };
-        let mut clearances: Vec<_> = least_by_pair.into_iter().map(clearance_of).collect();
+        let mut clearances: Vec<_> = least_by_pair.into_iter().map(to_clearance).collect();
         clearances.sort_by(|a, b| a.mm.total_cmp(&b.mm));
         clearances
     }
 
-    /// Poses that the guard accepts, on a grid of `angles_per_servo` angles over each servo's travel.
+    /// Accepted poses on a grid of `angles_per_servo` angles over each servo's travel.
     pub fn grid_poses(&self, angles_per_servo: u32) -> impl Iterator<Item = Solution> + '_ {
         let robot = self.robot();
         let angle_at = move |servo: usize, index: u32| {

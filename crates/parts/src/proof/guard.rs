@@ -1,8 +1,8 @@
 //! The poses that the guard accepts, as bounds on the servos' angles.
 //!
-//! [`Limits`] defines a safe pose; this module only applies it. The firmware computes in integers, so its decision may
-//! differ within a band around each limit. The limits are relaxed by more than that band ([`SINE_RELAXATION`],
-//! [`LENGTH_RELAXATION_MM`]), so the proof also covers every pose that the firmware accepts.
+//! [`Limits`] defines a safe pose; this module only applies the limits. The firmware computes in integers, so its
+//! decision may differ within a band around each limit. The limits are relaxed by more than this band
+//! ([`SINE_RELAXATION`], [`LENGTH_RELAXATION_MM`]), so the proof also covers every pose that the firmware accepts.
 
 use std::collections::{BTreeMap, VecDeque};
 
@@ -15,25 +15,25 @@ use crate::bodies::joints::Cranks;
 
 /// Relaxation of the margins' limits, as a sine.
 const SINE_RELAXATION: f64 = 0.005;
-/// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more
-/// a rounded length turns them.
+/// Type-2 limit below which the relaxation grows in proportion: the closer two couplers are to alignment, the more a
+/// rounded length turns them.
 const FULL_RELAXATION_TYPE2: f64 = 0.3;
 /// Relaxation of a slider's stroke and of crossed crank tips, mm.
 const LENGTH_RELAXATION_MM: f64 = 0.1;
-/// Resolution of the bounds of a servo's range in [`Guard::range_end`], deg.
+/// Resolution of the bounds of a servo's range in [`Guard::find_range_end`], deg.
 const RANGE_RESOLUTION_DEG: f64 = 0.01;
-/// Resolution of the angle of a pair's other servo in [`Guard::range_end`], deg.
+/// Resolution of the angle of a pair's other servo in [`Guard::find_range_end`], deg.
 const PARTNER_RESOLUTION_DEG: f64 = 0.2;
 /// Largest number of regions that [`Guard::find_pose`] searches.
 const MAX_SEARCHED_REGIONS: u32 = 300;
 
-/// A key that orders numbers as [`f64::total_cmp`] does.
+/// Returns a key that orders numbers as [`f64::total_cmp`] does.
 pub fn total_order_key(value: f64) -> i64 {
     let bits = value.to_bits() as i64;
     bits ^ (((bits >> 63) as u64) >> 1) as i64
 }
 
-/// A box in the space of the angles of `N` servos, by its middle and its half widths, deg.
+/// A box in the space of `N` servo angles: its middle and its half widths, deg.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region<const N: usize> {
     pub middle: [f64; N],
@@ -41,25 +41,25 @@ pub struct Region<const N: usize> {
 }
 
 impl<const N: usize> Region<N> {
-    /// The region between bounds of each servo's angle, deg.
-    pub fn of(bounds: [Interval; N]) -> Self {
+    /// Creates the region between bounds of each servo's angle, deg.
+    pub fn from_bounds(bounds: [Interval; N]) -> Self {
         Self {
             middle: bounds.map(|angle| angle.low + (angle.high - angle.low) / 2.0),
             half_widths: bounds.map(|angle| (angle.high - angle.low) / 2.0),
         }
     }
 
-    /// The region's two halves, split at the middle of one servo's angle.
+    /// Splits the region into halves at the middle of one servo's angle.
     pub fn halves(&self, servo: usize) -> [Self; 2] {
-        [-0.5, 0.5].map(|share| {
+        [-0.5, 0.5].map(|fraction| {
             let mut half = *self;
-            half.middle[servo] += share * self.half_widths[servo];
+            half.middle[servo] += fraction * self.half_widths[servo];
             half.half_widths[servo] *= 0.5;
             half
         })
     }
 
-    /// The bounds of one servo's angle, slightly widened so that halves overlap.
+    /// Bounds of one servo's angle, slightly widened so that halves overlap.
     pub fn bounds(&self, servo: usize) -> Interval {
         let half_width = self.half_widths[servo] + 1e-10;
         Interval::new(
@@ -69,28 +69,27 @@ impl<const N: usize> Region<N> {
     }
 }
 
-/// The cranks of some servos at these angles, deg. The cranks of other servos get a placeholder direction.
+/// Computes the cranks of some servos at these angles, deg. The cranks of other servos get a placeholder direction.
 fn cranks_at<'a, const N: usize, T: Real>(
     robot: &'a Robot,
     servos: &[usize; N],
     angles: [T; N],
 ) -> Cranks<'a, T> {
     let (sines, cosines) = T::sin_cos_each(angles);
-    let mut cranks = [Vector::new(T::constant(1.0), T::constant(0.0)); 4];
+    let mut directions = [Vector::new(T::constant(1.0), T::constant(0.0)); 4];
     for (i, servo) in servos.iter().enumerate() {
-        cranks[*servo] = Vector::new(cosines[i], sines[i]);
+        directions[*servo] = Vector::new(cosines[i], sines[i]);
     }
-    let lizard = robot.lizard();
     Cranks {
-        lizard,
-        directions: cranks,
+        lizard: robot.lizard(),
+        directions,
     }
 }
 
 /// The guard of a robot.
 pub struct Guard<'a> {
     robot: &'a Robot,
-    /// The robot's limits, relaxed.
+    /// Relaxed limits of the robot.
     limits: Limits,
     /// Bounds of each servo's angle over all accepted poses, deg, servo order.
     pub ranges: [Interval; 4],
@@ -124,7 +123,7 @@ impl<'a> Guard<'a> {
             {
                 for index in 0..2 {
                     let [low, high] =
-                        [false, true].map(|is_high| guard.range_end(pair, index, is_high));
+                        [false, true].map(|is_high| guard.find_range_end(pair, index, is_high));
                     guard.ranges[pair[index]] = Interval::new(low, high);
                 }
             }
@@ -132,13 +131,14 @@ impl<'a> Guard<'a> {
         guard
     }
 
-    /// The upper or lower bound of the angle of one servo of a pair: beyond it, no pose is accepted at any angle of
-    /// the other servo.
-    fn range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
+    /// Finds the upper or lower bound of the angle of one servo of a pair. Beyond this bound, no pose is accepted at
+    /// any angle of the other servo.
+    fn find_range_end(&self, pair: [usize; 2], index: usize, is_high: bool) -> f64 {
         let sign = if is_high { -1.0 } else { 1.0 };
-        let end_of = |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
-        let whole_region = Region::of(pair.map(|servo| self.ranges[servo]));
-        // The outermost region comes first; of regions that reach equally far, the one that was found first.
+        let region_end =
+            |region: &Region<2>| region.middle[index] - sign * region.half_widths[index];
+        let whole_region = Region::from_bounds(pair.map(|servo| self.ranges[servo]));
+        // The outermost region comes first; of equally far regions, the one found first.
         let (mut regions, mut insertion_index) = (BTreeMap::from([((0, 0), whole_region)]), 0);
         while let Some((_, region)) = regions.pop_first() {
             if self.refuses(&pair, &region) {
@@ -148,31 +148,31 @@ impl<'a> Guard<'a> {
             resolution[index] = RANGE_RESOLUTION_DEG;
             let [a, b] = [0, 1].map(|i| region.half_widths[i] / resolution[i]);
             if a.max(b) < 1.0 {
-                return end_of(&region);
+                return region_end(&region);
             }
             for half_region in region.halves(usize::from(b > a)) {
                 insertion_index += 1;
                 regions.insert(
                     (
-                        total_order_key(sign * end_of(&half_region)),
+                        total_order_key(sign * region_end(&half_region)),
                         insertion_index,
                     ),
                     half_region,
                 );
             }
         }
-        // The guard refuses every pose. This is not reached if the neutral pose is safe.
-        end_of(&whole_region)
+        // The guard refuses every pose, which is impossible if the neutral pose is safe.
+        region_end(&whole_region)
     }
 
     /// True if the conditions that depend only on these servos exclude every pose of a region.
     pub fn refuses<const N: usize>(&self, servos: &[usize; N], region: &Region<N>) -> bool {
-        self.cranks(servos, region).is_none()
+        self.bound_cranks(servos, region).is_none()
     }
 
-    /// The cranks of some servos within a region and at its middle; `None` if the conditions that depend only on these
-    /// servos exclude every pose of the region.
-    pub fn cranks<const N: usize>(
+    /// Computes the cranks of some servos within a region and at its middle; `None` if the conditions that depend only
+    /// on these servos exclude every pose of the region.
+    pub fn bound_cranks<const N: usize>(
         &self,
         servos: &[usize; N],
         region: &Region<N>,
@@ -191,16 +191,16 @@ impl<'a> Guard<'a> {
         // A leg's margin depends only on the crank's direction, not on the angle.
         let (leg, zero) = (&self.robot.lizard().leg, IntervalDual::constant(0.0));
         let violates_leg = servos.iter().any(|&servo| {
-            let end = End::of_servo(servo);
+            let end = End::from_servo(servo);
             let bounds = leg.pose_at(end, zero, bounds.directions[servo]).margin;
             let middle = leg.pose_at(end, 0.0, middle.directions[servo]).margin;
             is_violated((Check::LEG[servo], bounds, middle))
         });
         let violates_end = |end: End| {
             let values = middle.five_bar(end).conditions(end).map(|(_, value)| value);
-            let conditions = bounds.five_bar(end).conditions(end).into_iter().zip(values);
-            has_all(end.servos()) && { conditions }
-                .any(|((check, servos_needed), value)| is_violated((check, servos_needed, value)))
+            let mut conditions = bounds.five_bar(end).conditions(end).into_iter().zip(values);
+            has_all(end.servos())
+                && conditions.any(|((check, bounds), value)| is_violated((check, bounds, value)))
         };
         let violates_side = |side: Side| {
             let check = Check::STROKE[usize::from(side == Side::Right)];
@@ -213,36 +213,32 @@ impl<'a> Guard<'a> {
         (!is_refused).then_some((bounds, middle))
     }
 
-    /// The relaxed limit that a value violates, if any.
+    /// Returns the relaxed limit that a value violates, if any.
     fn violated_limit(&self, check: Check, value: f64) -> Option<f64> {
-        // The limit of crossed tips is 0 and not a field of `Limits`, so the value is shifted instead of the limit.
+        // The limit of crossed tips is 0 and is no field of `Limits`, so the value is shifted instead of the limit.
         let shift = match check {
             Check::UncrossedHead | Check::UncrossedTail => LENGTH_RELAXATION_MM,
             _ => 0.0,
         };
         self.limits
-            .violation_of(check, value + shift)
+            .find_violation(check, value + shift)
             .map(|violation| violation.limit)
     }
 
-    /// A pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if the
-    /// search finds none.
+    /// Finds a pose with the given angles of some servos that the guard accepts with its unrelaxed limits; `None` if
+    /// the search finds no such pose.
     pub fn find_pose(&self, angles: [Option<f64>; 4]) -> Option<Solution> {
         const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
-        let angles_or = |bound_of: fn(&lizard_robot::Servo) -> f64| {
-            ALL_SERVOS.map(|servo| angles[servo].unwrap_or(bound_of(&self.robot.servos()[servo])))
-        };
-        if let Some(pose) = self
-            .robot
-            .solve_if_allowed(angles_or(|servo| servo.neutral))
-        {
+        let neutral = |servo: usize| self.robot.servos()[servo].neutral;
+        let start_angles = ALL_SERVOS.map(|servo| angles[servo].unwrap_or(neutral(servo)));
+        if let Some(pose) = self.robot.solve_if_allowed(start_angles) {
             return Some(pose);
         }
         let bounds = ALL_SERVOS.map(|servo| match angles[servo] {
             Some(angle) => Interval::new(angle, angle),
             None => self.ranges[servo],
         });
-        let mut regions = VecDeque::from([Region::of(bounds)]);
+        let mut regions = VecDeque::from([Region::from_bounds(bounds)]);
         for _ in 0..MAX_SEARCHED_REGIONS {
             let region: Region<4> = regions.pop_front()?;
             if let Some(pose) = self.robot.solve_if_allowed(region.middle) {
@@ -269,8 +265,8 @@ mod tests {
     /// Largest error of the firmware's integer arithmetic, mm (docs/firmware.md).
     const LENGTH_ERROR_MM: f64 = 4.0 / 256.0;
 
-    /// Reads a robot of `robots/`. The suffix " at its type-2 limit" lifts all its limits except that of type 2.
-    fn robot(name: &str) -> Robot {
+    /// Reads a robot from `robots/`. The suffix " at its type-2 limit" lifts all limits except the type-2 limit.
+    fn read_robot(name: &str) -> Robot {
         let file = name.trim_end_matches(" at its type-2 limit");
         let path = format!("{}/../../robots/{file}.toml", env!("CARGO_MANIFEST_DIR"));
         let mut text = std::fs::read_to_string(&path).expect(&path);
@@ -281,15 +277,15 @@ mod tests {
                 ("stroke_min = -15.0", "stroke_min = -80.0"),
                 ("stroke_max = 45.0", "stroke_max = 150.0"),
             ] {
-                assert!(text.contains(from), "{file} has no {from}");
+                assert!(text.contains(from), "{from} is missing in {file}");
                 text = text.replacen(from, to, 1);
             }
         }
         Robot::parse(&text).expect(name)
     }
 
-    /// The robot's limits, relaxed by the largest error of the firmware's integers.
-    fn relaxed_limits(robot: &Robot) -> Limits {
+    /// Relaxes the robot's limits by the largest error of the firmware's integers.
+    fn relax_limits(robot: &Robot) -> Limits {
         let limits = robot.limits();
         Limits {
             type2: limits.type2 - SINE_ERROR,
@@ -300,12 +296,11 @@ mod tests {
         }
     }
 
-    /// Each limit is tested alone, because a pose that approaches some limits, such as that of crossed tips, always
-    /// violates another limit first.
+    /// Each limit is tested alone: a pose near some limits, such as that of crossed tips, always violates another.
     #[test]
-    fn each_limit_is_relaxed_by_more_than_the_firmwares_error_but_not_without_bound() {
+    fn each_limit_is_relaxed_by_slightly_more_than_the_firmwares_error() {
         for name in ["paper", "large", "unequal", "paper at its type-2 limit"] {
-            let robot = robot(name);
+            let robot = read_robot(name);
             let (guard, limits) = (Guard::new(&robot), robot.limits());
             let sines_around = |limit: f64| [limit - SINE_ERROR, limit - 0.1];
             let strokes_around = |end: f64, sign: f64| {
@@ -336,9 +331,9 @@ mod tests {
         const ALL_SERVOS: [usize; 4] = [0, 1, 2, 3];
         let mut reached_checks: Vec<Check> = Vec::new();
         for name in ["paper", "unequal", "paper at its type-2 limit"] {
-            let robot = robot(name);
+            let robot = read_robot(name);
             let guard = Guard::new(&robot);
-            let relaxed = relaxed_limits(&robot);
+            let relaxed = relax_limits(&robot);
             let neutral = robot.servos().each_ref().map(|servo| servo.neutral);
             let violated_check_at = |angles: [f64; 4]| match robot.lizard().solve(&angles.into()) {
                 Ok(solution) => relaxed
@@ -347,14 +342,14 @@ mod tests {
                     .next(),
                 Err(_) => Some(None),
             };
-            // Directions: each servo turns to one side, to the other, or not at all.
+            // In a direction, each servo turns to one side, to the other side, or not at all.
             for direction_index in 0..81 {
                 let direction =
                     [1, 3, 9, 27].map(|divisor| f64::from(direction_index / divisor % 3) - 1.0);
-                for shares in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
+                for factors in [[1.0; 4], [1.0, 0.4, 0.7, 0.2], [0.2, 0.7, 0.4, 1.0]] {
                     let angles_at = |angle_deg: f64| {
                         ALL_SERVOS.map(|servo| {
-                            neutral[servo] + angle_deg * direction[servo] * shares[servo]
+                            neutral[servo] + angle_deg * direction[servo] * factors[servo]
                         })
                     };
                     let (mut accepted_deg, mut refused_deg) = (0.0, 90.0);
@@ -388,7 +383,7 @@ mod tests {
             ("stroke", &Check::STROKE),
         ] {
             let is_reached = reached_checks.iter().any(|check| checks.contains(check));
-            assert!(is_reached, "no pose at the limit of a {limit}");
+            assert!(is_reached, "no pose reaches a {limit} limit");
         }
     }
 }

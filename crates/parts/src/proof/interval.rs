@@ -1,8 +1,7 @@
-//! Interval arithmetic: numbers that are known to lie between two bounds.
+//! Interval arithmetic: numbers between two known bounds.
 //!
 //! Every result is rounded outward to the next f64, so the bounds also hold for the exact result. Existing crates
-//! require compiling for the newest processors (inari, for its rounding modes) or have no sines, and both would
-//! need a wrapper to implement [`Real`].
+//! require the newest processors (inari, for its rounding modes) or have no sines, and cannot implement [`Real`].
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -14,9 +13,9 @@ const SINE_ERROR: f64 = 1e-15;
 /// All numbers from `low` to `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The lower bound.
+    /// Lower bound.
     pub low: f64,
-    /// The upper bound.
+    /// Upper bound.
     pub high: f64,
 }
 
@@ -27,32 +26,32 @@ impl Interval {
         high: f64::INFINITY,
     };
 
-    /// The interval from one number to another.
+    /// Creates the interval between two numbers.
     pub const fn new(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// The largest absolute value in the interval.
+    /// Largest absolute value in the interval.
     pub fn max_abs(self) -> f64 {
         self.low.abs().max(self.high.abs())
     }
 
-    /// The intersection with another interval that contains the same number.
+    /// Returns the intersection with another interval that contains the same number.
     pub fn intersection(self, other: Self) -> Self {
         Self::new(self.low.max(other.low), self.high.min(other.high))
     }
 
     /// Rounds computed bounds outward. Returns all numbers if a bound is NaN.
-    fn rounded_outward(low: f64, high: f64) -> Self {
+    fn round_outward(low: f64, high: f64) -> Self {
         if low.is_nan() || high.is_nan() {
             return Self::ALL;
         }
         Self::new(low.next_down(), high.next_up())
     }
 
-    /// Returns bounds of the sine and of the cosine over all angles in the interval, deg.
+    /// Bounds sine and cosine over all angles in the interval, deg.
     fn sine_and_cosine(self) -> (Self, Self) {
-        // True if the interval, slightly widened, contains this angle or one that differs from it by full turns.
+        // True if the slightly widened interval contains `angle` plus any number of full turns.
         let contains_angle = |angle: f64| {
             let turns = ((self.low - angle) / 360.0 - 1e-9).ceil();
             turns * 360.0 + angle <= self.high + 1e-6
@@ -61,12 +60,14 @@ impl Interval {
         let (sin_b, cos_b) = sin_cos(self.high);
         let bounds_between = |a: f64, b: f64, top_deg: f64, bottom_deg: f64| {
             let (low, high) = (a.min(b) - SINE_ERROR, a.max(b) + SINE_ERROR);
-            let low = if contains_angle(bottom_deg) {
-                -1.0
-            } else {
-                low
-            };
-            Self::new(low, if contains_angle(top_deg) { 1.0 } else { high })
+            Self::new(
+                if contains_angle(bottom_deg) {
+                    -1.0
+                } else {
+                    low
+                },
+                if contains_angle(top_deg) { 1.0 } else { high },
+            )
         };
         let sine = bounds_between(sin_a, sin_b, 90.0, -90.0);
         (sine, bounds_between(cos_a, cos_b, 0.0, 180.0))
@@ -84,7 +85,7 @@ macro_rules! operators {
 }
 
 operators! {
-    Add add(self, other: Self) { Self::rounded_outward(self.low + other.low, self.high + other.high) }
+    Add add(self, other: Self) { Self::round_outward(self.low + other.low, self.high + other.high) }
     Sub sub(self, other: Self) { self + -other }
     Mul mul(self, other: Self) {
         let low = [self.low * other.low, self.low * other.high];
@@ -94,18 +95,18 @@ operators! {
         if (a + b + c + d).is_nan() {
             return Self::ALL;
         }
-        Self::rounded_outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
+        Self::round_outward(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
     }
     Mul mul(self, factor: f64) {
         let (a, b) = (self.low * factor, self.high * factor);
-        Self::rounded_outward(a.min(b), a.max(b))
+        Self::round_outward(a.min(b), a.max(b))
     }
     // A quotient is a product with the reciprocal, which is itself rounded outward.
     Div div(self, other: Self) {
         if other.low <= 0.0 && other.high >= 0.0 {
             return Self::ALL;
         }
-        self * Self::rounded_outward(1.0 / other.high, 1.0 / other.low)
+        self * Self::round_outward(1.0 / other.high, 1.0 / other.low)
     }
 }
 
@@ -122,8 +123,9 @@ impl Real for Interval {
     }
 
     fn sqrt_or_zero(self) -> Self {
-        let root_of = |value: f64| value.max(0.0).sqrt();
-        let Self { low, high } = Self::rounded_outward(root_of(self.low), root_of(self.high));
+        let clamped_root = |value: f64| value.max(0.0).sqrt();
+        let Self { low, high } =
+            Self::round_outward(clamped_root(self.low), clamped_root(self.high));
         Self::new(low.max(0.0), high)
     }
 
@@ -145,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn an_interval_contains_the_results_for_all_numbers_of_its_operands() {
+    fn an_interval_contains_the_results_for_all_numbers_in_its_operands() {
         let mut random = 1_u64;
         let mut next_random = || {
             random = random
@@ -157,9 +159,9 @@ mod tests {
             let [a, b, c, d] = [next_random(), next_random(), next_random(), next_random()];
             let x = Interval::new(a.min(b), a.max(b));
             let y = Interval::new(c.min(d), c.max(d));
-            for share in [0.0, 0.3, 1.0] {
+            for fraction in [0.0, 0.3, 1.0] {
                 let value_at =
-                    |interval: Interval| interval.low + share * (interval.high - interval.low);
+                    |interval: Interval| interval.low + fraction * (interval.high - interval.low);
                 let [p, q] =
                     [x, y].map(|interval| value_at(interval).clamp(interval.low, interval.high));
                 assert!(contains(x + y, p + q) && contains(x - y, p - q) && contains(-x, -p));
@@ -176,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn a_result_is_as_narrow_as_the_exact_range_up_to_rounding() {
+    fn a_result_is_as_narrow_as_the_exact_range_except_for_rounding() {
         let is_near = |interval: Interval, low: f64, high: f64| {
             (interval.low - low).abs() < 1e-14 && (interval.high - high).abs() < 1e-14
         };
@@ -191,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quotient_by_an_interval_with_0_is_unbounded() {
+    fn a_quotient_by_an_interval_that_contains_0_is_unbounded() {
         let quotient = Interval::constant(1.0) / Interval::new(-1.0, 2.0);
         assert_eq!(quotient, Interval::ALL);
         assert_eq!(quotient * Interval::constant(0.0), Interval::ALL);

@@ -1,7 +1,7 @@
 //! Forward-mode automatic differentiation with bounds: dual numbers whose value and derivatives are intervals.
 //!
-//! The closed-form equations of the mechanism take any number type ([`Real`]), so they also take this one, and each
-//! result includes its derivatives by the servos' angles. No derivative is derived by hand.
+//! The closed-form equations of the mechanism accept any number type ([`Real`]), hence this type, too. Each result
+//! includes its derivatives with respect to the servos' angles. No derivative is derived by hand.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -20,15 +20,14 @@ pub struct IntervalDual<const N: usize> {
 }
 
 impl<const N: usize> IntervalDual<N> {
-    /// The angle of one of the servos, deg.
+    /// Creates the angle of one of the servos, deg.
     pub fn angle(servo: usize, bounds: Interval) -> Self {
         let mut angle = Self::constant(0.0);
         (angle.value, angle.derivatives[servo]) = (bounds, Interval::constant(1.0));
         angle
     }
 
-    /// Largest change of the number from its value at the middle angles, if no servo is farther than its half width
-    /// width (deg) from its middle angle.
+    /// Largest change of the number if each servo is within its half width (deg) of its middle angle.
     pub fn largest_change(&self, half_widths: &[f64; N]) -> f64 {
         let slopes = self.derivatives.iter().zip(half_widths);
         slopes.fold(0.0, |sum, (slope, half_width)| {
@@ -36,11 +35,10 @@ impl<const N: usize> IntervalDual<N> {
         })
     }
 
-    /// Tightens the bounds of the number by its value at the middle angles and its largest change from that value.
-    /// Bounds from interval arithmetic are often much wider, because each operation treats its operands as
-    /// independent.
+    /// Tightens the bounds with the value at the middle angles and the largest change from this value. Bounds from
+    /// interval arithmetic are often much wider, because each operation treats its operands as independent.
     pub fn tighten(self, middle: f64, half_widths: &[f64; N]) -> Self {
-        /// A bound of the rounding error of `middle`.
+        /// Upper bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
         let change = self.largest_change(half_widths) + ROUNDING;
         let (low, high) = (middle - change, middle + change);
@@ -53,7 +51,7 @@ impl<const N: usize> IntervalDual<N> {
         }
     }
 
-    /// Returns a function of this number, from its value and from the chain rule for each derivative.
+    /// Returns a function of this number from the function's value and the chain rule for each derivative.
     fn map_chain_rule(self, value: Interval, derivative: impl Fn(Interval) -> Interval) -> Self {
         Self {
             value,
@@ -61,7 +59,7 @@ impl<const N: usize> IntervalDual<N> {
         }
     }
 
-    /// Returns a function of two numbers, from its value and from the chain rule for each pair of derivatives.
+    /// Returns a function of two numbers from the function's value and the chain rule for each pair of derivatives.
     fn zip(
         self,
         other: Self,
@@ -122,7 +120,7 @@ impl<const N: usize> Real for IntervalDual<N> {
 
     fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let (sines, cosines) = Interval::sin_cos_each(degrees.map(|angle| angle.value));
-        // One degree in radians, between its two neighbouring floating-point numbers.
+        // One degree in radians, between the neighbouring floating-point numbers.
         let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
         for i in 0..K {
@@ -142,8 +140,8 @@ mod tests {
 
     const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 45.0, 28.0]);
 
-    /// The coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
-    fn numbers_at<T: Real>([left, right]: [T; 2]) -> [T; 3] {
+    /// Computes the coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
+    fn compute_numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
         let pose = HEAD.pose_unchecked(AssemblyMode::Ahead, left, right);
@@ -151,20 +149,20 @@ mod tests {
     }
 
     #[test]
-    fn bounds_of_a_linkage_contain_its_poses_and_their_rates() {
+    fn bounds_of_a_linkage_contain_its_positions_and_rates() {
         for (left, right) in [(120.0, 60.0), (95.0, 40.0), (140.0, 80.0)] {
             for half_width in [0.01, 0.1, 1.0] {
                 let bounds_around =
                     |middle: f64| Interval::new(middle - half_width, middle + half_width);
                 let angles = [(0, left), (1, right)];
-                let duals = numbers_at(
+                let duals = compute_numbers(
                     angles.map(|(i, angle)| IntervalDual::<2>::angle(i, bounds_around(angle))),
                 );
-                let middle = numbers_at([left, right]);
+                let middle = compute_numbers([left, right]);
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
                     let crank_angles = [left + x * half_width, right + y * half_width];
                     let step_deg = 1e-5;
-                    for (i, value) in numbers_at(crank_angles).into_iter().enumerate() {
+                    for (i, value) in compute_numbers(crank_angles).into_iter().enumerate() {
                         let IntervalDual { value: bounds, .. } = duals[i];
                         assert!(bounds.low <= value && value <= bounds.high);
                         let change = duals[i].largest_change(&[half_width; 2]);
@@ -172,7 +170,7 @@ mod tests {
                         for servo in 0..2 {
                             let mut next_angles = crank_angles;
                             next_angles[servo] += step_deg;
-                            let rate = (numbers_at(next_angles)[i] - value) / step_deg;
+                            let rate = (compute_numbers(next_angles)[i] - value) / step_deg;
                             let Interval { low, high } = duals[i].derivatives[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.

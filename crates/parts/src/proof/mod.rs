@@ -1,17 +1,16 @@
 //! Proof that no two parts collide at any pose that the guard accepts.
 //!
-//! Poses are not sampled. The space of the servos' angles is divided into regions. For each
-//! region the proof shows either that the guard accepts no pose in it, or that the parts stay
-//! apart in all of it: their distance is measured at the region's centre, and in the region no
-//! point moves by more than its largest rate times the region's half width. The rates come from
-//! the closed forms of the mechanism in interval arithmetic (`interval.rs`, `interval_dual.rs`), which
-//! is valid for a coupler near a singularity, too. A region that is too large for either proof
+//! The proof does not sample poses. It divides the space of the servos' angles into regions. For each region it shows
+//! either that the guard accepts no pose in the region, or that the parts stay apart in the whole region: their
+//! distance is measured at the region's centre, and no point moves by more than its largest rate times the region's
+//! half width. The rates come from the mechanism's closed forms in interval arithmetic (`interval.rs`,
+//! `interval_dual.rs`), which also holds for a coupler near a singularity. A region that is too large for either proof
 //! is halved (`search.rs`).
 //!
 //! The relative position of two parts depends only on the servos of their mounts
-//! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. So the whole proof takes
-//! seconds. `shape_pairs.rs` lists the pairs of shapes that have to keep clear, `sweep.rs` leaves
-//! out pairs that are never close, `guard.rs` finds the regions that the guard certainly refuses.
+//! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. The whole proof therefore takes only seconds.
+//! `shape_pairs.rs` lists the pairs of shapes that must stay clear, `sweep.rs` omits pairs that are never close, and
+//! `guard.rs` finds the regions that the guard certainly refuses.
 
 pub(crate) mod clearance;
 mod guard;
@@ -35,9 +34,9 @@ pub use search::FAR_MM;
 use search::{Nearest, SearchResult};
 use shape_pairs::Task;
 
-/// Least allowed distance of parts that are not designed to touch, mm: more than a printer's error.
+/// Least allowed distance between parts that are not designed to touch, mm: more than a printer's error.
 pub const MIN_GAP_MM: f64 = 0.2;
-/// Largest overlap that still counts as touching, for parts that are designed to touch, mm.
+/// Largest overlap of parts designed to touch that still counts as touching, mm.
 const TOUCH_OVERLAP: f64 = 0.02;
 
 /// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other.
@@ -46,19 +45,19 @@ const JOINT_GRID_ANGLES: u32 = 6;
 /// Two bodies and their least distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NearestPair {
-    /// The name of one body.
+    /// Name of one body.
     pub first: String,
-    /// The name of the other body.
+    /// Name of the other body.
     pub second: String,
-    /// Lower bound of their distance over all accepted poses, mm; below 0 they may overlap.
+    /// Lower bound of the bodies' distance over all accepted poses, mm; below 0 the bodies may overlap.
     #[serde(rename = "proved")]
     pub lower_bound: f64,
-    /// An accepted pose with nearly the distance `lower_bound`; `None` if the bodies come no nearer
-    /// than [`FAR_MM`], or if no such pose is found.
+    /// Accepted pose with nearly the distance `lower_bound`; `None` if the bodies come no closer than [`FAR_MM`], or if
+    /// no such pose is found.
     #[serde(rename = "seen")]
     pub witness: Option<Clearance>,
-    /// Servo angles, deg, near which no larger distance could be proved; `None` if `lower_bound` is
-    /// close to the distance in `witness`. The angles are near the guard's limits, or just beyond.
+    /// Servo angles near which no larger distance could be proved, deg; `None` if `lower_bound` is close to the
+    /// distance in `witness`. The angles are near the guard's limits, or just beyond.
     #[serde(rename = "doubt")]
     pub unproved_angles: Option<[f64; 4]>,
 }
@@ -66,11 +65,10 @@ pub struct NearestPair {
 /// A proof that a robot's parts keep clear of each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Proof {
-    /// The nearest two bodies of each pair of mounts, without bodies that are designed to touch;
-    /// the nearest pair first.
+    /// The nearest two bodies of each pair of mounts, without bodies that are designed to touch, by ascending distance.
     pub separate_pairs: Vec<NearestPair>,
-    /// The nearest two bodies of each pair of mounts among bodies that are designed to touch,
-    /// such as a pin and its hole. Their distance is the gap between them.
+    /// The nearest two bodies of each pair of mounts among bodies that are designed to touch, such as a pin and its
+    /// hole; their distance is the gap.
     pub touching_pairs: Vec<NearestPair>,
     /// Bounds of each servo's angle over all accepted poses, deg.
     pub ranges: [[f64; 2]; 4],
@@ -80,13 +78,13 @@ pub struct Proof {
     pub region_count: u64,
 }
 
-/// Two parts that do not keep clear of each other.
+/// Two parts that do not stay clear of each other.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Clash {
     /// Two parts that overlap.
     #[error("{0}")]
     Overlap(Box<Clearance>),
-    /// Two parts that come too near to each other.
+    /// Two parts that come too close to each other.
     #[error("{0}, which is less than {MIN_GAP_MM} mm")]
     Narrow(Box<Clearance>),
     /// Two parts that may overlap at poses near the guard's limits, or just beyond.
@@ -99,7 +97,7 @@ impl fmt::Display for NearestPair {
         let (first, second, bound) = (&self.first, &self.second, self.lower_bound);
         write!(f, "{first} and {second} ")?;
         let Some([a, b, c, d]) = self.unproved_angles else {
-            return write!(f, "are {bound:.2} mm apart or more");
+            return write!(f, "are at least {bound:.2} mm apart");
         };
         match bound < 0.0 {
             true => write!(f, "may overlap by {:.2} mm", -bound)?,
@@ -110,7 +108,7 @@ impl fmt::Display for NearestPair {
 }
 
 impl NearestPair {
-    /// The clash of the bodies if they come, or may come, closer than `min_mm`; `None` otherwise.
+    /// Returns the clash of the bodies if they come, or may come, closer than `min_mm`; otherwise `None`.
     fn clash(&self, min_mm: f64) -> Option<Clash> {
         match &self.witness {
             Some(clearance) if clearance.mm < min_mm.min(0.0) => {
@@ -124,7 +122,7 @@ impl NearestPair {
         }
     }
 
-    /// The distance in `witness`, mm; the proved bound if `witness` is `None`.
+    /// Distance in `witness`, mm; the proved bound if `witness` is `None`.
     fn least_distance(&self) -> f64 {
         self.witness
             .as_ref()
@@ -141,17 +139,14 @@ impl Proof {
     /// Decides whether the parts fit.
     ///
     /// # Errors
-    /// Returns the worst pair: parts that overlap, that come nearer than [`MIN_GAP_MM`], or that could
-    /// not be proved to keep that distance.
+    /// Returns the worst pair: parts that overlap, come closer than [`MIN_GAP_MM`], or have no proof of this distance.
     pub fn judge(&self) -> Result<(), Clash> {
-        let separate_clashes = self
-            .separate_pairs
-            .iter()
-            .map(|pair| (pair.clash(MIN_GAP_MM), pair.least_distance()));
-        let touching_clashes = self
-            .touching_pairs
-            .iter()
-            .map(|pair| (pair.clash(-TOUCH_OVERLAP), pair.least_distance()));
+        let separate_pairs = self.separate_pairs.iter();
+        let separate_clashes =
+            separate_pairs.map(|pair| (pair.clash(MIN_GAP_MM), pair.least_distance()));
+        let touching_pairs = self.touching_pairs.iter();
+        let touching_clashes =
+            touching_pairs.map(|pair| (pair.clash(-TOUCH_OVERLAP), pair.least_distance()));
         let clashes = separate_clashes
             .chain(touching_clashes)
             .filter(|(clash, _)| clash.is_some());
@@ -160,34 +155,33 @@ impl Proof {
     }
 }
 
-/// The questions of a proof. Each asks for the least distance between the bodies of two mounts, and can be answered
-/// on another machine, because it does not depend on the others.
-pub struct Questions<'a> {
+/// The tasks of a proof. Each task finds the least distance between the bodies of two mounts. The tasks are
+/// independent, so other machines can complete them.
+pub struct ProofTasks<'a> {
     assembly: &'a Assembly,
     guard: Guard<'a>,
     tasks: Vec<Task>,
-    /// True if the quick check found parts that come too near. Then `tasks` holds only the worst.
+    /// True if the quick check found parts that come too close; `tasks` then holds only the worst tasks.
     has_clash: bool,
-    /// Accepted poses at which pairs are tested for being pinned to each other.
+    /// Accepted poses at which the proof tests whether pairs are pinned to each other.
     joint_poses: Vec<Solution>,
 }
 
-/// The answer to one question.
+/// The result of a task.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Answer {
-    /// The pinned pair with the smallest gap; `None` if no pair is pinned.
+pub struct TaskResult {
+    /// Pinned pair with the smallest gap; `None` if no pair is pinned.
     pinned: Option<NearestPair>,
-    /// The nearest of the pairs that are not pinned, and the number of regions of poses checked; `None` if all
-    /// pairs are pinned.
+    /// Nearest pair that is not pinned, and the number of checked regions of poses; `None` if all pairs are pinned.
     nearest: Option<(NearestPair, u64)>,
 }
 
-impl<'a> Questions<'a> {
-    /// Collects the questions about the pairs of bodies that `is_chosen` accepts.
+impl<'a> ProofTasks<'a> {
+    /// Collects the tasks for the pairs of bodies that `is_chosen` accepts.
     pub fn new(assembly: &'a Assembly, is_chosen: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
         let tasks = Task::all(assembly, &guard, FAR_MM, is_chosen);
-        let clashing_tasks = quick_check::worst_tasks(assembly, &tasks);
+        let clashing_tasks = quick_check::find_worst_tasks(assembly, &tasks);
         Self {
             has_clash: clashing_tasks.is_some(),
             tasks: clashing_tasks.unwrap_or(tasks),
@@ -197,18 +191,18 @@ impl<'a> Questions<'a> {
         }
     }
 
-    /// The number of questions.
+    /// Number of tasks.
     pub fn count(&self) -> usize {
         self.tasks.len()
     }
 
-    /// Answers one question, by its index below [`Questions::count`].
-    pub fn answer_one(&self, index: usize) -> Answer {
-        self.answer_within(index, search::MAX_REGIONS)
+    /// Completes the task with an index below [`ProofTasks::count`].
+    pub fn complete_one(&self, index: usize) -> TaskResult {
+        self.complete_within(index, search::MAX_REGIONS)
     }
 
-    /// Answers one question; checks at most `max_regions` regions.
-    fn answer_within(&self, index: usize, max_regions: u64) -> Answer {
+    /// Completes a task; checks at most `max_regions` regions.
+    fn complete_within(&self, index: usize, max_regions: u64) -> TaskResult {
         let mut task = self.tasks[index].clone();
         let pinned = match task.may_touch {
             true => self
@@ -220,18 +214,18 @@ impl<'a> Questions<'a> {
             let nearest =
                 search::find_least_distance(self.assembly, &self.guard, &task, max_regions);
             let regions = nearest.region_count;
-            (self.assembly.nearest_pair(nearest), regions)
+            (self.assembly.to_nearest_pair(nearest), regions)
         });
-        Answer { pinned, nearest }
+        TaskResult { pinned, nearest }
     }
 
-    /// Answers all questions and composes the proof. `known_answer` returns an answer that [`Questions::answer_one`]
-    /// has already given for an index. The proof ends at the first parts that do not fit, unless the quick check has
-    /// found such parts: then each of its worst pairs is bounded. After parts that may not fit, the remaining questions
-    /// are answered with fewer regions and without `known_answer`.
-    pub fn answer_all(
+    /// Completes all tasks and composes the proof. `known_result` returns the result of an earlier call of
+    /// [`ProofTasks::complete_one`] for an index. The proof ends at the first parts that do not fit, unless the quick
+    /// check has found such parts: then each of its worst pairs is bounded. After parts that may not fit, the remaining
+    /// tasks are completed with fewer regions and without `known_result`.
+    pub fn complete_all(
         &self,
-        mut known_answer: impl FnMut(usize) -> Option<Answer>,
+        mut known_result: impl FnMut(usize) -> Option<TaskResult>,
         mut progress: impl FnMut(usize, usize),
     ) -> Proof {
         let mut max_regions = search::MAX_REGIONS;
@@ -245,14 +239,14 @@ impl<'a> Questions<'a> {
         let count = self.count();
         for (index, task) in self.tasks.iter().enumerate() {
             progress(index, count);
-            let answer = match max_regions {
+            let result = match max_regions {
                 search::MAX_REGIONS => {
-                    known_answer(index).unwrap_or_else(|| self.answer_one(index))
+                    known_result(index).unwrap_or_else(|| self.complete_one(index))
                 }
-                fewer_regions => self.answer_within(index, fewer_regions),
+                fewer_regions => self.complete_within(index, fewer_regions),
             };
-            proof.touching_pairs.extend(answer.pinned);
-            let Some((nearest_pair, regions)) = answer.nearest else {
+            proof.touching_pairs.extend(result.pinned);
+            let Some((nearest_pair, regions)) = result.nearest else {
                 continue;
             };
             proof.region_count += regions;
@@ -262,7 +256,7 @@ impl<'a> Questions<'a> {
             } else {
                 proof.separate_pairs.push(nearest_pair);
             }
-            // One clash is enough to refuse. Questions about parts that barely fit take long.
+            // One clash is enough to refuse the robot. Tasks with parts that barely fit take long.
             match clash {
                 Some(Clash::Unproved(_)) => max_regions = search::MAX_REGIONS / 10,
                 Some(_) if !self.has_clash => break,
@@ -278,43 +272,41 @@ impl<'a> Questions<'a> {
 }
 
 impl Assembly {
-    /// Bounds the distance of any two parts over all poses that the guard accepts;
-    /// [`Proof::judge`] then decides whether the parts fit. If some parts come too near at one
-    /// of the poses of the quick check, only the worst of them are bounded; otherwise the proof
-    /// ends at the first parts that do not fit. `progress` is called with the number of
-    /// questions answered and their total.
+    /// Bounds the distance between any two parts over all accepted poses; [`Proof::judge`] then decides whether the
+    /// parts fit. If some parts come too close at a pose of the quick check, only the worst of them are bounded;
+    /// otherwise the proof ends at the first parts that do not fit. `progress` is called with the number of completed
+    /// tasks and the number of all tasks.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Proof {
         self.prove_chosen(|_, _| true, progress)
     }
 
-    /// [`Assembly::prove`] for the pairs of bodies that `is_chosen` accepts.
+    /// Bounds the distances as [`Assembly::prove`] does, for the pairs of bodies that `is_chosen` accepts.
     pub fn prove_chosen(
         &self,
         is_chosen: impl Fn(&Body, &Body) -> bool,
         progress: impl FnMut(usize, usize),
     ) -> Proof {
-        Questions::new(self, is_chosen).answer_all(|_| None, progress)
+        ProofTasks::new(self, is_chosen).complete_all(|_| None, progress)
     }
 
-    /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if
-    /// no pair is pinned, or if there are no poses. A pin and its round hole have the same centre
-    /// at every pose, so their gap never changes.
+    /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` without pinned pairs or
+    /// without poses. A pin and its round hole have the same centre at every pose, so their gap is constant.
     fn remove_pinned_pairs(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
-        let placement_of = |pose| {
-            let [a, b] = task.mounts.map(|mount| self.place(mount, pose));
+        let relative_placement = |pose| {
+            let [a, b] = task.mounts.map(|mount| self.placement(mount, pose));
             b.relative_to(&a)
         };
-        let placements: Vec<_> = poses.iter().map(placement_of).collect();
+        let placements: Vec<_> = poses.iter().map(relative_placement).collect();
         let pose = poses.first()?;
         let mut nearest: Option<NearestPair> = None;
         task.shape_pairs.retain(|pair| {
-            let gap = pair.pinned_gap(&placements);
+            let gap = pair.compute_pinned_gap(&placements);
             if let Some(mm) = gap
                 && nearest
                     .as_ref()
                     .is_none_or(|nearest| mm < nearest.lower_bound)
             {
-                nearest = Some(self.nearest_pair(SearchResult {
+                nearest = Some(self.to_nearest_pair(SearchResult {
                     lower_bound: mm,
                     bodies: pair.bodies,
                     nearest: Some(Nearest { pose: *pose, mm }),
@@ -327,11 +319,11 @@ impl Assembly {
         nearest
     }
 
-    /// Converts a search result to body names and angles. Angles on which the result does not depend are neutral.
-    fn nearest_pair(&self, result: SearchResult) -> NearestPair {
+    /// Converts a search result to names and angles; angles without effect on the result are neutral.
+    fn to_nearest_pair(&self, result: SearchResult) -> NearestPair {
         let [first, second] = result.bodies.map(|body| self.bodies()[body].name.clone());
         let neutral = self.robot().servos().each_ref().map(|servo| servo.neutral);
-        let angles_of = |optional_angles: [Option<f64>; 4]| {
+        let fill_angles = |optional_angles: [Option<f64>; 4]| {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
@@ -341,7 +333,7 @@ impl Assembly {
                 pose: pose.pose.into(),
                 mm,
             }),
-            unproved_angles: result.unproved_angles.map(angles_of),
+            unproved_angles: result.unproved_angles.map(fill_angles),
             first,
             second,
             lower_bound: result.lower_bound,

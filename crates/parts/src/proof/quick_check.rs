@@ -1,9 +1,9 @@
 //! A quick check at a few poses before the proof.
 //!
-//! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding the distance of each takes
-//! minutes. But one pose at which two parts collide is enough to refuse the robot. So the parts are first checked
-//! at poses where collisions are likely: at neutral, on a coarse grid, and at the limits of the guard in every
-//! direction from neutral. If some pairs are too near at these poses, the proof bounds only the worst of them.
+//! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding all distances takes minutes. But
+//! one pose at which two parts collide is enough to refuse the robot. The parts are therefore first checked at poses
+//! where collisions are likely: at neutral, on a coarse grid, and at the guard's limits in every direction from
+//! neutral. If some pairs are too close at these poses, the proof bounds only the worst of them.
 
 use lizard_kinematics::Solution;
 use lizard_robot::Robot;
@@ -18,33 +18,35 @@ const HALVING_COUNT: usize = 12;
 /// Largest number of tasks that the proof bounds if the quick check finds collisions.
 const MAX_WORST_TASKS: usize = 3;
 
-/// Returns at most [`MAX_WORST_TASKS`] tasks: of those whose parts come too near at a checked pose, the ones whose
-/// parts come nearest. `None` if no parts come too near.
-pub fn worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
+/// Finds the tasks whose parts come too close at a checked pose, at most the [`MAX_WORST_TASKS`] closest. Returns
+/// `None` if no parts come too close.
+pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>> {
     let robot = assembly.robot();
     let mut poses: Vec<Solution> = robot
         .solve_if_allowed(robot.neutral_pose().into())
         .into_iter()
         .collect();
-    poses.extend((0..81).filter_map(|direction| last_accepted_pose(robot, direction)));
+    poses.extend((0..81).filter_map(|direction| find_last_accepted_pose(robot, direction)));
     poses.extend(assembly.grid_poses(GRID_ANGLES_PER_SERVO));
-    let least_distance_of = |task: &Task| {
-        let distances = poses.iter().map(|pose| distance_at(assembly, task, pose));
+    let find_least_distance = |task: &Task| {
+        let distances = poses
+            .iter()
+            .map(|pose| compute_distance(assembly, task, pose));
         distances.fold(f64::INFINITY, f64::min)
     };
-    let measured_tasks = tasks.iter().map(|task| (least_distance_of(task), task));
-    let mut too_near: Vec<_> = measured_tasks
+    let measured_tasks = tasks.iter().map(|task| (find_least_distance(task), task));
+    let mut worst_tasks: Vec<_> = measured_tasks
         .filter(|(mm, task)| *mm < task.min_distance())
         .collect();
-    too_near.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    let too_near = too_near.into_iter().take(MAX_WORST_TASKS);
-    let too_near: Vec<_> = too_near.map(|(_, task)| task.clone()).collect();
-    (!too_near.is_empty()).then_some(too_near)
+    worst_tasks.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let worst_tasks = worst_tasks.into_iter().take(MAX_WORST_TASKS);
+    let worst_tasks: Vec<_> = worst_tasks.map(|(_, task)| task.clone()).collect();
+    (!worst_tasks.is_empty()).then_some(worst_tasks)
 }
 
-/// The least distance of a task's parts at a pose, mm; infinite if they are certainly far enough apart.
-fn distance_at(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
-    let [a, b] = task.mounts.map(|mount| assembly.place(mount, pose));
+/// Computes the least distance between a task's parts at a pose, mm; infinite if they are certainly far enough apart.
+fn compute_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
+    let [a, b] = task.mounts.map(|mount| assembly.placement(mount, pose));
     let placement = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
     let near_pairs =
@@ -53,24 +55,24 @@ fn distance_at(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     distances.fold(f64::INFINITY, f64::min)
 }
 
-/// The last pose that the guard accepts on the line from neutral in one of 81 directions: each servo turns toward
-/// one limit of its travel, toward the other, or not at all. `None` if the guard refuses neutral.
-fn last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
+/// Finds the last accepted pose on the line from neutral in one of 81 directions: each servo turns towards one limit of
+/// its travel, towards the other limit, or not at all. `None` if the guard refuses neutral.
+fn find_last_accepted_pose(robot: &Robot, direction: u32) -> Option<Solution> {
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let end_offsets = [0, 1, 2, 3].map(|servo| {
         let (low, high) = robot.servos()[servo].travel();
         [low, 0.0, high][(direction / 3_u32.pow(servo as u32) % 3) as usize]
     });
-    let pose_at = |share: f64| {
-        robot.solve_if_allowed([0, 1, 2, 3].map(|i| neutral[i] + share * end_offsets[i]))
+    let pose_at = |fraction: f64| {
+        robot.solve_if_allowed([0, 1, 2, 3].map(|i| neutral[i] + fraction * end_offsets[i]))
     };
-    let (mut accepted_share, mut refused_share) = (0.0, 1.0);
+    let (mut accepted, mut refused) = (0.0, 1.0);
     for _ in 0..HALVING_COUNT {
-        let share = (accepted_share + refused_share) / 2.0;
-        match pose_at(share) {
-            Some(_) => accepted_share = share,
-            None => refused_share = share,
+        let middle = (accepted + refused) / 2.0;
+        match pose_at(middle) {
+            Some(_) => accepted = middle,
+            None => refused = middle,
         }
     }
-    pose_at(accepted_share)
+    pose_at(accepted)
 }

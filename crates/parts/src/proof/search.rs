@@ -1,9 +1,8 @@
 //! Branch and bound: the least distance in a region, with a proven lower bound.
 //!
 //! The search is best-first: it repeatedly halves the region with the smallest lower bound. The distance at a region's
-//! middle, less the largest motion of any point from there, is a lower bound of every distance in the region. The
-//! distance at any accepted pose is an upper bound of the least distance. The search ends when the two bounds are
-//! close.
+//! middle minus the largest displacement of any point is a lower bound of all distances in the region. The distance at
+//! any accepted pose is an upper bound of the least distance. The search ends when the two bounds are close.
 
 use std::collections::BTreeMap;
 
@@ -17,43 +16,43 @@ use crate::layers::placement::Placement;
 
 /// Distance beyond which parts count as far apart and are not measured, mm.
 pub const FAR_MM: f64 = 2.0;
-/// A bound of the rounding error of a distance, mm.
+/// Upper bound of a distance's rounding error, mm.
 const ROUNDING_MM: f64 = 1e-6;
-/// Absolute part of the difference between lower and upper bound at which the search ends, mm.
+/// Absolute part of the difference between the bounds at which the search ends, mm.
 const TOLERANCE_MM: f64 = 0.01;
-/// Relative part of the difference at which the search ends, as a share of the distance.
+/// Relative part of the difference at which the search ends, as a fraction of the distance.
 const RELATIVE_TOLERANCE: f64 = 0.05;
 /// Relative part of the difference for parts designed to touch, for which only the sign of the gap matters.
 const TOUCHING_RELATIVE_TOLERANCE: f64 = 0.5;
-/// Half width below which regions are not halved, deg.
+/// Half width below which a region is not halved, deg.
 const MIN_HALF_WIDTH_DEG: f64 = 0.002;
-/// The largest number of regions checked.
+/// Largest number of regions to check.
 pub const MAX_REGIONS: u64 = 100_000;
-/// The largest number of regions once an overlap is found: its exact depth does not matter.
+/// Largest number of regions to check once an overlap is found, whose exact depth does not matter.
 const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
 /// The result of a search for the least distance.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
-    /// Lower bound of the distance, mm; never more than [`FAR_MM`].
+    /// Lower bound of the distance, mm; at most [`FAR_MM`].
     pub lower_bound: f64,
-    /// The two nearest bodies, by their index in [`Assembly::bodies`].
+    /// The two nearest bodies, as indices in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// The accepted pose with the least distance found; `None` if no distance below [`FAR_MM`] is found.
+    /// Accepted pose with the least found distance; `None` if no distance below [`FAR_MM`] is found.
     pub nearest: Option<Nearest>,
-    /// Angles of some servos, deg, near which no larger distance could be proved; only if the bound is less than the
+    /// Angles of some servos near which no larger distance could be proved, deg; `None` if the bound is close to the
     /// distance in `nearest`.
     pub unproved_angles: Option<[Option<f64>; 4]>,
-    /// Number of regions checked.
+    /// Number of checked regions.
     pub region_count: u64,
 }
 
-/// A pose, and the distance of the two shapes that are nearest there.
+/// A pose, and the distance between the nearest two shapes at this pose.
 #[derive(Clone, Debug)]
 pub struct Nearest {
-    /// An accepted pose.
+    /// Accepted pose.
     pub pose: Solution,
-    /// The distance, mm.
+    /// Distance, mm.
     pub mm: f64,
 }
 
@@ -62,11 +61,11 @@ struct BoundedRegion<const N: usize> {
     region: Region<N>,
     /// Lower bound of all distances in the region, mm.
     lower_bound: f64,
-    /// The index of the pair of shapes with the bound `lower_bound`.
+    /// Index of the pair of shapes with the bound `lower_bound`.
     bounding_pair: u32,
-    /// The servo across whose angle the region is to be halved.
+    /// Servo across whose angle the region will be halved.
     split_servo: usize,
-    /// The indices of the pairs of shapes that may come nearer than the least distance found.
+    /// Indices of the pairs of shapes that may come closer than the least found distance.
     candidate_pairs: Vec<u32>,
 }
 
@@ -112,9 +111,9 @@ struct Search<'a, const N: usize> {
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// The accepted pose with the least distance found.
+    /// Accepted pose with the least found distance.
     nearest: Option<Nearest>,
-    /// The index of the pair of shapes with the distance in `nearest`.
+    /// Index of the pair of shapes with the distance in `nearest`.
     nearest_pair_index: u32,
     /// Number of regions checked so far.
     region_count: u64,
@@ -129,7 +128,7 @@ impl<const N: usize> Search<'_, N> {
     }
 
     fn run(mut self, max_regions: u64) -> SearchResult {
-        let all_poses = Region::of(self.servos.map(|servo| self.guard.ranges[servo]));
+        let all_poses = Region::from_bounds(self.servos.map(|servo| self.guard.ranges[servo]));
         let all_pairs: Vec<u32> = (0..self.task.shape_pairs.len() as u32).collect();
         let relative_tolerance = if self.task.may_touch {
             TOUCHING_RELATIVE_TOLERANCE
@@ -137,8 +136,8 @@ impl<const N: usize> Search<'_, N> {
             RELATIVE_TOLERANCE
         };
         // The region with the least bound comes first. Regions with equal bounds are ordered by their middles, so the
-        // order is always the same.
-        let key_of = |bounded_region: &BoundedRegion<N>| {
+        // order is deterministic.
+        let order_key = |bounded_region: &BoundedRegion<N>| {
             (
                 total_order_key(bounded_region.lower_bound),
                 bounded_region.region.middle.map(total_order_key),
@@ -146,7 +145,7 @@ impl<const N: usize> Search<'_, N> {
         };
         let first_region = self.bound_region(all_poses, &all_pairs).into_iter();
         let mut open_regions: BTreeMap<_, _> = first_region
-            .map(|bounded_region| (key_of(&bounded_region), bounded_region))
+            .map(|bounded_region| (order_key(&bounded_region), bounded_region))
             .collect();
         while let Some((_, bounded_region)) = open_regions.pop_first() {
             let upper_bound = self.upper_bound();
@@ -160,26 +159,23 @@ impl<const N: usize> Search<'_, N> {
             } else {
                 max_regions
             };
-            if bounded_region
-                .region
-                .half_widths
-                .iter()
-                .all(|half_width| *half_width < MIN_HALF_WIDTH_DEG)
-                || self.region_count >= max_regions
-            {
+            let mut half_widths = bounded_region.region.half_widths.iter();
+            let is_small = half_widths.all(|half_width| *half_width < MIN_HALF_WIDTH_DEG);
+            if is_small || self.region_count >= max_regions {
                 return self.into_result(bounded_region.lower_bound, Some(&bounded_region));
             }
             for half_region in bounded_region.region.halves(bounded_region.split_servo) {
                 let bounded_half = self.bound_region(half_region, &bounded_region.candidate_pairs);
-                open_regions
-                    .extend(bounded_half.map(|bounded_half| (key_of(&bounded_half), bounded_half)));
+                open_regions.extend(
+                    bounded_half.map(|bounded_half| (order_key(&bounded_half), bounded_half)),
+                );
             }
         }
         let upper_bound = self.upper_bound();
         self.into_result(upper_bound, None)
     }
 
-    /// Converts the search to its result. `unproved_region` is the region in which no larger distance could be proved.
+    /// Converts the search to its result. In `unproved_region`, no larger distance could be proved.
     fn into_result(
         self,
         lower_bound: f64,
@@ -197,7 +193,7 @@ impl<const N: usize> Search<'_, N> {
         }
     }
 
-    /// The angles at the middle of a region, in servo order.
+    /// Angles at the middle of a region, deg, servo order.
     fn angles(&self, region: &Region<N>) -> [Option<f64>; 4] {
         let mut angles = [None; 4];
         for (servo, angle) in self.servos.iter().zip(region.middle) {
@@ -206,19 +202,19 @@ impl<const N: usize> Search<'_, N> {
         angles
     }
 
-    /// Bounds a region's distances. Returns `None` if no pair of shapes can be nearer than the least distance found
-    /// so far, or if the guard accepts no pose of the region.
+    /// Bounds a region's distances. Returns `None` if no pair of shapes can be closer than the least distance found so
+    /// far, or if the guard accepts no pose of the region.
     fn bound_region(
         &mut self,
         region: Region<N>,
         candidate_pairs: &[u32],
     ) -> Option<BoundedRegion<N>> {
         self.region_count += 1;
-        let (bounds, middle) = self.guard.cranks(&self.servos, &region)?;
-        // The placements of both mounts: at the region's middle, and bounds for the whole region.
+        let (bounds, middle) = self.guard.bound_cranks(&self.servos, &region)?;
+        // Placements of both mounts at the region's middle, and bounds for the whole region.
         let [(a, bounds_a), (b, bounds_b)] = self.task.mounts.map(|mount| {
-            let placement = self.assembly.place_for_cranks(mount, &middle);
-            let bounds = self.assembly.place_for_cranks(mount, &bounds);
+            let placement = self.assembly.placement_for_cranks(mount, &middle);
+            let bounds = self.assembly.placement_for_cranks(mount, &bounds);
             (placement, tighten(&bounds, &placement, &region))
         });
         let placement = b.relative_to(&a);
@@ -232,10 +228,10 @@ impl<const N: usize> Search<'_, N> {
             region,
             lower_bound: f64::INFINITY,
             bounding_pair: 0,
-            split_servo: most_influential_servo(&bounds, &region),
+            split_servo: find_most_influential_servo(&bounds, &region),
             candidate_pairs: Vec::new(),
         };
-        // At the region's middle the loops of the linkages may not close.
+        // The linkages' loops may not close at the region's middle.
         let loops_close = placement.origin.is_finite() && placement.x_axis.is_finite();
         let (mut min_distance, mut nearest_pair) = (f64::INFINITY, 0);
         for &index in candidate_pairs {
@@ -250,10 +246,9 @@ impl<const N: usize> Search<'_, N> {
                     (min_distance, nearest_pair) = (distance, index);
                 }
                 let lower_bound = shape_pair.distance_bound(&placement, &bounds, &region);
-                if lower_bound.is_nan() {
-                    f64::NEG_INFINITY
-                } else {
-                    lower_bound
+                match lower_bound.is_nan() {
+                    true => f64::NEG_INFINITY,
+                    false => lower_bound,
                 }
             };
             if lower_bound < self.upper_bound() {
@@ -277,8 +272,7 @@ impl<const N: usize> Search<'_, N> {
     }
 }
 
-/// Tightens the bounds of a placement in a region by its value at the region's middle and its largest change from
-/// that value.
+/// Tightens a placement's bounds in a region with the value at the region's middle and the largest change from it.
 fn tighten<const N: usize>(
     bounds: &Placement<IntervalDual<N>>,
     middle: &Placement,
@@ -294,28 +288,27 @@ fn tighten<const N: usize>(
     }
 }
 
-/// The index of the servo whose range in a region changes a placement most.
-fn most_influential_servo<const N: usize>(
+/// Finds the index of the servo whose range in a region changes a placement most.
+fn find_most_influential_servo<const N: usize>(
     bounds: &Placement<IntervalDual<N>>,
     region: &Region<N>,
 ) -> usize {
-    /// The lever arm by which a rotation is converted into a distance, mm.
+    /// Lever arm that converts a rotation to a distance, mm.
     const LEVER_ARM_MM: f64 = 30.0;
     let (origin, axis_shift) = (bounds.origin, bounds.x_axis * LEVER_ARM_MM);
     let coordinates = [origin.x, origin.y, axis_shift.x, axis_shift.y];
-    let influence_of = |servo: usize| {
+    let influence = |servo: usize| {
         let half_width = region.half_widths[servo];
         coordinates.iter().fold(0.0, |sum, coordinate| {
-            // Without a finite bound, the widest angle is halved.
             let change = coordinate.derivatives[servo].max_abs() * half_width;
-            sum + if change.is_finite() {
-                change
-            } else {
-                half_width * 1e6
+            // Without a finite bound, the widest angle is halved.
+            sum + match change.is_finite() {
+                true => change,
+                false => half_width * 1e6,
             }
         })
     };
     (0..N)
-        .max_by(|a, b| influence_of(*a).total_cmp(&influence_of(*b)).then(b.cmp(a)))
+        .max_by(|a, b| influence(*a).total_cmp(&influence(*b)).then(b.cmp(a)))
         .unwrap_or(0)
 }

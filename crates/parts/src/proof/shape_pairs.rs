@@ -1,7 +1,7 @@
 //! The pairs of shapes that must stay clear of each other, grouped by mounts.
 //!
-//! A layer is the union of its shapes minus its holes. A shape is clear of a layer if it is beside the layer's
-//! shapes, or within one of its holes, as a pin is. The larger of the two distances counts.
+//! A layer is the union of its shapes minus its holes. A shape is clear of a layer if it is beside the layer's shapes
+//! or, like a pin, inside one of the layer's holes. The larger of the two distances counts.
 
 use lizard_kinematics::Vector;
 
@@ -19,17 +19,17 @@ const SAME_HEIGHT_MM: f64 = 1e-6;
 /// A pair of shapes of two bodies.
 #[derive(Clone, Debug)]
 pub struct ShapePair {
-    /// The bodies, by their index in [`Assembly::bodies`].
+    /// Bodies, as indices in [`Assembly::bodies`].
     pub bodies: [usize; 2],
     /// Vertical gap between the shapes, mm; 0 if their heights overlap.
     height_gap: f64,
-    /// The first shape, in the first mount's frame.
+    /// First shape, frame of the first mount.
     first: Shape,
-    /// The second shape, in the second mount's frame.
+    /// Second shape, frame of the second mount.
     second: Shape,
     /// Enclosing discs of both shapes: centre and radius.
     discs: [(Vector, f64); 2],
-    /// Largest distance of the second shape's points from the origin of its frame, mm.
+    /// Largest distance between the second shape's points and the origin of its frame, mm.
     lever_arm: f64,
     /// Holes of the second shape's layer that may hold the first shape.
     holes_for_first: Vec<Shape>,
@@ -44,12 +44,12 @@ pub struct Task {
     pub mounts: [Mount; 2],
     /// True if the pairs are designed to touch.
     pub may_touch: bool,
-    /// The pairs, each with a shape on either mount.
+    /// Pairs, each with a shape on either mount.
     pub shape_pairs: Vec<ShapePair>,
 }
 
 impl Task {
-    /// Least distance that the task's pairs must keep, mm.
+    /// Least allowed distance between the task's pairs, mm.
     pub fn min_distance(&self) -> f64 {
         if self.may_touch {
             -TOUCH_OVERLAP
@@ -58,20 +58,16 @@ impl Task {
         }
     }
 
-    /// The servos on which the relative placement of the two mounts depends.
+    /// Lists the servos on which the relative placement of the two mounts depends.
     pub fn servos(&self) -> Vec<usize> {
-        let mut servos: Vec<_> = self
-            .mounts
-            .iter()
-            .flat_map(|mount| mount.servos())
-            .collect();
+        let mut servos = self.mounts.map(Mount::servos).concat();
         servos.sort_unstable();
         servos.dedup();
         servos
     }
 
-    /// The tasks of a robot: all pairs of bodies that are less than `max_gap_mm` apart both in height and between the
-    /// rectangles that they never leave. Bodies that are designed to touch are paired only if their heights overlap.
+    /// Collects the tasks of a robot: all pairs of bodies that are less than `max_gap_mm` apart both in height and
+    /// between the rectangles that they never leave. Bodies designed to touch are paired only if their heights overlap.
     pub fn all(
         assembly: &Assembly,
         guard: &Guard,
@@ -79,7 +75,7 @@ impl Task {
         is_chosen: impl Fn(&Body, &Body) -> bool,
     ) -> Vec<Self> {
         let mut tasks: Vec<Self> = Vec::new();
-        let rectangles = sweep::body_rectangles(assembly, guard);
+        let rectangles = sweep::find_body_rectangles(assembly, guard);
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
@@ -89,7 +85,7 @@ impl Task {
                 }
                 let may_touch = assembly.may_touch(a, b);
                 let max_gap_mm = if may_touch { 0.0 } else { max_gap_mm };
-                let shape_pairs = shape_pairs(i, a, j, b, max_gap_mm);
+                let shape_pairs = pair_shapes(i, a, j, b, max_gap_mm);
                 if shape_pairs.is_empty() {
                     continue;
                 }
@@ -110,8 +106,8 @@ impl Task {
     }
 }
 
-/// The pairs of shapes of two bodies whose heights are less than `max_gap_mm` apart.
-fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<ShapePair> {
+/// Pairs the shapes of two bodies whose heights are less than `max_gap_mm` apart.
+fn pair_shapes(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<ShapePair> {
     let mut shape_pairs = Vec::new();
     for p in &a.prisms {
         for q in &b.prisms {
@@ -119,10 +115,9 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<S
             if height_gap > max_gap_mm - SAME_HEIGHT_MM {
                 continue;
             }
-            let clamped_height_gap = if height_gap < -SAME_HEIGHT_MM {
-                0.0
-            } else {
-                height_gap.max(SAME_HEIGHT_MM)
+            let clamped_height_gap = match height_gap < -SAME_HEIGHT_MM {
+                true => 0.0,
+                false => height_gap.max(SAME_HEIGHT_MM),
             };
             for first in &p.filled_shapes {
                 for second in &q.filled_shapes {
@@ -136,8 +131,8 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<S
                             (middle, shape.max_distance_from(middle))
                         }),
                         lever_arm: second.max_distance_from(Vector::default()) - second.radius,
-                        holes_for_first: large_enough_holes(q, first),
-                        holes_for_second: large_enough_holes(p, second),
+                        holes_for_first: select_holes(q, first),
+                        holes_for_second: select_holes(p, second),
                     });
                 }
             }
@@ -146,21 +141,16 @@ fn shape_pairs(i: usize, a: &Body, j: usize, b: &Body, max_gap_mm: f64) -> Vec<S
     shape_pairs
 }
 
-/// The holes of a layer that are at least as wide as a shape.
-fn large_enough_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
-    let is_large_enough = |hole: &&Shape| hole.diameter() >= shape.diameter();
-    prism
-        .cut_shapes
-        .iter()
-        .filter(is_large_enough)
-        .cloned()
-        .collect()
+/// Selects the holes of a layer that are at least as wide as a shape.
+fn select_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
+    let holes = prism.cut_shapes.iter();
+    let large_holes = holes.filter(|hole| hole.diameter() >= shape.diameter());
+    large_holes.cloned().collect()
 }
 
 impl ShapePair {
     /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame moves by up to
-    /// `shift_mm` and the tips of its unit axes by up to `turn`. This is a quick test: false does not mean that the
-    /// shapes are near.
+    /// `shift_mm` and the tips of its unit axes by up to `turn`. This test is quick: false does not mean close.
     pub fn is_far(&self, placement: &Placement, [shift_mm, turn]: [f64; 2], min_mm: f64) -> bool {
         let [(a, a_radius), (b, b_radius)] = self.discs;
         let gap = (placement.map(b) - a).length() - a_radius - b_radius;
@@ -168,24 +158,24 @@ impl ShapePair {
         gap - shift_mm - 2.0 * turn * self.lever_arm >= min_mm
     }
 
-    /// The gap of a pinned pair, mm, which is constant: a pin in the centre of a round hole, or a disc whose centre
-    /// is fixed in the other shape's frame, in all of `placements`. `None` if the pair is not pinned.
-    pub fn pinned_gap(&self, placements: &[Placement]) -> Option<f64> {
-        /// A bound of the rounding error of a joint's position, mm.
+    /// Computes the constant gap of a pinned pair, mm: a pin in the centre of a round hole, or a disc whose centre is
+    /// fixed in the other shape's frame at all `placements`. `None` if the pair is not pinned.
+    pub fn compute_pinned_gap(&self, placements: &[Placement]) -> Option<f64> {
+        /// Upper bound of a joint position's rounding error, mm.
         const ROUNDING_MM: f64 = 1e-6;
-        let centre_of = |shape: &Shape| match shape.points[..] {
+        let disc_centre = |shape: &Shape| match shape.points[..] {
             [centre] => Some(centre),
             _ => None,
         };
         let keeps_position = |first: Vector, second: Vector| {
             let error_at = |placement: &Placement| (placement.map(second) - first).length();
-            placements
-                .iter()
-                .all(|placement| error_at(placement) < ROUNDING_MM)
+            let mut placements = placements.iter();
+            placements.all(|placement| error_at(placement) < ROUNDING_MM)
         };
         let gap_in_hole = |pin: &Shape, holes: &[Shape], stays: &dyn Fn(Vector, Vector) -> bool| {
-            let middle = centre_of(pin)?;
-            let is_around = |hole: &&Shape| centre_of(hole).is_some_and(|hole| stays(middle, hole));
+            let middle = disc_centre(pin)?;
+            let is_around =
+                |hole: &&Shape| disc_centre(hole).is_some_and(|hole| stays(middle, hole));
             let holes = holes.iter().filter(is_around);
             holes.map(|hole| hole.radius - pin.radius).reduce(f64::max)
         };
@@ -209,20 +199,20 @@ impl ShapePair {
             })
             .or_else(|| {
                 let (own_centre, other_centre) =
-                    (centre_of(first)?, placement.unmap(centre_of(first)?));
+                    (disc_centre(first)?, placement.unmap(disc_centre(first)?));
                 let gap = || gap_beside(other_centre, first.radius, second, holes[0]);
                 keeps_position(own_centre, other_centre).then(gap)
             })
             .or_else(|| {
                 let (own_centre, other_centre) =
-                    (centre_of(second)?, placement.map(centre_of(second)?));
+                    (disc_centre(second)?, placement.map(disc_centre(second)?));
                 let gap = || gap_beside(other_centre, second.radius, first, holes[1]);
                 keeps_position(other_centre, own_centre).then(gap)
             })
             .map(|gap| self.spatial_distance(gap))
     }
 
-    /// The distance of two shapes, mm, from their distance in plan view.
+    /// Computes the shapes' distance from their distance in plan view, mm.
     fn spatial_distance(&self, plan_distance: f64) -> f64 {
         match self.height_gap > 0.0 {
             true => plan_distance.max(0.0).hypot(self.height_gap),
@@ -230,14 +220,13 @@ impl ShapePair {
         }
     }
 
-    /// The distance of the two shapes, mm, negative if they overlap; `placement` is the second shape's frame in the
-    /// first shape's frame.
+    /// Computes the shapes' distance, mm; negative if they overlap. `placement` is the second frame in the first frame.
     pub fn distance(&self, placement: &Placement) -> f64 {
         self.lower_bound(placement, |_| Vector::default())
     }
 
-    /// Lower bound of the shapes' distance in a region, mm, from their relative placement at the region's middle and
-    /// the largest motion of each point in the region.
+    /// Computes a lower bound of the shapes' distance in a region, mm, from their relative placement at the region's
+    /// middle and the largest displacement of each point in the region.
     pub fn distance_bound<const N: usize>(
         &self,
         placement: &Placement,
@@ -260,28 +249,26 @@ impl ShapePair {
         })
     }
 
-    /// Lower bound of the shapes' distance, mm, while each point of the second shape moves along x and y by up to
-    /// `largest_change_of`.
+    /// Computes a lower bound of the shapes' distance, mm, if each point of the second shape moves along x and y by at
+    /// most `max_displacement`.
     fn lower_bound(
         &self,
         placement: &Placement,
-        largest_change_of: impl Fn(&Shape) -> Vector,
+        max_displacement: impl Fn(&Shape) -> Vector,
     ) -> f64 {
         let second = self.second.placed(placement);
-        let change = largest_change_of(&self.second);
-        let mut distance = self.first.distance(&second) - change.length();
+        let displacement = max_displacement(&self.second);
+        let mut distance = self.first.distance(&second) - displacement.length();
         if self.height_gap > 0.0 {
             return self.spatial_distance(distance);
         }
         for hole in &self.holes_for_first {
-            // A hole that moves has the same effect as a pin that moves.
-            distance = distance.max(
-                self.first
-                    .depth_in(&hole.placed(placement), largest_change_of(hole)),
-            );
+            // A moving hole has the same effect as a moving pin.
+            let placed_hole = hole.placed(placement);
+            distance = distance.max(self.first.depth_in(&placed_hole, max_displacement(hole)));
         }
         for hole in &self.holes_for_second {
-            distance = distance.max(second.depth_in(hole, change));
+            distance = distance.max(second.depth_in(hole, displacement));
         }
         distance
     }

@@ -1,7 +1,7 @@
-//! Rectangles, seen from above, that the bodies never leave at any accepted pose.
+//! Rectangles, seen from above, that the bodies do not leave at any accepted pose.
 //!
-//! Most pairs of bodies are never near each other, such as the couplers of head and tail. If their rectangles are
-//! apart, their distance need not be bounded.
+//! Most pairs of bodies, such as the couplers of head and tail, are never close to each other. If their rectangles are
+//! apart, the proof omits the pair.
 
 use lizard_kinematics::Vector;
 
@@ -10,14 +10,14 @@ use super::interval::Interval;
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount};
 
-/// Half width below which regions are not halved, deg.
+/// Half width below which a region is not halved, deg.
 const MIN_HALF_WIDTH_DEG: f64 = 2.0;
 
 /// Bounds of x and y, mm, chassis frame.
 pub type Rectangle = [Interval; 2];
 
-/// Returns the rectangle of each body, in the order of [`Assembly::bodies`].
-pub fn body_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
+/// Finds the rectangle of each body, in the order of [`Assembly::bodies`].
+pub fn find_body_rectangles(assembly: &Assembly, guard: &Guard) -> Vec<Rectangle> {
     const EMPTY: Interval = Interval::new(f64::INFINITY, f64::NEG_INFINITY);
     let mut rectangles = vec![[EMPTY; 2]; assembly.bodies().len()];
     let mut mounts: Vec<Mount> = Vec::new();
@@ -60,9 +60,9 @@ struct Sweep<'a> {
 impl Sweep<'_> {
     fn run<const N: usize>(&mut self, servos: [usize; N]) {
         let ranges = servos.map(|servo| self.guard.ranges[servo]);
-        let mut regions = vec![Region::of(ranges)];
+        let mut regions = vec![Region::from_bounds(ranges)];
         while let Some(region) = regions.pop() {
-            let Some((bounds, _)) = self.guard.cranks(&servos, &region) else {
+            let Some((bounds, _)) = self.guard.bound_cranks(&servos, &region) else {
                 continue;
             };
             let widest_servo =
@@ -72,7 +72,7 @@ impl Sweep<'_> {
                     regions.extend(region.halves(widest_servo));
                 }
                 _ => {
-                    let placement = self.assembly.place_for_cranks(self.mount, &bounds);
+                    let placement = self.assembly.placement_for_cranks(self.mount, &bounds);
                     self.cover(|point| {
                         let position = placement.map(point);
                         [position.x.value, position.y.value]
@@ -82,16 +82,13 @@ impl Sweep<'_> {
         }
     }
 
-    /// Extends the rectangle of each body of the mount so that it encloses the bounds of the body's points.
-    fn cover(&mut self, bounds_of: impl Fn(Vector) -> Rectangle) {
-        let bodies = self
-            .assembly
-            .bodies()
-            .iter()
-            .zip(self.rectangles.iter_mut());
+    /// Extends the rectangle of each body on the mount to enclose the bounds of the body's points.
+    fn cover(&mut self, bound_point: impl Fn(Vector) -> Rectangle) {
+        let bodies = self.assembly.bodies().iter();
+        let bodies = bodies.zip(self.rectangles.iter_mut());
         for (body, rectangle) in bodies.filter(|(body, _)| body.mount == self.mount) {
-            for (point, radius) in points_of(body) {
-                for (side, bounds) in rectangle.iter_mut().zip(bounds_of(point)) {
+            for (point, radius) in list_points(body) {
+                for (side, bounds) in rectangle.iter_mut().zip(bound_point(point)) {
                     side.low = side.low.min(bounds.low - radius);
                     side.high = side.high.max(bounds.high + radius);
                 }
@@ -100,8 +97,8 @@ impl Sweep<'_> {
     }
 }
 
-/// The points of a body's shapes, each with its shape's radius.
-fn points_of(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
+/// Lists the points of a body's shapes, each with the shape's radius.
+fn list_points(body: &Body) -> impl Iterator<Item = (Vector, f64)> {
     let shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
     shapes.flat_map(|shape| shape.points.iter().map(|&point| (point, shape.radius)))
 }

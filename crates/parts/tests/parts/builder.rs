@@ -1,19 +1,18 @@
 //! Tests of the details that matter to a builder: leads, springs, screws on sale, walls, marks, roofs.
 //!
-//! The outlines of the layers are tested point by point, so the tests do not depend on the shapes that the proof of
-//! fit uses.
+//! The layers' outlines are tested point by point, so the tests do not depend on the shapes in the proof of fit.
 
 use lizard_kinematics::{End, Vector};
-use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, coupon};
+use lizard_parts::{Body, Kind, Loop, Mesh, Outline, Part, Prism, Solid, build_coupon};
 
-use crate::{ROBOTS, assembly, body, slotted_assembly};
+use crate::{ROBOTS, build_assembly, build_slotted_assembly, find_body};
 
 fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
-/// Points of a rectangle, given by its centre and size, every 0.3 mm.
-fn points_in_rectangle(centre: Vector, size: Vector) -> Vec<Vector> {
+/// Lists the points of a rectangle with this centre and size, at intervals of 0.3 mm.
+fn list_rectangle_points(centre: Vector, size: Vector) -> Vec<Vector> {
     let offsets_over = |size: f64| {
         let count = (size / 0.3).ceil() as i32;
         (0..=count).map(move |i| size * (f64::from(i) / f64::from(count) - 0.5))
@@ -22,26 +21,28 @@ fn points_in_rectangle(centre: Vector, size: Vector) -> Vec<Vector> {
     rows.map(|offset| centre + offset).collect()
 }
 
-/// The heights and the outline of each layer.
-fn layers_of(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
-    let layer_of = |prism: &Prism| (prism.z, Outline::of(prism));
-    prisms.iter().map(layer_of).collect()
+/// Computes the heights and the outline of each layer.
+fn compute_outlines(prisms: &[Prism]) -> Vec<([f64; 2], Outline)> {
+    let layers = prisms.iter();
+    layers
+        .map(|prism| (prism.z, Outline::from_prism(prism)))
+        .collect()
 }
 
 #[test]
 fn the_plate_has_openings_for_the_servos_with_their_leads() {
     for name in ROBOTS {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         let servo = assembly.robot().parts().servo;
-        let plate = layers_of(&body(&assembly, "plate").prisms);
+        let plate = compute_outlines(&find_body(&assembly, "plate").prisms);
         for end in End::ALL {
             for servo_index in end.servos() {
                 let case_centre = assembly.layout().plate.case_centres[servo_index];
                 let edge = case_centre + vector(0.0, end.sign() * servo.length / 2.0);
-                // The lead's bundle is 4 x 1.2 mm, at the end where the shaft is.
+                // The lead is 4 x 1.2 mm, at the shaft's end of the case.
                 let lead =
-                    points_in_rectangle(edge + vector(0.0, end.sign() * 0.6), vector(4.0, 1.2));
-                let case = points_in_rectangle(case_centre, vector(servo.width, servo.length));
+                    list_rectangle_points(edge + vector(0.0, end.sign() * 0.6), vector(4.0, 1.2));
+                let case = list_rectangle_points(case_centre, vector(servo.width, servo.length));
                 for (z, outline) in &plate {
                     for point in lead.iter().chain(&case) {
                         assert!(
@@ -51,7 +52,7 @@ fn the_plate_has_openings_for_the_servos_with_their_leads() {
                         );
                     }
                 }
-                // The shaft is at the same end of the case as the lead.
+                // The shaft is at the lead's end of the case.
                 let shaft = assembly.layout().shafts[servo_index];
                 assert!((shaft - edge).length() < servo.shaft + 1e-9);
             }
@@ -61,10 +62,10 @@ fn the_plate_has_openings_for_the_servos_with_their_leads() {
 
 #[test]
 fn the_coupon_has_the_openings_of_the_plate() {
-    let assembly = assembly("paper", "");
+    let assembly = build_assembly("paper", "");
     let parts = assembly.robot().parts();
-    let [coupon, _] = coupon(parts);
-    let floor = Outline::of(&coupon.prisms[0]);
+    let [coupon, _] = build_coupon(parts);
+    let floor = Outline::from_prism(&coupon.prisms[0]);
     // The largest holes are the openings, one for each fit.
     let mut holes: Vec<&Loop> = floor.pieces[0][1..].iter().collect();
     holes.sort_by(|a, b| a.area().total_cmp(&b.area()));
@@ -83,17 +84,17 @@ fn the_coupon_has_the_openings_of_the_plate() {
 }
 
 #[test]
-fn a_mounted_coil_has_the_length_between_its_hooks_and_lies_in_its_strut() {
+fn a_mounted_coil_extends_between_its_hooks_and_lies_in_its_strut() {
     for name in ROBOTS {
-        let assembly = slotted_assembly(name, "");
+        let assembly = build_slotted_assembly(name, "");
         let parts = assembly.robot().parts();
         for (leg_index, leg) in ["LF", "RF", "RH", "LH"].into_iter().enumerate() {
             let [spring, strut] =
-                ["spring", "strut"].map(|noun| body(&assembly, &format!("{noun} {leg}")));
+                ["spring", "strut"].map(|noun| find_body(&assembly, &format!("{noun} {leg}")));
             let shape = &spring.prisms[0].filled_shapes[0];
             let x = shape.points.iter().map(|point| point.x);
             let length = x.clone().fold(f64::MIN, f64::max) - x.fold(f64::MAX, f64::min);
-            // Each hook has the coil's inner diameter and goes around the outer side of an M3 screw.
+            // Each hook has the coil's inner diameter, and goes around the far side of an M3 screw.
             let inner_diameter = parts.spring.outer_diameter - 2.0 * parts.spring.wire_diameter;
             let expected_length =
                 assembly.layout().legs[leg_index].strut_length + 3.0 - 2.0 * inner_diameter;
@@ -109,24 +110,24 @@ fn a_mounted_coil_has_the_length_between_its_hooks_and_lies_in_its_strut() {
             // The coil also lies in its strut when the leg lags as much as the slot allows.
             for lag in [0.0, 2.5, 5.0] {
                 let size = vector(length + lag, parts.spring.outer_diameter);
-                for (z, outline) in layers_of(&strut.prisms) {
+                for (z, outline) in compute_outlines(&strut.prisms) {
                     if z[1] <= bottom || top <= z[0] {
                         continue;
                     }
-                    for point in points_in_rectangle(coil_centre + vector(lag / 2.0, 0.0), size) {
+                    for point in list_rectangle_points(coil_centre + vector(lag / 2.0, 0.0), size) {
                         assert!(!outline.contains(point), "{name} {leg}: {point:?} {z:?}");
                     }
                 }
             }
-            let link = body(&assembly, &format!("link A{}", leg_index + 1));
+            let link = find_body(&assembly, &format!("link A{}", leg_index + 1));
             assert!(link.z()[0] - top > 0.2, "{name}: {top}");
         }
     }
 }
 
 #[test]
-fn a_coil_that_is_too_high_in_its_strut_is_refused() {
-    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+fn a_coil_too_high_in_its_strut_is_refused() {
+    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "spring LF") {
             body.prisms[0].z = body.prisms[0].z.map(|z| z + 0.6);
         }
@@ -135,7 +136,7 @@ fn a_coil_that_is_too_high_in_its_strut_is_refused() {
     let proof = altered_assembly.prove_chosen(has_spring, |_, _| ());
     let clash = proof
         .judge()
-        .expect_err("the coil must be refused as too near to the link");
+        .expect_err("the coil must be refused as too close to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }
 
@@ -143,7 +144,7 @@ fn a_coil_that_is_too_high_in_its_strut_is_refused() {
 fn every_screw_has_a_length_that_shops_sell() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
-            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let assembly = build_assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
             let screws = assembly.bodies().iter().filter_map(|body| match body.kind {
                 Kind::Screw(length) | Kind::HexScrew(length) => Some((&body.name, length)),
                 _ => None,
@@ -160,7 +161,7 @@ fn every_screw_has_a_length_that_shops_sell() {
 #[test]
 fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     for name in ROBOTS {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         let boss_z = assembly.stack().servo_bottom + assembly.robot().parts().servo.boss;
         let bodies = assembly.bodies().iter();
         let screws = bodies.filter(|body| matches!(body.kind, Kind::HornScrew(_)));
@@ -173,16 +174,16 @@ fn the_screws_of_a_horn_do_not_reach_the_servos_boss() {
     }
 }
 
-/// Points along a loop, every 0.2 mm.
-fn points_along(outline_loop: &Loop) -> Vec<Vector> {
+/// Lists the points along a loop, at intervals of 0.2 mm.
+fn list_loop_points(outline_loop: &Loop) -> Vec<Vector> {
     let mut points = Vec::new();
     for (side, end) in outline_loop.sides_with_end_points() {
         let chord = end - side.from;
         match side.arc(end) {
             None => {
                 let count = (chord.length() / 0.2).ceil() as u32;
-                let share_at = |i| f64::from(i) / f64::from(count);
-                points.extend((0..count).map(|i| side.from + chord * share_at(i)));
+                let step = chord * (1.0 / f64::from(count));
+                points.extend((0..count).map(|i| side.from + step * f64::from(i)));
             }
             Some((centre, radius)) => {
                 let arc_angle = 4.0 * side.bulge.atan();
@@ -198,36 +199,36 @@ fn points_along(outline_loop: &Loop) -> Vec<Vector> {
     points
 }
 
-/// The thickness of the thinnest wall between two loops of a layer of a part, mm.
-fn thinnest_wall(part: &Part) -> f64 {
-    let mut least_mm = f64::INFINITY;
+/// Computes the thickness of the thinnest wall between two loops of a part's layer, mm.
+fn compute_min_wall(part: &Part) -> f64 {
+    let mut min_mm = f64::INFINITY;
     for prism in &part.prisms {
-        for piece in &Outline::of(prism).pieces {
-            let point_loops: Vec<_> = piece.iter().map(points_along).collect();
+        for piece in &Outline::from_prism(prism).pieces {
+            let point_loops: Vec<_> = piece.iter().map(list_loop_points).collect();
             for (i, a) in point_loops.iter().enumerate() {
                 for (b, point) in point_loops[i + 1..]
                     .iter()
                     .flat_map(|b| a.iter().map(move |p| (b, p)))
                 {
                     let distances = b.iter().map(|b_point| (*b_point - *point).length());
-                    least_mm = distances.fold(least_mm, f64::min);
+                    min_mm = distances.fold(min_mm, f64::min);
                 }
             }
         }
     }
-    least_mm
+    min_mm
 }
 
 #[test]
-fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
+fn walls_beside_pockets_and_holes_are_as_thick_as_in_robot_toml() {
     for name in ["paper", "unequal"] {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         let wall = assembly.robot().parts().wall;
         let mut checked_count = 0;
-        for part in assembly.parts() {
+        for part in assembly.collect_parts() {
             // These parts have thinner walls by design. In the plate, the servos' screws are close to the openings, and
-            // the engraved lines of a number are close to each other. In a link, the horn's screws are close to the
-            // hub. The coil limits the thickness of a ring. The dome of a pad tapers to nothing at its hole.
+            // the engraved strokes are close to each other. In a link, the horn's screws are close to the hub. The coil
+            // limits the thickness of a ring. A pad's dome tapers to zero at its hole.
             let exceptions = ["plate", "link", "strut ring", "pad"];
             if exceptions
                 .iter()
@@ -235,12 +236,9 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
             {
                 continue;
             }
-            let thinnest_mm = thinnest_wall(&part);
-            assert!(
-                thinnest_mm > wall - 0.02,
-                "{name}: {} {thinnest_mm:.2}",
-                part.name
-            );
+            let min_mm = compute_min_wall(&part);
+            let part_name = &part.name;
+            assert!(min_mm > wall - 0.02, "{name}: {part_name} {min_mm:.2} mm");
             checked_count += 1;
         }
         assert!(checked_count > 10);
@@ -248,21 +246,21 @@ fn walls_beside_pockets_and_holes_are_as_thick_as_robot_toml_says() {
 }
 
 #[test]
-fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
-    let assembly = assembly("paper", "");
-    let link = body(&assembly, "link A1");
-    let floor = Outline::of(&link.prisms[0]);
-    let outer_points = points_along(&floor.pieces[0][0]);
+fn a_wall_surrounds_each_hexagon_pocket_of_a_link() {
+    let assembly = build_assembly("paper", "");
+    let link = find_body(&assembly, "link A1");
+    let floor = Outline::from_prism(&link.prisms[0]);
+    let outer_points = list_loop_points(&floor.pieces[0][0]);
     let mut pocket_count = 0;
     for hole in &floor.pieces[0][1..] {
         if hole.sides.len() != 6 {
             continue;
         }
         pocket_count += 1;
-        for corner in points_along(hole) {
+        for corner in list_loop_points(hole) {
             let distances = outer_points.iter().map(|point| (*point - corner).length());
             let wall_mm = distances.fold(f64::INFINITY, f64::min);
-            assert!(wall_mm > 1.58, "{wall_mm}");
+            assert!(wall_mm > 1.58, "{wall_mm} mm");
         }
     }
     assert_eq!(pocket_count, 2);
@@ -271,8 +269,8 @@ fn a_hexagon_pocket_of_a_link_has_a_wall_around_it() {
 #[test]
 fn parts_that_look_alike_have_different_marks() {
     for name in ["paper", "large", "unequal"] {
-        let parts = assembly(name, "").parts();
-        let noun_of = |part: &Part| {
+        let parts = build_assembly(name, "").collect_parts();
+        let part_noun = |part: &Part| {
             let name = &part.body_names[0];
             name.rsplit_once(' ')
                 .map_or(&**name, |(noun, _)| noun)
@@ -282,21 +280,25 @@ fn parts_that_look_alike_have_different_marks() {
         for part in &parts {
             let same_noun = parts
                 .iter()
-                .filter(|listed| noun_of(listed) == noun_of(part));
+                .filter(|listed| part_noun(listed) == part_noun(part));
             let is_spacer = part.name.starts_with("spacer");
             let is_unmarked = same_noun.count() == 1 || is_spacer;
             assert_eq!(part.mark.is_empty(), is_unmarked, "{}", part.name);
             if part.mark.is_empty() {
                 continue;
             }
-            marks.push((noun_of(part), part.mark.clone()));
-            // The mark is engraved, so some of the part's material is missing.
-            let (printed_layers, roof_count) = part.printed_layers();
-            let solid = Solid::of(&printed_layers);
+            marks.push((part_noun(part), part.mark.clone()));
+            // The engraved mark removes some of the part's material.
+            let (printed_layers, roof_count) = part.build_printed_layers();
+            let solid = Solid::from_prisms(&printed_layers);
             let roof_volume = 0.3 * 9.0 * roof_count as f64;
             let max_volume = part.volume() + roof_volume - 0.5;
             assert!(solid.volume < max_volume, "{name}: {}", part.name);
-            assert!(Mesh::of(&solid).is_closed(), "{name}: {}", part.name);
+            assert!(
+                Mesh::from_solid(&solid).is_closed(),
+                "{name}: {}",
+                part.name
+            );
         }
         let mark_count = marks.len();
         marks.sort();
@@ -320,10 +322,10 @@ fn parts_that_look_alike_have_different_marks() {
 fn no_hole_of_a_printed_part_begins_in_mid_air() {
     for name in ["paper", "large", "unequal"] {
         let mut roof_count = 0;
-        for part in assembly(name, "").parts() {
-            let (printed_layers, part_roof_count) = part.printed_layers();
+        for part in build_assembly(name, "").collect_parts() {
+            let (printed_layers, part_roof_count) = part.build_printed_layers();
             roof_count += part_roof_count * part.count();
-            for pair in layers_of(&printed_layers).windows(2) {
+            for pair in compute_outlines(&printed_layers).windows(2) {
                 let [([_, top_below], outline_below), (z, outline)] = pair else {
                     continue;
                 };
@@ -334,7 +336,7 @@ fn no_hole_of_a_printed_part_begins_in_mid_air() {
                     .loops()
                     .filter(|outline_loop| outline_loop.area() < 0.0)
                 {
-                    // At some point just beside the hole, the layer below supports this layer.
+                    // The layer below supports this layer at some point beside the hole.
                     let Some((middle, radius)) = hole.circle() else {
                         continue;
                     };
@@ -346,7 +348,7 @@ fn no_hole_of_a_printed_part_begins_in_mid_air() {
                 }
             }
         }
-        // There are two closed holes in each link, and one in each crank, foot and pad.
+        // Each link has two closed holes; each crank, foot and pad has one.
         assert_eq!(roof_count, 20, "{name}");
     }
 }

@@ -1,17 +1,17 @@
 //! Tests that the pages about parts agree with the code: values, shopping list, steps.
 
-use lizard_parts::{Bill, buying_table, places_table, steps};
+use lizard_parts::{Bill, build_steps, format_buying_table, format_places_table};
 use lizard_robot::{Parts, Robot};
 
-use crate::{assembly, neutral_solution};
+use crate::{build_assembly, solve_at_neutral};
 
 fn read_file(path: &str) -> String {
     let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The TOML block of docs/build.md that lists all keys.
-fn keys_block() -> String {
+/// Reads the TOML block of docs/build.md that lists all keys.
+fn read_keys_block() -> String {
     let page = read_file("docs/build.md");
     let blocks = page.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|rest| rest.split("```").next());
@@ -22,10 +22,10 @@ fn keys_block() -> String {
 #[test]
 fn the_build_page_has_the_default_values() {
     let paper = read_file("robots/paper.toml");
-    let robot = Robot::parse(&format!("{paper}\n{}", keys_block()))
+    let robot = Robot::parse(&format!("{paper}\n{}", read_keys_block()))
         .expect("the keys in docs/build.md are valid");
     let paper = Robot::parse(&paper).expect("robots/paper.toml is valid");
-    // The foot's position, an optional key, is the one that results from the hips.
+    // The optional key for the foot's position has the value that follows from the hips.
     let mut parts = *robot.parts();
     assert!(parts.foot.take().is_some());
     assert_eq!(parts, Parts::default());
@@ -35,8 +35,8 @@ fn the_build_page_has_the_default_values() {
 
 #[test]
 fn the_build_page_has_every_key() {
-    let block = keys_block();
-    // The names of all fields, from their debug output. Those of the spring are longer than their keys.
+    let block = read_keys_block();
+    // The debug output contains the names of all fields. The spring's names are longer than its keys.
     let debug_text = format!("{:#?}", Parts::default());
     let mut checked_count = 0;
     for line in debug_text.lines() {
@@ -56,14 +56,14 @@ fn the_build_page_has_every_key() {
         };
         assert!(
             block.lines().any(is_key_line),
-            "docs/build.md has no {name}"
+            "{name} is missing in docs/build.md"
         );
         checked_count += 1;
     }
     assert!(checked_count > 30, "{checked_count} keys of {debug_text}");
 }
 
-/// Compares the text of a page between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
+/// Compares a page's text between a start mark and the end mark with `expected`. If BLESS_DOCS is set, writes
 /// `expected` into the page instead.
 fn check_or_write_quote(path: &str, start: &str, expected: &str) {
     const END: &str = "<!-- end of the list -->";
@@ -83,10 +83,18 @@ fn check_or_write_quote(path: &str, start: &str, expected: &str) {
 }
 
 #[test]
-fn the_pages_quote_the_lists_of_the_bill() {
-    let assembly = assembly("paper", "[leg.drive]\nkind = \"rigid\"");
-    let bill = Bill::of(&assembly, &assembly.parts(), &neutral_solution(&assembly));
-    let buying_list = format!("{}\n{}\n", buying_table(&bill.bought), bill.price_text());
+fn the_pages_quote_the_bills_lists() {
+    let assembly = build_assembly("paper", "[leg.drive]\nkind = \"rigid\"");
+    let bill = Bill::compute(
+        &assembly,
+        &assembly.collect_parts(),
+        &solve_at_neutral(&assembly),
+    );
+    let buying_list = format!(
+        "{}\n{}\n",
+        format_buying_table(&bill.bought),
+        bill.format_prices()
+    );
     for (path, mark, list) in [
         (
             "docs/quickstart.md",
@@ -96,17 +104,17 @@ fn the_pages_quote_the_lists_of_the_bill() {
         (
             "docs/quickstart.md",
             "the list for a radio",
-            &buying_table(&bill.radio),
+            &format_buying_table(&bill.radio),
         ),
         (
             "docs/build.md",
             "the places on the robot",
-            &places_table(assembly.robot().parts().battery),
+            &format_places_table(assembly.robot().parts().battery),
         ),
     ] {
         let start = format!("<!-- {mark}; a test holds it -->\n");
         check_or_write_quote(path, &start, list);
-        // The guide contains the list, too.
+        // The guide also contains the list.
         assert!(bill.to_string().contains(list), "{mark}");
     }
     for word in ["strap", "wire", "switch", "fuse", "strip", "plug"] {
@@ -116,7 +124,7 @@ fn the_pages_quote_the_lists_of_the_bill() {
 
 #[test]
 fn the_pages_have_the_mass_of_robot_toml() {
-    let mass = assembly("paper", "").robot().ground().body.mass;
+    let mass = build_assembly("paper", "").robot().ground().body.mass;
     let mass_sentence = format!("The parts weigh {mass:.0} g.");
     assert!(
         read_file("docs/twin.md").contains(&mass_sentence),
@@ -130,12 +138,12 @@ fn the_pages_have_the_mass_of_robot_toml() {
 }
 
 #[test]
-fn the_quickstart_goes_through_the_steps_of_the_guide_in_their_order() {
+fn the_quickstart_lists_the_guides_steps_in_order() {
     let page = read_file("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
     let entries = lines.flat_map(|line| line.trim_end_matches('.').split("; "));
     let entries: Vec<_> = entries.map(str::to_owned).collect();
-    let numbered_steps = (1..).zip(steps(false));
+    let numbered_steps = (1..).zip(build_steps(false));
     let expected = numbered_steps.map(|(number, step)| format!("step {number}, {}", step.title));
     assert_eq!(entries, expected.collect::<Vec<_>>());
 }

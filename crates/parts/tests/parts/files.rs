@@ -1,19 +1,19 @@
 //! Tests of the files' content: distances between holes, and identical bytes on every run.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Assembly, Body, Loop, Mount, Outline, part_files, sheets};
+use lizard_parts::{Assembly, Body, Loop, Mount, Outline, draw_sheets, make_part_files};
 
-use crate::body;
+use crate::find_body;
 
-fn assembly(name: &str) -> Assembly {
-    crate::slotted_assembly(name, "")
+fn build_assembly(name: &str) -> Assembly {
+    crate::build_slotted_assembly(name, "")
 }
 
-/// The centres, from above, of a body's clearance holes for M3 screws.
-fn holes_of(body: &Body) -> Vec<(f64, f64)> {
+/// Finds the centres, seen from above, of a body's clearance holes for M3 screws.
+fn find_clearance_holes(body: &Body) -> Vec<(f64, f64)> {
     let mut holes: Vec<(f64, f64)> = Vec::new();
     for prism in &body.prisms {
-        for (middle, radius) in Outline::of(prism).loops().filter_map(Loop::circle) {
+        for (middle, radius) in Outline::from_prism(prism).loops().filter_map(Loop::circle) {
             let is_same_hole = |&(x, y): &(f64, f64)| (x - middle.x).hypot(y - middle.y) < 1e-6;
             if (radius - 1.6).abs() < 1e-6 && !holes.iter().any(is_same_hole) {
                 holes.push((middle.x, middle.y));
@@ -26,19 +26,19 @@ fn holes_of(body: &Body) -> Vec<(f64, f64)> {
 /// Asserts that a body has two holes that are `mm` apart.
 #[track_caller]
 fn assert_hole_distance(assembly: &Assembly, name: &str, mm: f64) {
-    let holes = holes_of(body(assembly, name));
-    let error_of =
+    let holes = find_clearance_holes(find_body(assembly, name));
+    let distance_error =
         |(ax, ay): &(f64, f64), (bx, by): &(f64, f64)| ((ax - bx).hypot(ay - by) - mm).abs();
     let has_pair = holes
         .iter()
-        .any(|a| holes.iter().any(|b| error_of(a, b) < 1e-9));
+        .any(|a| holes.iter().any(|b| distance_error(a, b) < 1e-9));
     assert!(has_pair, "{name}: no two of {holes:?} are {mm} mm apart");
 }
 
 #[test]
 fn the_distance_between_two_holes_is_the_length_of_the_link() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = assembly(name);
+        let assembly = build_assembly(name);
         let links = assembly.robot().lizard().links;
         let leg = assembly.robot().lizard().leg;
         for (coupler, length) in [
@@ -58,7 +58,7 @@ fn the_distance_between_two_holes_is_the_length_of_the_link() {
         ] {
             let link = format!("link {link}");
             assert_hole_distance(&assembly, &link, crank.hypot(arm));
-            let holes = holes_of(assembly.body(&link).expect("each servo has a link"));
+            let holes = find_clearance_holes(assembly.body(&link).expect("each servo has a link"));
             for length in [crank, arm] {
                 let is_at_distance = |(x, y): &(f64, f64)| (x.hypot(*y) - length).abs() < 1e-9;
                 assert!(holes.iter().any(is_at_distance), "{name} {link} {length}");
@@ -74,16 +74,21 @@ fn the_distance_between_two_holes_is_the_length_of_the_link() {
 }
 
 #[test]
-fn a_rigid_strut_has_the_length_of_a_slotted_one_and_lies_within_it() {
+fn a_rigid_strut_has_the_length_of_a_slotted_strut_and_lies_within_it() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = assembly(name);
+        let assembly = build_assembly(name);
         for (leg, rigid) in assembly.layout().legs.iter().zip(assembly.alternatives()) {
             let expected = [(0.0, 0.0), (leg.strut_length, 0.0)];
-            assert_eq!(holes_of(rigid), expected, "{name}: {}", rigid.name);
+            assert_eq!(
+                find_clearance_holes(rigid),
+                expected,
+                "{name}: {}",
+                rigid.name
+            );
             let slotted_name = rigid.name.trim_start_matches("rigid ");
-            let slotted = body(&assembly, slotted_name);
+            let slotted = find_body(&assembly, slotted_name);
             assert_eq!(slotted.mount, rigid.mount);
-            // The rigid strut lies within the slotted one, so bodies clear of the slotted one are clear of both.
+            // The rigid strut lies within the slotted strut, so bodies clear of the slotted strut are clear of both.
             let (inner_z, outer_z) = (rigid.z(), slotted.z());
             assert!(
                 outer_z[0] <= inner_z[0] && inner_z[1] <= outer_z[1],
@@ -99,9 +104,9 @@ fn a_rigid_strut_has_the_length_of_a_slotted_one_and_lies_within_it() {
 }
 
 #[test]
-fn the_pivots_of_the_plate_are_where_the_kinematics_places_them() {
-    let assembly = assembly("unequal");
-    let holes = holes_of(body(&assembly, "plate"));
+fn the_plates_pivots_match_the_kinematics() {
+    let assembly = build_assembly("unequal");
+    let holes = find_clearance_holes(find_body(&assembly, "plate"));
     for leg in &assembly.layout().legs {
         for pivot in [leg.crank_pivot, leg.follower_pivot] {
             let is_at_pivot = |&(x, y): &(f64, f64)| (x - pivot.x).hypot(y - pivot.y) < 1e-9;
@@ -111,9 +116,9 @@ fn the_pivots_of_the_plate_are_where_the_kinematics_places_them() {
 }
 
 #[test]
-fn each_foot_stands_where_the_contact_model_places_it() {
+fn the_position_of_each_foot_matches_the_contact_model() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = assembly(name);
+        let assembly = build_assembly(name);
         let robot = assembly.robot();
         for pose in assembly.grid_poses(7) {
             let feet = robot
@@ -123,10 +128,10 @@ fn each_foot_stands_where_the_contact_model_places_it() {
             for (servo, [forward, left]) in feet.into_iter().enumerate() {
                 let foot = Vector::new(-left, forward);
                 let leg = &assembly.layout().legs[servo];
-                // The points that the drawings show.
+                // The points in the drawings.
                 let angle = pose.legs[servo].direction.angle();
-                let drawn_leg = leg.place_at(angle, angle);
-                let point_on = |mount, point| assembly.place(mount, &pose).map(point);
+                let drawn_leg = leg.points_at(angle, angle);
+                let point_on = |mount, point| assembly.placement(mount, &pose).map(point);
                 let crank = Mount::Crank(servo);
                 for (drawn, built) in [
                     (foot, point_on(Mount::Foot(servo), leg.foot)),
@@ -150,12 +155,12 @@ fn each_foot_stands_where_the_contact_model_places_it() {
 }
 
 #[test]
-fn every_file_is_the_same_on_every_run() {
+fn all_files_are_identical_in_every_run() {
     let make_files = || -> Vec<_> {
-        let assembly = assembly("unequal");
-        let parts = assembly.parts().into_iter();
+        let assembly = build_assembly("unequal");
+        let parts = assembly.collect_parts().into_iter();
         parts
-            .flat_map(|part| part_files(&part, 0.2).expect("the part has a closed surface"))
+            .flat_map(|part| make_part_files(&part, 0.2).expect("the part has a closed surface"))
             .collect()
     };
     let (first, second) = (make_files(), make_files());
@@ -169,16 +174,16 @@ fn every_file_is_the_same_on_every_run() {
 
 #[test]
 fn a_link_is_cut_through_at_its_holes_and_milled_at_its_pockets() {
-    let assembly = assembly("paper");
-    let parts = assembly.parts();
+    let assembly = build_assembly("paper");
+    let parts = assembly.collect_parts();
     let link = parts.iter().find(|part| part.name == "link A1 A3");
-    let sheets = sheets(link.expect("A1 and A3 have equal links"));
+    let sheets = draw_sheets(link.expect("A1 and A3 have equal links"));
     assert_eq!(sheets.len(), 1);
     let layers = sheets[0].layers.iter();
     let layers: Vec<_> = layers
         .map(|layer| (&*layer.name, layer.loops.len()))
         .collect();
-    // Cut through: the outline, the holes of crank, arm, anchor and hub, and those of two small screws.
+    // Cut through: the outline, the holes of crank, arm, anchor and hub, and the holes of two small screws.
     // Pockets: for two hexagonal heads, for the horn, and for the head of the anchor's screw.
     assert_eq!(
         layers,

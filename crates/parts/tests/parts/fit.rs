@@ -1,15 +1,14 @@
-//! Tests that no two parts collide at poses on a grid, unless they are designed to touch, and that wrong dimensions
-//! make some collide.
+//! Tests that parts collide at a grid of poses only if their dimensions are wrong or they are designed to touch.
 
 use lizard_parts::Clearance;
 
-use crate::{ROBOTS, assembly, body, slotted_assembly};
+use crate::{ROBOTS, build_assembly, build_slotted_assembly, find_body};
 
-/// The nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
-fn nearest_pair(toml: &str) -> Option<Clearance> {
-    let assembly = slotted_assembly("paper", toml);
+/// Finds the nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
+fn find_nearest_pair(toml: &str) -> Option<Clearance> {
+    let assembly = build_slotted_assembly("paper", toml);
     assembly
-        .close_pairs(assembly.grid_poses(9), 1.0)
+        .find_close_pairs(assembly.grid_poses(9), 1.0)
         .into_iter()
         .next()
 }
@@ -17,9 +16,9 @@ fn nearest_pair(toml: &str) -> Option<Clearance> {
 #[test]
 fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
-        let assembly = slotted_assembly(name, "");
+        let assembly = build_slotted_assembly(name, "");
         assert!(assembly.grid_poses(10).count() > 100, "{name}");
-        let near_pairs = assembly.close_pairs(assembly.grid_poses(10), 0.2);
+        let near_pairs = assembly.find_close_pairs(assembly.grid_poses(10), 0.2);
         assert!(near_pairs.is_empty(), "{name}: {}", near_pairs[0]);
     }
 }
@@ -38,7 +37,7 @@ fn a_wrong_dimension_makes_parts_overlap() {
             "screw",
         ),
     ] {
-        let pair = nearest_pair(toml).unwrap_or_else(|| panic!("{toml}: nothing is near"));
+        let pair = find_nearest_pair(toml).unwrap_or_else(|| panic!("{toml}: no parts are close"));
         assert!(pair.mm < 0.0, "{toml}: {pair}");
         let is_expected_pair = pair.first.contains(first) && pair.second.contains(second);
         assert!(is_expected_pair, "{toml}: {pair}");
@@ -46,8 +45,8 @@ fn a_wrong_dimension_makes_parts_overlap() {
 }
 
 #[test]
-fn a_body_is_found_by_its_name_and_has_layers_from_bottom_to_top() {
-    let assembly = assembly("unequal", "");
+fn a_body_is_found_by_its_unique_name_and_has_layers_from_bottom_to_top() {
+    let assembly = build_assembly("unequal", "");
     let mut names: Vec<_> = assembly.bodies().iter().map(|body| &body.name).collect();
     names.sort();
     let body_count = names.len();
@@ -62,15 +61,15 @@ fn a_body_is_found_by_its_name_and_has_layers_from_bottom_to_top() {
         }
         for contact in &body.allowed_contacts {
             let is_known = assembly.body(contact).is_some();
-            assert!(is_known, "{} names {contact}", body.name);
+            assert!(is_known, "{}: {contact} is unknown", body.name);
         }
     }
 }
 
 #[test]
-fn pins_are_centred_in_the_holes_of_the_parts_that_they_hold() {
+fn pins_are_centred_in_the_holes_of_their_parts() {
     for name in ROBOTS {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         let mut hole_count = 0;
         for pose in assembly.grid_poses(5) {
             let bodies = assembly.bodies().iter();
@@ -78,16 +77,19 @@ fn pins_are_centred_in_the_holes_of_the_parts_that_they_hold() {
                 let shapes = screw.prisms.iter().map(|prism| &prism.filled_shapes[0]);
                 let shank = shapes.min_by(|a, b| a.diameter().total_cmp(&b.diameter()));
                 let shank = shank.expect("a screw has layers");
-                let centre = assembly.place(screw.mount, &pose).map(shank.points[0]);
+                let centre = assembly.placement(screw.mount, &pose).map(shank.points[0]);
                 for held_name in &screw.allowed_contacts {
-                    let held = body(&assembly, held_name);
-                    let frame = assembly.place(held.mount, &pose);
+                    let held = find_body(&assembly, held_name);
+                    let frame = assembly.placement(held.mount, &pose);
                     let cuts = held.prisms.iter().flat_map(|prism| &prism.cut_shapes);
                     let holes = cuts.filter(|cut| cut.radius >= shank.radius - 0.3);
                     let errors = holes.map(|hole| (frame.map(hole.points[0]) - centre).length());
                     let error_mm = errors.fold(f64::INFINITY, f64::min);
                     let (screw, held) = (&screw.name, &held.name);
-                    assert!(error_mm < 1e-9, "{name}: {screw} in {held} {error_mm}");
+                    assert!(
+                        error_mm < 1e-9,
+                        "{name}: {screw} in {held} is off by {error_mm} mm"
+                    );
                     hole_count += 1;
                 }
             }
@@ -99,21 +101,23 @@ fn pins_are_centred_in_the_holes_of_the_parts_that_they_hold() {
 #[test]
 fn a_robot_that_does_not_fit_is_refused_with_one_message() {
     let bar_message =
-        "parts.bar is 6 mm, but the head of a screw and a wall on each side need 7.3 mm";
-    let spring_message =
-        "leg strut LF is 30.2 mm from screw to screw, but its spring is 40.0 mm long";
-    // The pivot that the paper's figures suggest is below the servo's link.
+        "parts.bar must be at least 7.3 mm for a screw's head and a wall on each side, but is 6 mm";
+    let spring_message = "leg strut LF is 30.2 mm from screw to screw, but must be long enough to stretch its spring, which is 40.0 mm";
+    // The pivot in the paper's figures is below the servo's link.
     let naive_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
     let near_pivot = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
     for (toml, phrases) in [
         (naive_pivot, [" and ", "overlap by"]),
         (near_pivot, ["overlap by", "at pose"]),
         ("[parts]\nbar = 6.0", [bar_message, ""]),
-        ("[parts]\nheight = 15.0", ["the feet need 21.3 mm", ""]),
+        (
+            "[parts]\nheight = 15.0",
+            ["parts.height must be at least 21.3 mm", ""],
+        ),
         ("[parts.spring]\nlength = 40.0", [spring_message, ""]),
-        ("[parts]\nthickness = 15.0", ["do not make one body", ""]),
+        ("[parts]\nthickness = 15.0", ["do not form one body", ""]),
     ] {
-        let message = slotted_assembly("paper", toml)
+        let message = build_slotted_assembly("paper", toml)
             .check_fit()
             .expect_err(toml)
             .to_string();
@@ -122,6 +126,6 @@ fn a_robot_that_does_not_fit_is_refused_with_one_message() {
         }
     }
     for name in ROBOTS {
-        assert_eq!(assembly(name, "").check_fit(), Ok(()), "{name}");
+        assert_eq!(build_assembly(name, "").check_fit(), Ok(()), "{name}");
     }
 }

@@ -1,41 +1,43 @@
-//! Tests of the fittings (supply, strips, plugs): each has a space on the robot, and products that fit into it.
+//! Tests that each fitting (supply, strips, plugs) has a space on the robot, into which its products fit.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, Price, Shape, places_table};
+use lizard_parts::{
+    Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, Price, Shape, format_places_table,
+};
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
-use crate::{ROBOTS, assembly};
+use crate::{ROBOTS, build_assembly};
 
-/// The bodies of a fitting.
-fn bodies_of(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
+/// Finds the bodies of a fitting.
+fn find_bodies(assembly: &Assembly, fitting: Fitting) -> Vec<&Body> {
     let bodies = assembly.bodies().iter();
     bodies
         .filter(|body| body.kind == Kind::Fitting(fitting))
         .collect()
 }
 
-/// The extents of points along x and y, mm.
-fn extents(points: &[Vector]) -> [f64; 2] {
-    let extent_of = |coordinate_of: fn(&Vector) -> f64| {
-        let coordinates = points.iter().map(coordinate_of);
+/// Computes the extents of points along x and y, mm.
+fn compute_extents(points: &[Vector]) -> [f64; 2] {
+    let extent = |coordinate: fn(&Vector) -> f64| {
+        let coordinates = points.iter().map(coordinate);
         coordinates.clone().fold(f64::MIN, f64::max) - coordinates.fold(f64::MAX, f64::min)
     };
-    [extent_of(|point| point.x), extent_of(|point| point.y)]
+    [extent(|point| point.x), extent(|point| point.y)]
 }
 
-/// Sorts the side lengths of a box, the shortest first, so that a product may be turned to fit.
+/// Sorts the side lengths of a box in ascending order, so that a product may be turned to fit.
 fn sort_lengths(mut size: [f64; 3]) -> [f64; 3] {
     size.sort_by(f64::total_cmp);
     size
 }
 
 #[test]
-fn both_products_named_for_a_fitting_fit_into_the_space_of_its_body() {
+fn both_example_products_fit_into_the_space_of_their_fitting() {
     for name in ROBOTS {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         for fitting in Fitting::ALL {
             let facts = fitting.facts();
-            let bodies = bodies_of(&assembly, fitting);
+            let bodies = find_bodies(&assembly, fitting);
             let expected_count = if fitting == Fitting::Resistor { 4 } else { 1 };
             assert_eq!(bodies.len(), expected_count, "{name}: {}", facts.name);
             // A strap goes around other parts, so it has no box.
@@ -45,7 +47,7 @@ fn both_products_named_for_a_fitting_fit_into_the_space_of_its_body() {
             for body in bodies {
                 let shapes = body.prisms.iter().map(|prism| &prism.filled_shapes[0]);
                 let points: Vec<_> = shapes.flat_map(|shape| shape.points.clone()).collect();
-                let [width, length] = extents(&points);
+                let [width, length] = compute_extents(&points);
                 let [low, high] = body.z();
                 let space = sort_lengths([width, length, high - low]);
                 for product in facts.examples {
@@ -62,9 +64,9 @@ fn both_products_named_for_a_fitting_fit_into_the_space_of_its_body() {
 }
 
 #[test]
-fn both_named_batteries_fit_into_the_space_of_every_robots_battery() {
+fn both_example_batteries_fit_into_every_robots_battery_space() {
     for name in ROBOTS {
-        let assembly = assembly(name, "");
+        let assembly = build_assembly(name, "");
         let space = assembly.robot().parts().battery;
         for product in BATTERY_EXAMPLES {
             let fits = product
@@ -73,15 +75,15 @@ fn both_named_batteries_fit_into_the_space_of_every_robots_battery() {
                 .zip(space)
                 .all(|(length, limit)| *length <= limit);
             assert!(fits, "{name}: {product} in {space:?}");
-            assert!(places_table(space).contains(product.name));
+            assert!(format_places_table(space).contains(product.name));
         }
-        // A space into which no known battery fits lists no battery.
-        assert!(!places_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
+        // The table lists no battery for a space into which none fits.
+        assert!(!format_places_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
     }
 }
 
 #[test]
-fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
+fn drawn_screws_and_nuts_have_the_sizes_of_their_standards() {
     let screw = lizard_robot::Parts::default().screw;
     // ISO 7380-1 for M3: head 5.70 x 1.65 mm, drawn up to 0.1 mm higher; DIN 985: 5.5 mm across flats, 4.0 mm high.
     assert_eq!([screw.diameter, screw.head], [3.0, 5.7]);
@@ -91,11 +93,8 @@ fn screws_and_nuts_that_are_drawn_have_the_sizes_of_their_standards() {
 
 #[test]
 fn a_product_size_without_a_drawing_is_marked_as_approximate() {
-    let [by_data_sheet, approximate] = Fitting::RadioSpace.facts().examples;
-    assert_eq!(
-        by_data_sheet.to_string(),
-        "HM-10, bare board: 13 x 27 x 2.2"
-    );
+    let [exact, approximate] = Fitting::RadioSpace.facts().examples;
+    assert_eq!(exact.to_string(), "HM-10, bare board: 13 x 27 x 2.2");
     assert!(
         approximate.to_string().ends_with(": ~16 x 37 x 7"),
         "{approximate}"
@@ -104,22 +103,22 @@ fn a_product_size_without_a_drawing_is_marked_as_approximate() {
 
 #[test]
 fn a_radio_module_of_either_common_size_has_a_place() {
-    let assembly = assembly("paper", "");
-    let [body] = bodies_of(&assembly, Fitting::RadioSpace)[..] else {
+    let assembly = build_assembly("paper", "");
+    let [body] = find_bodies(&assembly, Fitting::RadioSpace)[..] else {
         panic!("there is exactly one place for a radio module")
     };
-    let [width, length] = extents(&body.prisms[0].filled_shapes[0].points);
-    assert!(width >= 16.0 && length >= 37.0, "{width} {length}");
+    let [width, length] = compute_extents(&body.prisms[0].filled_shapes[0].points);
+    assert!(width >= 16.0 && length >= 37.0, "{width} x {length} mm");
 }
 
 #[test]
 fn no_fitting_covers_a_slot_for_a_cable_tie() {
-    // Cable ties go through the deck beside the parts that they hold.
-    let assembly = assembly("paper", "");
+    // Cable ties go through the deck beside their fittings.
+    let assembly = build_assembly("paper", "");
     let deck = assembly.body("deck").expect("the robot has a deck");
     let is_slot = |cut: &&Shape| {
-        let [along_x, along_y] = extents(&cut.points);
-        let width_mm = along_x.min(along_y) + 2.0 * cut.radius;
+        let [x_extent, y_extent] = compute_extents(&cut.points);
+        let width_mm = x_extent.min(y_extent) + 2.0 * cut.radius;
         cut.points.len() > 1 && (1.9..2.1).contains(&width_mm)
     };
     let slots = deck.prisms[0].cut_shapes.iter().filter(is_slot);
@@ -131,7 +130,7 @@ fn no_fitting_covers_a_slot_for_a_cable_tie() {
             }
             for prism in &body.prisms {
                 let distance = prism.filled_shapes[0].distance(slot);
-                assert!(distance > 0.05, "{}: {distance}", body.name);
+                assert!(distance > 0.05, "{}: {distance} mm", body.name);
             }
         }
         slot_count += 1;
@@ -143,26 +142,23 @@ fn no_fitting_covers_a_slot_for_a_cable_tie() {
 }
 
 #[test]
-fn the_fuse_carries_what_the_converter_draws_and_the_list_names_both_ratings() {
-    // The battery's current for 3 A at 5 V: two cells at 3.2 V, and a converter that loses 15 %.
+fn the_fuse_carries_the_converters_current_and_the_bill_lists_both_ratings() {
+    // The battery's current for 3 A at 5 V, with two cells at 3.2 V and a converter that loses 15 %.
     let max_amperes = 3.0 * 5.0 / (0.85 * 2.0 * 3.2);
-    assert!(max_amperes < f64::from(FUSE_RATING_A), "{max_amperes}");
+    assert!(max_amperes < f64::from(FUSE_RATING_A), "{max_amperes} A");
     for (fitting, rating) in [
         (Fitting::Fuse, FUSE_RATING_A),
         (Fitting::Switch, MIN_SWITCH_RATING_A),
     ] {
-        assert!(
-            fitting
-                .shopping_list_row()
-                .contains(&format!(" {rating} A "))
-        );
+        let row = fitting.format_bill_row();
+        assert!(row.contains(&format!(" {rating} A ")), "{row}");
     }
 }
 
 #[test]
-fn price_classes_adjoin_and_their_sum_adds_up_their_limits() {
+fn price_classes_adjoin_and_their_sum_adds_up_their_bounds() {
     for pair in Price::ALL.windows(2) {
-        assert_eq!(pair[0].euros()[1], pair[1].euros()[0]);
+        assert_eq!(pair[0].euro_range()[1], pair[1].euro_range()[0]);
     }
     let classes = [Price::A, Price::C, Price::C, Price::E];
     assert_eq!(

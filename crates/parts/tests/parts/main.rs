@@ -1,4 +1,4 @@
-//! Tests of the robot's parts; each test uses some of the robot files in robots/.
+//! Tests of the robot's parts, with the robot files in robots/.
 
 use lizard_kinematics::Solution;
 use lizard_parts::{Assembly, Body};
@@ -19,40 +19,40 @@ mod pads;
 mod proof;
 mod surface;
 
-/// The files of robots/ except [`GRAIN_ROBOT`].
+/// The robot files except [`GRAIN_ROBOT`].
 const ROBOTS: [&str; 4] = ["paper", "large", "unequal", "own-gaits"];
 
-/// The file of robots/ whose parts equal the paper's except for the pads, as a test shows.
+/// The robot file whose parts equal the paper's except for the pads, as a test in `proof.rs` shows.
 const GRAIN_ROBOT: &str = "grain";
 
-/// The lines of robot.toml for slotted struts of the legs.
+/// The lines of robot.toml for slotted struts.
 const SLOTTED_STRUTS_TOML: &str = "[leg.drive]\nkind = \"strut\"";
 
-/// The robot of a file of robots/, with more lines of TOML appended.
-fn robot_with(name: &str, more_toml: &str) -> Robot {
+/// Reads a robot file with more lines of TOML appended.
+fn read_robot_with(name: &str, more_toml: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);
     Robot::parse(&format!("{text}\n{more_toml}"))
         .unwrap_or_else(|error| panic!("{name} with {more_toml}: {error}"))
 }
 
-/// The assembly of a file of robots/, with more lines of TOML appended.
-fn assembly(name: &str, more_toml: &str) -> Assembly {
-    Assembly::new(&robot_with(name, more_toml))
+/// Builds the assembly of a robot file with more lines of TOML appended.
+fn build_assembly(name: &str, more_toml: &str) -> Assembly {
+    Assembly::new(&read_robot_with(name, more_toml))
 }
 
-/// The assembly of a file of robots/ with slotted struts, which are wider than the default, and more lines of TOML.
-fn slotted_assembly(name: &str, more_toml: &str) -> Assembly {
-    assembly(name, &format!("{SLOTTED_STRUTS_TOML}\n{more_toml}"))
+/// Builds the assembly of a robot file with slotted struts, which are wider than the default, and more lines of TOML.
+fn build_slotted_assembly(name: &str, more_toml: &str) -> Assembly {
+    build_assembly(name, &format!("{SLOTTED_STRUTS_TOML}\n{more_toml}"))
 }
 
-/// The positions of the robot's joints at neutral.
-fn neutral_solution(assembly: &Assembly) -> Solution {
-    mjcf_reader::neutral_solution(assembly.robot())
+/// Solves the robot's linkages at neutral.
+fn solve_at_neutral(assembly: &Assembly) -> Solution {
+    mjcf_reader::solve_at_neutral(assembly.robot())
 }
 
-/// The body with a given name.
+/// Finds the body with this name.
 #[track_caller]
-fn body<'a>(assembly: &'a Assembly, name: &str) -> &'a Body {
+fn find_body<'a>(assembly: &'a Assembly, name: &str) -> &'a Body {
     assembly.body(name).expect(name)
 }

@@ -1,61 +1,61 @@
-//! A reader of the MuJoCo file, which places the bodies by the file's numbers alone.
+//! Reads a MuJoCo file and computes each body's placement from the file alone.
 
 use std::collections::BTreeMap;
 
 use lizard_kinematics::Solution;
-use lizard_parts::{Assembly, Scene, StrutSpring, mjcf};
+use lizard_parts::{Assembly, Scene, StrutSpring, format_mjcf};
 use lizard_robot::Robot;
 use roxmltree::{Document, Node};
 
-/// The positions of the robot's joints at neutral.
-pub fn neutral_solution(robot: &Robot) -> Solution {
+/// Solves the robot's linkages at neutral.
+pub fn solve_at_neutral(robot: &Robot) -> Solution {
     let solution = robot.lizard().solve(&robot.neutral_pose());
     solution.expect("the linkages close at neutral")
 }
 
-/// The MuJoCo file of a robot whose scene is changed by `change`.
-pub fn mjcf_with(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
+/// Makes the MuJoCo file of a robot, with the scene that `change` alters.
+pub fn make_mjcf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> String {
     let assembly = Assembly::new(robot);
-    let mut scene = Scene::of(&assembly);
+    let mut scene = Scene::for_assembly(&assembly);
     change(&mut scene);
-    mjcf(&assembly, &neutral_solution(robot), &scene).expect("every part has a closed surface")
+    format_mjcf(&assembly, &solve_at_neutral(robot), &scene)
+        .expect("every part has a closed surface")
 }
 
-/// The numbers in an attribute, separated by spaces.
-pub fn numbers(node: Node, attribute: &str) -> Vec<f64> {
+/// Reads the numbers in an attribute, separated by spaces.
+pub fn read_numbers(node: Node, attribute: &str) -> Vec<f64> {
     parse_numbers(node.attribute(attribute).expect(attribute))
 }
 
-/// The numbers of a text, which are separated by spaces.
+/// Parses numbers that are separated by spaces.
 pub fn parse_numbers(text: &str) -> Vec<f64> {
     let fields = text.split(' ');
-    fields
-        .map(|field| field.parse().expect("the field is a number"))
-        .collect()
+    let numbers = fields.map(|field| field.parse().expect("the field is a number"));
+    numbers.collect()
 }
 
-/// The placement of a body in the world: position, m, and rotation about z, rad.
+/// Placement of a body in the world frame: position, m, and rotation about z, rad.
 #[derive(Clone, Copy)]
 pub struct Placement {
     pub position: [f64; 3],
     pub rotation: f64,
 }
 
-/// A spring in each strut.
+/// A spring for each strut.
 pub const STRUT_SPRING: StrutSpring = StrutSpring {
     preload: 4.0,
     rate: 0.4,
 };
 
-/// The placement of the world.
+/// Placement of the world frame itself.
 pub const WORLD: Placement = Placement {
     position: [0.0; 3],
     rotation: 0.0,
 };
 
 impl Placement {
-    /// Converts a point from the body's frame to the world, m.
-    pub fn point(&self, point: &[f64]) -> [f64; 3] {
+    /// Converts a point, m, from the body's frame to the world frame.
+    pub fn to_world(self, point: &[f64]) -> [f64; 3] {
         let (sin, cos) = self.rotation.sin_cos();
         [
             self.position[0] + cos * point[0] - sin * point[1],
@@ -65,52 +65,50 @@ impl Placement {
     }
 }
 
-/// Bodies by their names.
+/// Placements and elements of the bodies, by name.
 pub type Bodies<'a> = BTreeMap<String, (Placement, Node<'a, 'a>)>;
 
-/// Every body of a file, with its placement.
-pub fn bodies<'a>(document: &'a Document) -> Bodies<'a> {
+/// Reads every body of a file and computes its placement.
+pub fn read_bodies<'a>(document: &'a Document) -> Bodies<'a> {
     fn add_child_bodies<'a>(
         parent: Node<'a, 'a>,
         parent_placement: Placement,
         found_bodies: &mut Bodies<'a>,
     ) {
         for body in parent.children().filter(|node| node.has_tag_name("body")) {
-            let quat = numbers(body, "quat");
-            assert_eq!(quat[1..3], [0.0; 2], "the body stays upright");
+            let quat = read_numbers(body, "quat");
+            assert_eq!(quat[1..3], [0.0; 2], "the body is upright");
             let placement = Placement {
-                position: parent_placement.point(&numbers(body, "pos")),
+                position: parent_placement.to_world(&read_numbers(body, "pos")),
                 rotation: parent_placement.rotation + 2.0 * quat[3].atan2(quat[0]),
             };
             let name = body
                 .attribute("name")
                 .expect("the body has a name")
                 .to_owned();
-            assert!(
-                found_bodies.insert(name, (placement, body)).is_none(),
-                "two bodies have the same name"
-            );
+            let previous = found_bodies.insert(name, (placement, body));
+            assert!(previous.is_none(), "two bodies have the same name");
             add_child_bodies(body, placement, found_bodies);
         }
     }
     let mut found_bodies = BTreeMap::new();
-    let world = root_child(document, "worldbody");
+    let world = section(document, "worldbody");
     add_child_bodies(world, WORLD, &mut found_bodies);
     found_bodies
 }
 
-fn root_child<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
-    child(document.root_element(), tag)
+fn section<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
+    first_child(document.root_element(), tag)
 }
 
-/// The child elements of the root's child `tag`.
+/// Returns the child elements of the root's child `tag`.
 pub fn section_elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
-    let children = root_child(document, tag).children();
+    let children = section(document, tag).children();
     children.filter(Node::is_element).collect()
 }
 
-/// The first child element with a tag.
-pub fn child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
+/// Returns the first child element with a tag.
+pub fn first_child<'a>(node: Node<'a, 'a>, tag: &str) -> Node<'a, 'a> {
     let element = node.children().find(|node| node.has_tag_name(tag));
     element.expect(tag)
 }

@@ -1,5 +1,5 @@
-//! Tests that the bodies in the URDF and SDF files equal those in the MuJoCo file. The tests of `scripts/models-test`
-//! use parsers by other authors, and also close the loops at other poses than neutral.
+//! Tests that the bodies in the URDF and SDF files match the MuJoCo file. The tests of `scripts/models-test` use
+//! parsers by other authors, and also close the loops at poses other than neutral.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::FRAC_PI_2;
@@ -10,32 +10,35 @@ use lizard_robot::servo::SERVO_NAMES;
 use roxmltree::{Document, Node};
 
 use crate::mjcf_reader::{
-    Placement, STRUT_SPRING, WORLD, bodies, child, mjcf_with, neutral_solution, numbers,
-    parse_numbers,
+    Placement, STRUT_SPRING, WORLD, first_child, make_mjcf, parse_numbers, read_bodies,
+    read_numbers, solve_at_neutral,
 };
-use crate::{ROBOTS, robot_with};
+use crate::{ROBOTS, read_robot_with};
 
-/// The URDF and the SDF file of a robot whose scene is changed by `change`, and the names of their mesh files.
-fn urdf_and_sdf(robot: &Robot, change: impl FnOnce(&mut Scene)) -> ([String; 2], BTreeSet<String>) {
+/// Makes the URDF and the SDF file of a robot, with the scene that `change` alters, and the paths of their mesh files.
+fn make_urdf_sdf_and_mesh_paths(
+    robot: &Robot,
+    change: impl FnOnce(&mut Scene),
+) -> ([String; 2], BTreeSet<String>) {
     let assembly = Assembly::new(robot);
-    let mut scene = Scene::of(&assembly);
+    let mut scene = Scene::for_assembly(&assembly);
     change(&mut scene);
-    let pieces = Pieces::of(&assembly, &scene).expect("every part has a closed surface");
-    let solution = neutral_solution(robot);
-    let names = pieces.meshes(&scene).into_iter().map(|mesh| mesh.path);
+    let pieces = Pieces::compute(&assembly, &scene).expect("every part has a closed surface");
+    let solution = solve_at_neutral(robot);
+    let mesh_paths = pieces.make_meshes(&scene).into_iter().map(|mesh| mesh.path);
     let texts = [
-        pieces.urdf(&solution, &scene, "at/"),
-        pieces.sdf(&solution, &scene, "at/"),
+        pieces.format_urdf(&solution, &scene, "at/"),
+        pieces.format_sdf(&solution, &scene, "at/"),
     ];
-    (texts, names.collect())
+    (texts, mesh_paths.collect())
 }
 
-/// The text in the first child element with a tag.
-fn text_of(node: Node, tag: &str) -> String {
-    child(node, tag).text().expect(tag).to_owned()
+/// Reads the text of the first child element with a tag.
+fn read_text(node: Node, tag: &str) -> String {
+    first_child(node, tag).text().expect(tag).to_owned()
 }
 
-/// The child elements with a tag, by their name attributes. Fails if a name contains a space or occurs twice.
+/// Maps the names of the child elements with a tag to the elements. Fails if a name contains a space or occurs twice.
 fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Node<'a, 'a>> {
     let mut nodes = BTreeMap::new();
     for node in parent.children().filter(|node| node.has_tag_name(tag)) {
@@ -44,53 +47,55 @@ fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Nod
             .expect("the element has a name")
             .to_owned();
         assert!(!name.contains(' '), "{name}");
-        assert!(nodes.insert(name.clone(), node).is_none(), "two of {name}");
+        assert!(
+            nodes.insert(name.clone(), node).is_none(),
+            "{name} occurs twice"
+        );
     }
     nodes
 }
 
-/// A body: placement, mass, mass centre, and inertia as xx, yy, zz, xy, xz, yz.
+/// A body: placement, mass, centre of mass, and inertia in the order of [`INERTIA_KEYS`].
 type ReadBody = (Placement, f64, Vec<f64>, Vec<f64>);
 
-/// The placement of a frame whose pose on `frame` is given by six numbers: x, y, z, roll, pitch, yaw.
-fn frame_on(frame: Placement, pose: &[f64]) -> Placement {
-    assert_eq!(pose[3..5], [0.0; 2], "the frame stays upright");
+/// Places a frame at a pose on another frame. The pose has six numbers: x, y, z, roll, pitch, yaw.
+fn place_on(frame: Placement, pose: &[f64]) -> Placement {
+    assert_eq!(pose[3..5], [0.0; 2], "the frame is upright");
     Placement {
-        position: frame.point(&pose[..3]),
+        position: frame.to_world(&pose[..3]),
         rotation: frame.rotation + pose[5],
     }
 }
 
 const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
-/// The bodies of a URDF file by name. Each is placed by the joints from the root to its link.
+/// Reads the bodies of a URDF file. The joints between the root and a link determine the link's placement.
 fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
     let root = document.root_element();
     let (links, joints) = (
         elements_by_name(root, "link"),
         elements_by_name(root, "joint"),
     );
-    let link_of = |joint: &Node, tag: &str| {
-        let link = child(*joint, tag).attribute("link");
-        link.expect("the joint names a link").to_owned()
+    let read_link = |joint: &Node, tag: &str| {
+        let link = first_child(*joint, tag).attribute("link");
+        link.expect("the joint has a link").to_owned()
     };
-    let placement_of = |link: &str| {
+    let compute_placement = |link: &str| {
         let (mut link, mut poses_to_root) = (link.to_owned(), Vec::new());
-        while let Some(joint) = joints
-            .values()
-            .find(|joint| link_of(joint, "child") == link)
-        {
-            let origin = child(*joint, "origin");
-            poses_to_root.push([numbers(origin, "xyz"), numbers(origin, "rpy")].concat());
-            link = link_of(joint, "parent");
+        let find_joint_above = |link: &str| {
+            let mut joints = joints.values();
+            joints.find(|joint| read_link(joint, "child") == link)
+        };
+        while let Some(joint) = find_joint_above(&link) {
+            let origin = first_child(*joint, "origin");
+            poses_to_root.push([read_numbers(origin, "xyz"), read_numbers(origin, "rpy")].concat());
+            link = read_link(joint, "parent");
         }
         assert_eq!(link, "base_link", "base_link is the only root");
-        poses_to_root
-            .iter()
-            .rev()
-            .fold(WORLD, |frame, pose| frame_on(frame, pose))
+        let poses_from_root = poses_to_root.iter().rev();
+        poses_from_root.fold(WORLD, |frame, pose| place_on(frame, pose))
     };
-    let mut read_bodies = BTreeMap::new();
+    let mut bodies = BTreeMap::new();
     for (name, link) in &links {
         let mut children = link.children();
         let Some(inertial) = children.find(|node| node.has_tag_name("inertial")) else {
@@ -100,78 +105,81 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
             );
             continue;
         };
-        let inertia = INERTIA_KEYS.map(|key| numbers(child(inertial, "inertia"), key)[0]);
-        let mass = numbers(child(inertial, "mass"), "value")[0];
-        let centre = numbers(child(inertial, "origin"), "xyz");
-        read_bodies.insert(
+        let inertia =
+            INERTIA_KEYS.map(|key| read_numbers(first_child(inertial, "inertia"), key)[0]);
+        let mass = read_numbers(first_child(inertial, "mass"), "value")[0];
+        let centre = read_numbers(first_child(inertial, "origin"), "xyz");
+        bodies.insert(
             name.clone(),
-            (placement_of(name), mass, centre, inertia.to_vec()),
+            (compute_placement(name), mass, centre, inertia.to_vec()),
         );
     }
-    read_bodies
+    bodies
 }
 
-/// The bodies of an SDF file by name. Each is placed by the poses of the links to which it is relative.
+/// Reads the bodies of an SDF file. A link's pose is relative to another link.
 fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
-    let model = child(document.root_element(), "model");
+    let model = first_child(document.root_element(), "model");
     let links = elements_by_name(model, "link");
-    fn placement_of<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placement {
-        let pose = child(links[name], "pose");
+    fn compute_placement<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placement {
+        let pose = first_child(links[name], "pose");
         let frame = pose.attribute("relative_to");
-        let frame = frame.map_or(WORLD, |parent| placement_of(links, parent));
-        frame_on(
-            frame,
-            &parse_numbers(pose.text().expect("the pose has a text")),
-        )
+        let frame = frame.map_or(WORLD, |parent| compute_placement(links, parent));
+        let pose = pose.text().expect("the pose has a text");
+        place_on(frame, &parse_numbers(pose))
     }
-    let mut read_bodies = BTreeMap::new();
+    let mut bodies = BTreeMap::new();
     for (name, link) in &links {
-        let inertial = child(*link, "inertial");
-        let inertia_node = child(inertial, "inertia");
-        let inertia = INERTIA_KEYS.map(|name| parse_numbers(&text_of(inertia_node, name))[0]);
-        let mass = parse_numbers(&text_of(inertial, "mass"))[0];
-        let centre = parse_numbers(&text_of(inertial, "pose"))[..3].to_vec();
-        read_bodies.insert(
+        let inertial = first_child(*link, "inertial");
+        let inertia_node = first_child(inertial, "inertia");
+        let inertia = INERTIA_KEYS.map(|name| parse_numbers(&read_text(inertia_node, name))[0]);
+        let mass = parse_numbers(&read_text(inertial, "mass"))[0];
+        let centre = parse_numbers(&read_text(inertial, "pose"))[..3].to_vec();
+        bodies.insert(
             name.clone(),
-            (placement_of(&links, name), mass, centre, inertia.to_vec()),
+            (
+                compute_placement(&links, name),
+                mass,
+                centre,
+                inertia.to_vec(),
+            ),
         );
     }
-    read_bodies
+    bodies
 }
 
 #[test]
-fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
+fn the_bodies_of_urdf_and_sdf_match_the_mujoco_file() {
     for name in ROBOTS {
         for (strut_spring, play) in [(None, 0.0), (Some(STRUT_SPRING), 0.5)] {
-            let robot = robot_with(name, "");
+            let robot = read_robot_with(name, "");
             let change =
                 |scene: &mut Scene| (scene.strut_spring, scene.play) = (strut_spring, play);
-            let text = mjcf_with(&robot, change);
+            let text = make_mjcf(&robot, change);
             let document = Document::parse(&text).expect("the file is well-formed XML");
-            let expected = bodies(&document);
-            let ([urdf, sdf], _) = urdf_and_sdf(&robot, change);
+            let expected = read_bodies(&document);
+            let ([urdf, sdf], _) = make_urdf_sdf_and_mesh_paths(&robot, change);
             let [urdf, sdf] = [&urdf, &sdf]
                 .map(|text| Document::parse(text).expect("the file is well-formed XML"));
-            for read_bodies in [read_urdf(&urdf), read_sdf(&sdf)] {
-                assert_eq!(read_bodies.len(), expected.len());
+            for bodies in [read_urdf(&urdf), read_sdf(&sdf)] {
+                assert_eq!(bodies.len(), expected.len());
                 for (name, (expected_placement, body)) in &expected {
-                    let (read_placement, mass, centre, inertia) =
-                        &read_bodies[&name.replace(' ', "_")];
-                    let inertial = child(*body, "inertial");
-                    assert_eq!([*mass][..], numbers(inertial, "mass"), "{name}");
-                    assert_eq!(*centre, numbers(inertial, "pos"), "{name}");
-                    assert_eq!(*inertia, numbers(inertial, "fullinertia"), "{name}");
-                    // The x axis in URDF and SDF is the y axis in MuJoCo's file.
+                    let (placement, mass, centre, inertia) = &bodies[&name.replace(' ', "_")];
+                    let inertial = first_child(*body, "inertial");
+                    assert_eq!([*mass][..], read_numbers(inertial, "mass"), "{name}");
+                    assert_eq!(*centre, read_numbers(inertial, "pos"), "{name}");
+                    assert_eq!(*inertia, read_numbers(inertial, "fullinertia"), "{name}");
+                    // The x axis of URDF and SDF, which points forward, is the y axis of the MuJoCo file.
                     let [x, y, z] = expected_placement.position;
-                    for (actual, expected) in read_placement.position.into_iter().zip([y, -x, z]) {
+                    for (actual, expected) in placement.position.into_iter().zip([y, -x, z]) {
                         assert!(
                             (actual - expected).abs() < 1e-8,
-                            "{name} {actual} {expected}"
+                            "{name}: {actual} m, not {expected} m"
                         );
                     }
-                    let angle = read_placement.rotation - expected_placement.rotation + FRAC_PI_2;
+                    let angle = placement.rotation - expected_placement.rotation + FRAC_PI_2;
                     let error = angle.sin().hypot(1.0 - angle.cos());
-                    assert!(error < 1e-8, "{name} {angle}");
+                    assert!(error < 1e-8, "{name}: off by {angle} rad");
                 }
             }
         }
@@ -179,23 +187,20 @@ fn urdf_and_sdf_have_the_bodies_of_the_mujoco_file_with_x_forward() {
 }
 
 #[test]
-fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
+fn the_two_halves_of_each_cut_urdf_joint_coincide() {
     for name in ROBOTS {
-        let ([urdf, _], _) = urdf_and_sdf(&robot_with(name, ""), |_| {});
+        let ([urdf, _], _) = make_urdf_sdf_and_mesh_paths(&read_robot_with(name, ""), |_| {});
         let document = Document::parse(&urdf).expect("the file is well-formed XML");
         let (links, joints) = (
             read_urdf(&document),
             elements_by_name(document.root_element(), "joint"),
         );
-        let point_of = |name: &str| {
+        let locate_half = |name: &str| {
             let joint = joints[&format!("{name}_joint")];
             assert_eq!(joint.attribute("type"), Some("fixed"));
-            let parent = child(joint, "parent")
-                .attribute("link")
-                .expect("the joint names a link");
-            links[parent]
-                .0
-                .point(&numbers(child(joint, "origin"), "xyz"))
+            let parent = first_child(joint, "parent").attribute("link");
+            let (placement, ..) = &links[parent.expect("the joint has a link")];
+            placement.to_world(&read_numbers(first_child(joint, "origin"), "xyz"))
         };
         let mut joint_count = 0;
         for joint_name in joints
@@ -203,22 +208,25 @@ fn the_two_halves_of_each_cut_joint_of_the_urdf_coincide() {
             .filter_map(|name| name.strip_suffix("_1_joint"))
         {
             let [first_point, second_point] =
-                ["1", "2"].map(|number| point_of(&format!("{joint_name}_{number}")));
+                ["1", "2"].map(|number| locate_half(&format!("{joint_name}_{number}")));
             let error = (first_point[0] - second_point[0]).hypot(first_point[1] - second_point[1]);
-            assert!(error < 1e-8, "{name} {joint_name} {error}");
+            assert!(error < 1e-8, "{name}: {joint_name} is off by {error} m");
             joint_count += 1;
         }
-        assert_eq!(joint_count, 12, "two ends, two sliders, two for each leg");
+        assert_eq!(
+            joint_count, 12,
+            "two ends, two sliders, two joints of each leg"
+        );
     }
 }
 
 #[test]
-fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
-    let robot = robot_with("unequal", "");
-    let ([urdf, sdf], _) = urdf_and_sdf(&robot, |_| {});
+fn urdf_and_sdf_have_the_names_and_limits_of_the_servos() {
+    let robot = read_robot_with("unequal", "");
+    let ([urdf, sdf], _) = make_urdf_sdf_and_mesh_paths(&robot, |_| {});
     let [urdf, sdf] =
         [&urdf, &sdf].map(|text| Document::parse(text).expect("the file is well-formed XML"));
-    let model = child(sdf.root_element(), "model");
+    let model = first_child(sdf.root_element(), "model");
     let (urdf_joints, sdf_joints) = (
         elements_by_name(urdf.root_element(), "joint"),
         elements_by_name(model, "joint"),
@@ -234,16 +242,16 @@ fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
             0.018 * 9.80665,
             500f64.to_radians(),
         ];
-        let limit = child(urdf_joints[name], "limit");
+        let limit = first_child(urdf_joints[name], "limit");
         let attributes = ["lower", "upper", "effort", "velocity"];
-        let urdf_limits = attributes.map(|attribute| numbers(limit, attribute)[0]);
-        let limit = child(child(sdf_joints[name], "axis"), "limit");
-        let sdf_limits = attributes.map(|attribute| parse_numbers(&text_of(limit, attribute))[0]);
+        let urdf_limits = attributes.map(|attribute| read_numbers(limit, attribute)[0]);
+        let limit = first_child(first_child(sdf_joints[name], "axis"), "limit");
+        let sdf_limits = attributes.map(|attribute| parse_numbers(&read_text(limit, attribute))[0]);
         for limits in [urdf_limits, sdf_limits] {
             for (actual, expected) in limits.into_iter().zip(expected) {
                 assert!(
                     (actual - expected).abs() < 1e-8,
-                    "{name} {actual} {expected}"
+                    "{name}: {actual}, not {expected}"
                 );
             }
         }
@@ -251,26 +259,25 @@ fn servos_have_their_names_ranges_torques_and_rates_in_urdf_and_sdf() {
 }
 
 #[test]
-fn exactly_the_meshes_named_in_urdf_and_sdf_are_made() {
-    let (texts, meshes) = urdf_and_sdf(&robot_with("paper", ""), |_| {});
+fn the_meshes_match_the_references_in_urdf_and_sdf() {
+    let (texts, mesh_paths) = make_urdf_sdf_and_mesh_paths(&read_robot_with("paper", ""), |_| {});
     for text in &texts {
         let document = Document::parse(text).expect("the file is well-formed XML");
-        let urdf_names = document
-            .descendants()
-            .filter_map(|node| node.attribute("filename"));
-        let uri_nodes = document
-            .descendants()
-            .filter(|node| node.has_tag_name("uri"));
-        let mesh_names: BTreeSet<String> = urdf_names
-            .chain(uri_nodes.filter_map(|node| node.text()))
-            .map(|name| {
-                name.strip_prefix("at/")
-                    .expect("the mesh is in the folder at/")
+        let nodes = document.descendants();
+        let urdf_references = nodes.clone().filter_map(|node| node.attribute("filename"));
+        let uri_nodes = nodes.filter(|node| node.has_tag_name("uri"));
+        let references = urdf_references.chain(uri_nodes.filter_map(|node| node.text()));
+        let referenced_paths: BTreeSet<String> = references
+            .map(|path| {
+                path.strip_prefix("at/")
+                    .expect("the folder is at/")
                     .to_owned()
             })
             .collect();
-        assert_eq!(mesh_names, meshes);
+        assert_eq!(referenced_paths, mesh_paths);
     }
-    let (texts, _) = urdf_and_sdf(&robot_with("paper", ""), |scene| scene.has_shapes = false);
+    let (texts, _) = make_urdf_sdf_and_mesh_paths(&read_robot_with("paper", ""), |scene| {
+        scene.has_shapes = false
+    });
     assert!(texts.iter().all(|text| !text.contains("mesh")));
 }

@@ -1,64 +1,63 @@
-//! Tests that every screw can be inserted and turned in the order of the guide, and that a wrong order is detected.
+//! Tests of the check that every screw can be inserted and turned in the order of the guide.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Body, BuildProblem, Kind, Outline, ScrewOperation, Stage, Step, TurningPlace, steps,
+    Assembly, BlockedScrew, Body, BuildError, Kind, Outline, ScrewOperation, Stage, Step,
+    TurningPlace, build_steps,
 };
 
-use crate::{ROBOTS, assembly, neutral_solution, slotted_assembly};
+use crate::{ROBOTS, build_assembly, build_slotted_assembly, solve_at_neutral};
 
-/// The steps of the guide for a robot's kind of struts.
-fn steps_of(assembly: &Assembly) -> Vec<Step> {
-    steps(assembly.robot().drive().strut().is_some())
+/// Builds the steps of the guide for a robot's kind of struts.
+fn build_guide_steps(assembly: &Assembly) -> Vec<Step> {
+    build_steps(assembly.robot().drive().strut().is_some())
 }
 
 #[test]
 fn every_screw_of_every_robot_can_be_reached() {
     for name in ROBOTS {
         for kind in ["strut", "rigid"] {
-            let assembly = assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
-            let access_poses = assembly.access_poses(&steps_of(&assembly));
+            let assembly = build_assembly(name, &format!("[leg.drive]\nkind = \"{kind}\""));
+            let access_poses = assembly.find_access_poses(&build_guide_steps(&assembly));
             let access_poses = access_poses.unwrap_or_else(|blocked| panic!("{name}: {blocked}"));
-            // At neutral the follower covers a screw of its foot, so the leg, which is still on the bench, is swung
-            // aside. In the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no
-            // socket reaches the anchor's nut. So the link is turned.
+            // At neutral, the follower covers a screw of its foot, so the leg, which is still on the bench, is turned.
+            // In the robot `unequal`, the short arm of a strut's anchor is above the servo's seat, where no socket
+            // reaches the anchor's nut, so the link is turned.
             for access_pose in access_poses {
                 let expected_prefix = match access_pose.step {
                     7 => "screw foot",
                     9 if name == "unequal" => "screw anchor",
                     _ => panic!("{name}: {access_pose:?}"),
                 };
-                for screw_name in access_pose.screws {
-                    assert!(
-                        screw_name.starts_with(expected_prefix),
-                        "{name}: {screw_name}"
-                    );
+                for screw in access_pose.screws {
+                    assert!(screw.starts_with(expected_prefix), "{name}: {screw}");
                 }
             }
         }
     }
 }
 
-/// The blocked screws of the paper's robot with changed steps, each with the body in its way; without the screws of
-/// the feet, which are blocked at neutral in any order.
-fn blocked_screws(change: impl FnOnce(&mut Vec<Step>)) -> Vec<(String, ScrewOperation, String)> {
-    let assembly = slotted_assembly("paper", "");
-    let mut steps = steps_of(&assembly);
+/// Finds the blocked screws of the paper's robot with changed steps, each with the body in its way. The screws of the
+/// feet, which are blocked at neutral in any order, are left out.
+fn find_blocked_screws(
+    change: impl FnOnce(&mut Vec<Step>),
+) -> Vec<(String, ScrewOperation, String)> {
+    let assembly = build_slotted_assembly("paper", "");
+    let mut steps = build_guide_steps(&assembly);
     change(&mut steps);
-    let blocked_screws = assembly.blocked_screws(&steps, &neutral_solution(&assembly));
-    let screws = blocked_screws
-        .into_iter()
-        .map(|blocked| (blocked.screw, blocked.operation, blocked.obstacle));
-    screws
-        .filter(|(screw, ..)| !screw.starts_with("screw foot"))
+    let blocked_screws = assembly.find_blocked_screws(&steps, &solve_at_neutral(&assembly));
+    let blocked_screws = blocked_screws.into_iter();
+    blocked_screws
+        .filter(|blocked| !blocked.screw.starts_with("screw foot"))
+        .map(|blocked| (blocked.screw, blocked.operation, blocked.obstacle))
         .collect()
 }
 
 #[test]
 fn a_wrong_order_is_detected() {
-    assert_eq!(blocked_screws(|_| ()), []);
-    // A link's screws are inserted from below after the struts are under it.
-    let late_screws = blocked_screws(|steps| {
+    assert_eq!(find_blocked_screws(|_| ()), []);
+    // A link's screws are inserted from below when the struts are already under it.
+    let blocked_screws = find_blocked_screws(|steps| {
         steps[4].stages[0].adds =
             |body: &Body| matches!(body.kind, Kind::Horn) || body.name.starts_with("link");
         steps[8].stages.push(Stage {
@@ -67,22 +66,23 @@ fn a_wrong_order_is_detected() {
             turns_again: |_| false,
         });
     });
-    let pushed_screws = late_screws
-        .iter()
-        .filter(|(_, operation, _)| *operation == ScrewOperation::Push);
-    assert!(pushed_screws.count() > 0, "{late_screws:?}");
+    let mut operations = blocked_screws.iter().map(|(_, operation, _)| operation);
+    assert!(
+        operations.any(|operation| *operation == ScrewOperation::Push),
+        "{blocked_screws:?}"
+    );
 }
 
 #[test]
-fn a_pad_without_a_hole_for_the_key_is_detected_when_the_feet_are_levelled() {
-    let glued_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+fn a_pad_without_a_hole_for_the_key_is_detected() {
+    let glued_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_pad = |body: &&mut Body| body.name == "pad LF";
         for body in bodies.iter_mut().filter(is_pad) {
             body.prisms[0].cut_shapes.clear();
         }
     });
     let blocked_screw = glued_assembly
-        .access_poses(&steps_of(&glued_assembly))
+        .find_access_poses(&build_guide_steps(&glued_assembly))
         .expect_err("the pad must be reported as an obstacle");
     assert_eq!(
         (&*blocked_screw.screw, blocked_screw.operation),
@@ -90,32 +90,31 @@ fn a_pad_without_a_hole_for_the_key_is_detected_when_the_feet_are_levelled() {
     );
     assert_eq!(blocked_screw.obstacle, "pad LF");
     // The check finds the pad both in the step that mounts it and in the step that levels the feet.
-    let steps = steps_of(&glued_assembly);
+    let steps = build_guide_steps(&glued_assembly);
     let level_step = steps.iter().position(|step| step.title == "Level the feet");
     let level_step = 1 + level_step.expect("a step levels the feet");
-    let blocked_screws = glued_assembly.blocked_screws(&steps, &neutral_solution(&glued_assembly));
-    let is_pad_blocking = |step| {
-        blocked_screws
-            .iter()
-            .any(|blocked| blocked.step == step && blocked.obstacle == "pad LF")
-    };
-    assert!(
-        is_pad_blocking(7) && is_pad_blocking(level_step),
-        "{blocked_screws:?}"
-    );
+    let blocked_screws =
+        glued_assembly.find_blocked_screws(&steps, &solve_at_neutral(&glued_assembly));
+    for step in [7, level_step] {
+        let is_pad = |blocked: &BlockedScrew| blocked.step == step && blocked.obstacle == "pad LF";
+        assert!(
+            blocked_screws.iter().any(is_pad),
+            "step {step}: {blocked_screws:?}"
+        );
+    }
 }
 
 #[test]
-fn a_strut_under_a_head_is_detected() {
-    // Hexagonal heads, which pockets hold, are replaced by heads that a key must hold from below.
-    let altered_assembly = slotted_assembly("unequal", "").with_changed_bodies(|bodies| {
+fn a_strut_below_the_head_of_a_screw_is_detected() {
+    // Heads that a key must hold from below replace the hexagonal heads, which pockets hold.
+    let altered_assembly = build_slotted_assembly("unequal", "").with_changed_bodies(|bodies| {
         for body in bodies {
             if let Kind::HexScrew(length) = body.kind {
                 body.kind = Kind::Screw(length);
             }
         }
     });
-    let blocked_screw = altered_assembly.access_poses(&steps_of(&altered_assembly));
+    let blocked_screw = altered_assembly.find_access_poses(&build_guide_steps(&altered_assembly));
     let blocked_screw = blocked_screw.expect_err("the strut must be reported as an obstacle");
     assert_eq!(
         (&*blocked_screw.screw, blocked_screw.operation),
@@ -125,9 +124,9 @@ fn a_strut_under_a_head_is_detected() {
 }
 
 #[test]
-fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
-    let covered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        // A board as large as the plate, above the legs.
+fn a_screw_that_is_covered_at_every_pose_is_an_error() {
+    let covered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+        // The lid is as large as the plate and above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
         let mut lid = plate.expect("the robot has a plate");
         lid.name = "deck lid".to_owned();
@@ -138,10 +137,10 @@ fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
         bodies.push(lid);
     });
     let blocked_screw = covered_assembly
-        .access_poses(&steps_of(&covered_assembly))
+        .find_access_poses(&build_guide_steps(&covered_assembly))
         .expect_err("the lid must be reported as an obstacle");
     assert_eq!(blocked_screw.obstacle, "deck lid");
-    let message = BuildProblem::from(blocked_screw).to_string();
+    let message = BuildError::from(blocked_screw).to_string();
     let expected = "at step 3 of the guide: deck lid is in the way, at every pose";
     assert!(message.contains(expected), "{message}");
 }
@@ -150,13 +149,13 @@ fn a_robot_with_a_screw_that_is_covered_at_every_pose_is_refused() {
 fn parts_that_move_together_do_not_overlap() {
     for name in ROBOTS {
         assert_eq!(
-            slotted_assembly(name, "").check_dimensions(),
+            build_slotted_assembly(name, "").check_dimensions(),
             Ok(()),
             "{name}"
         );
     }
-    // The head of a standoff's screw is moved into the boss of the board's screw.
-    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+    // The head of a standoff's screw overlaps the boss of the board's screw.
+    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let is_screw = |body: &&mut Body| body.name == "screw standoff 1 above";
         for body in bodies.iter_mut().filter(is_screw) {
             let heads = body
@@ -168,31 +167,32 @@ fn parts_that_move_together_do_not_overlap() {
     });
     let message = altered_assembly
         .check_dimensions()
-        .expect_err("the overlap must be refused")
+        .expect_err("the overlap must be reported")
         .to_string();
     let expected = "deck and screw standoff 1 above, which move together, overlap by 0.5";
     assert!(message.contains(expected), "{message}");
 }
 
-/// An independent check of free space, with the layers' outlines tested point by point.
+/// Checks the free space independently: tests the layers' outlines point by point.
 #[test]
-fn there_is_no_material_above_a_head_that_can_be_reached() {
+fn no_body_is_above_a_screw_head_that_can_be_reached() {
     for name in ["paper", "unequal"] {
-        let assembly = slotted_assembly(name, "");
-        let pose = neutral_solution(&assembly);
-        let steps = steps_of(&assembly);
-        let blocked_screws = assembly.blocked_screws(&steps, &pose);
-        let step_of = |body: &Body| steps.iter().position(|step| step.adds(body));
-        let outlines_of = |body: &Body| body.prisms.iter().map(Outline::of).collect();
+        let assembly = build_slotted_assembly(name, "");
+        let pose = solve_at_neutral(&assembly);
+        let steps = build_guide_steps(&assembly);
+        let blocked_screws = assembly.find_blocked_screws(&steps, &pose);
+        let find_step = |body: &Body| steps.iter().position(|step| step.adds(body));
+        let trace_layers = |body: &Body| body.prisms.iter().map(Outline::from_prism).collect();
         let bodies = assembly.bodies().iter();
-        let outlines: Vec<(&Body, Vec<_>)> = bodies.map(|body| (body, outlines_of(body))).collect();
+        let outlines: Vec<(&Body, Vec<_>)> =
+            bodies.map(|body| (body, trace_layers(body))).collect();
         let mut checked_count = 0;
         for screw in assembly.bodies() {
-            let screw_step = step_of(screw);
-            // Only screws that are inserted from above, on the robot.
+            let screw_step = find_step(screw);
             let (Kind::Screw(_), [low, high]) = (screw.kind, &screw.prisms[..]) else {
                 continue;
             };
+            // Only screws that are inserted from above, on the robot, are checked.
             if high.filled_shapes[0].diameter() <= low.filled_shapes[0].diameter()
                 || screw_step == Some(6)
             {
@@ -206,31 +206,34 @@ fn there_is_no_material_above_a_head_that_can_be_reached() {
                 continue;
             }
             let head = assembly
-                .place(screw.mount, &pose)
+                .placement(screw.mount, &pose)
                 .map(high.filled_shapes[0].middle());
             for turn in 0..12 {
                 let rim = head + Vector::direction(30.0 * f64::from(turn)) * 1.99;
                 for height_step in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(height_step);
-                    let is_later = |body: &Body| step_of(body) > screw_step;
+                    let is_later = |body: &Body| find_step(body) > screw_step;
                     let is_ignored =
                         |body: &Body| body.name == screw.name || body.name.starts_with("board");
                     for (body, layers) in outlines
                         .iter()
                         .filter(|(body, _)| !is_later(body) && !is_ignored(body))
                     {
-                        let point = assembly.place(body.mount, &pose).unmap(rim);
+                        let point = assembly.placement(body.mount, &pose).unmap(rim);
                         for (prism, outline) in body.prisms.iter().zip(layers) {
                             let is_at_height = prism.z[0] < z && z < prism.z[1];
                             checked_count += usize::from(is_at_height);
                             let (screw, body) = (&screw.name, &body.name);
                             let is_free = !is_at_height || !outline.contains(point);
-                            assert!(is_free, "{name}: {screw} in {body}");
+                            assert!(is_free, "{name}: {body} covers {screw}");
                         }
                     }
                 }
             }
         }
-        assert!(checked_count > 1000, "{name}: {checked_count}");
+        assert!(
+            checked_count > 1000,
+            "{name}: {checked_count} points checked"
+        );
     }
 }

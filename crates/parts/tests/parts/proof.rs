@@ -1,15 +1,15 @@
-//! Tests of the proof that parts do not collide: its bound never exceeds the distance at any pose, it finds
+//! Tests of the proof that parts do not collide: its bounds never exceed the distance at any pose, it detects
 //! deliberate mistakes, and every robot file passes it.
 
 use std::collections::BTreeSet;
 
 use lizard_kinematics::{Side, Solution, Vector};
-use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, Shape};
+use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, NearestPair, Shape};
 use lizard_robot::Robot;
 
-use crate::{GRAIN_ROBOT, ROBOTS, assembly, body, slotted_assembly};
+use crate::{GRAIN_ROBOT, ROBOTS, build_assembly, build_slotted_assembly, find_body};
 
-/// Pseudo-random numbers from 0 to 1, the same in every run.
+/// A generator of pseudo-random numbers between 0 and 1, the same in every run.
 struct Random(u64);
 
 impl Random {
@@ -22,9 +22,9 @@ impl Random {
     }
 }
 
-/// Poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted range,
-/// where parts come nearest.
-fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
+/// Finds poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted
+/// range, where parts come nearest.
+fn find_accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
     let mut random = Random(7);
     let mut poses = Vec::new();
     let neutral = robot.servos().map(|servo| servo.neutral);
@@ -34,48 +34,51 @@ fn accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
             servo.neutral + low + (high - low) * random.next()
         });
         poses.extend(robot.solve_if_allowed(random_angles));
-        let (mut accepted_share, mut refused_share) = (0.0, 1.0);
+        let solve_at = |fraction: f64| {
+            let angles =
+                std::array::from_fn(|i| neutral[i] + fraction * (random_angles[i] - neutral[i]));
+            robot.solve_if_allowed(angles)
+        };
+        let (mut accepted_fraction, mut refused_fraction) = (0.0, 1.0);
         for _ in 0..30 {
-            let share = (accepted_share + refused_share) / 2.0;
-            let angle_of =
-                |servo: usize| neutral[servo] + share * (random_angles[servo] - neutral[servo]);
-            match robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)) {
-                Some(_) => accepted_share = share,
-                None => refused_share = share,
+            let fraction = (accepted_fraction + refused_fraction) / 2.0;
+            match solve_at(fraction) {
+                Some(_) => accepted_fraction = fraction,
+                None => refused_fraction = fraction,
             }
         }
-        let angle_of = |servo: usize| {
-            neutral[servo] + accepted_share * (random_angles[servo] - neutral[servo])
-        };
-        poses.extend(robot.solve_if_allowed([0, 1, 2, 3].map(angle_of)));
+        poses.extend(solve_at(accepted_fraction));
     }
     poses
 }
 
-/// Proves that a robot file fits, and compares the bounds with the distances at many poses.
+/// Proves that the parts of a robot file fit, and compares the proof's bounds with the distances at many poses.
 fn assert_bounds_hold(name: &str) {
-    let assembly = slotted_assembly(name, "");
+    let assembly = build_slotted_assembly(name, "");
     let proof = assembly.prove(|_, _| ());
     assert_eq!(proof.judge(), Ok(()), "{name}");
-    let mounts_of = |first: &str, second: &str| {
-        [first, second].map(|body_name| body(&assembly, body_name).mount)
+    let find_mounts = |pair: &NearestPair| {
+        [&pair.first, &pair.second].map(|body_name| find_body(&assembly, body_name).mount)
     };
-    let poses = accepted_poses(assembly.robot(), 300);
+    let poses = find_accepted_poses(assembly.robot(), 300);
     for pose in &poses {
         let angles: [f64; 4] = pose.pose.into();
         for (angle, [low, high]) in angles.into_iter().zip(proof.ranges) {
-            assert!((low..=high).contains(&angle), "{name}: {angle}");
+            assert!(
+                (low..=high).contains(&angle),
+                "{name}: {angle} deg is outside {low} to {high}"
+            );
         }
     }
-    for pair in assembly.close_pairs(poses, FAR_MM - 0.2) {
-        let mounts = mounts_of(&pair.first, &pair.second);
+    for pair in assembly.find_close_pairs(poses, FAR_MM - 0.2) {
+        let mounts =
+            [&pair.first, &pair.second].map(|body_name| find_body(&assembly, body_name).mount);
         let mut pairs = proof.separate_pairs.iter();
-        let proved_pair =
-            pairs.find(|proved_pair| mounts_of(&proved_pair.first, &proved_pair.second) == mounts);
-        let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: nothing proved of {pair}"));
+        let proved_pair = pairs.find(|proved_pair| find_mounts(proved_pair) == mounts);
+        let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: no bound for {pair}"));
         assert!(
             proved_pair.lower_bound <= pair.mm,
-            "{name}: {pair}, proved {proved_pair}"
+            "{name}: {pair}, but {proved_pair}"
         );
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
@@ -85,32 +88,31 @@ fn assert_bounds_hold(name: &str) {
         let accepted = assembly.robot().solve_if_allowed(clearance.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
         assert!(pair.lower_bound <= clearance.mm, "{name}: {pair}");
-        // The proven bound is not much below the least distance found, except near poses that the guard barely
-        // accepts.
+        // The bound is not much less than the least distance found, except near poses that the guard barely accepts.
         let is_close = clearance.mm < pair.lower_bound.max(0.0) * 2.1 + 0.02;
         assert!(is_close || pair.unproved_angles.is_some(), "{name}: {pair}");
     }
 }
 
 #[test]
-fn the_papers_robot_fits_and_no_distance_is_below_its_proved_bound() {
+fn distances_in_the_papers_robot_are_at_least_the_proved_bounds() {
     assert_bounds_hold("paper");
 }
 
 #[test]
-fn the_large_robot_fits_and_no_distance_is_below_its_proved_bound() {
+fn distances_in_the_large_robot_are_at_least_the_proved_bounds() {
     assert_bounds_hold("large");
 }
 
 #[test]
-fn the_unequal_robot_fits_and_no_distance_is_below_its_proved_bound() {
+fn distances_in_the_unequal_robot_are_at_least_the_proved_bounds() {
     assert_bounds_hold("unequal");
 }
 
 #[test]
-fn rigid_struts_keep_the_distances_of_slotted_ones() {
-    let [sprung_gap, rigid_gap] = ["strut", "rigid"].map(|kind| {
-        let assembly = assembly("paper", &format!("[leg.drive]\nkind = \"{kind}\""));
+fn rigid_struts_are_at_least_as_far_from_other_parts_as_slotted_struts() {
+    let [slotted_gap, rigid_gap] = ["strut", "rigid"].map(|kind| {
+        let assembly = build_assembly("paper", &format!("[leg.drive]\nkind = \"{kind}\""));
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
         assert_eq!(proof.judge(), Ok(()), "{kind}");
@@ -119,40 +121,43 @@ fn rigid_struts_keep_the_distances_of_slotted_ones() {
             .expect("some pair is near")
             .lower_bound
     });
-    assert!(rigid_gap >= sprung_gap, "{rigid_gap} {sprung_gap}");
+    assert!(
+        rigid_gap >= slotted_gap,
+        "rigid {rigid_gap} mm, slotted {slotted_gap} mm"
+    );
 }
 
 #[test]
-fn the_robots_with_gaits_of_their_own_have_the_papers_parts() {
-    let paper = slotted_assembly("paper", "");
+fn own_gaits_and_grain_have_the_parts_of_the_paper() {
+    let paper = build_slotted_assembly("paper", "");
     let without_pads = |assembly: Assembly| {
         assembly.with_changed_bodies(|bodies| {
             bodies.retain(|body| body.kind != lizard_parts::Kind::Pad)
         })
     };
-    // The pads of `grain` are not compared: they lie within plain pads, as the tests in `pads.rs` show.
+    // The pads of `grain` are not compared: they are no wider than plain pads, as the tests in `pads.rs` show.
     for (assembly, paper) in [
-        (slotted_assembly("own-gaits", ""), paper.clone()),
+        (build_slotted_assembly("own-gaits", ""), paper.clone()),
         (
-            without_pads(slotted_assembly(GRAIN_ROBOT, "")),
+            without_pads(build_slotted_assembly(GRAIN_ROBOT, "")),
             without_pads(paper),
         ),
     ] {
         assert_eq!(assembly.bodies(), paper.bodies());
         assert_eq!(assembly.robot().limits(), paper.robot().limits());
-        let travels_of = |assembly: &Assembly| {
+        let [travels, paper_travels] = [&assembly, &paper].map(|assembly| {
             assembly
                 .robot()
                 .servos()
                 .each_ref()
                 .map(|servo| servo.travel())
-        };
-        assert_eq!(travels_of(&assembly), travels_of(&paper));
+        });
+        assert_eq!(travels, paper_travels);
     }
 }
 
 #[test]
-fn every_file_of_robots_is_tested() {
+fn the_tests_use_every_robot_file() {
     let folder = format!("{}/../../robots", env!("CARGO_MANIFEST_DIR"));
     let files = std::fs::read_dir(folder).expect("the folder robots/ is readable");
     let names = files.map(|file| file.expect("the folder's entry is readable").file_name());
@@ -161,19 +166,19 @@ fn every_file_of_robots_is_tested() {
     assert_eq!(BTreeSet::from_iter(names), BTreeSet::from_iter(expected));
 }
 
-/// The worst clash among the pairs that include a body for which `is_chosen` is true.
+/// Finds the worst clash among the pairs that include a body for which `is_chosen` is true.
 fn find_clash(assembly: &Assembly, is_chosen: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_chosen(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
     proof.judge().expect_err("the proof must find a clash")
 }
 
-/// Asserts that a clash is an overlap of two bodies whose names begin with the given texts, in either order.
+/// Asserts that a clash is an overlap of two bodies whose names begin with `first` and `second`, in either order.
 #[track_caller]
 fn assert_overlap(clash: Clash, first: &str, second: &str) {
     let Clash::Overlap(clearance) = clash else {
         panic!("{clash}");
     };
-    assert!(clearance.mm < 0.0);
+    assert!(clearance.mm < 0.0, "{clearance}");
     let (a, b) = (&clearance.first, &clearance.second);
     let is_pair = |a: &str, b: &str| a.starts_with(first) && b.starts_with(second);
     assert!(is_pair(a, b) || is_pair(b, a), "{clearance}");
@@ -185,7 +190,7 @@ fn an_overlap_due_to_a_wrong_dimension_is_detected() {
         ("bar = 20.0", "link", "link A", ""),
         ("pivot = [22.0, 6.0]", "crank", "crank", "plate"),
     ] {
-        let altered_assembly = slotted_assembly("paper", &format!("[parts]\n{parts_line}"));
+        let altered_assembly = build_slotted_assembly("paper", &format!("[parts]\n{parts_line}"));
         assert_overlap(
             find_clash(&altered_assembly, |body| body.name.starts_with(prefix)),
             first,
@@ -195,22 +200,26 @@ fn an_overlap_due_to_a_wrong_dimension_is_detected() {
 }
 
 #[test]
-fn a_robot_far_from_fitting_is_refused_after_a_few_regions() {
-    let proof = slotted_assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
+fn a_large_overlap_is_detected_after_a_few_regions() {
+    let proof = build_slotted_assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
     let Err(Clash::Overlap(clearance)) = proof.judge() else {
         panic!("no overlap");
     };
     assert!(clearance.mm < -5.0, "{clearance}");
-    assert!(proof.region_count < 10_000, "{}", proof.region_count);
+    assert!(
+        proof.region_count < 10_000,
+        "{} regions",
+        proof.region_count
+    );
 }
 
-/// The paper's robot with one screw made longer by `extra_mm`.
+/// Builds the paper's robot with one screw that is longer by `extra_mm`.
 fn with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly {
-    slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+    build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let mut bodies = bodies.iter_mut();
         let screw = bodies.find(|body| body.name == name).expect(name);
-        let width_of = |body: &Body, i: usize| body.prisms[i].filled_shapes[0].diameter();
-        let shank = usize::from(width_of(screw, 1) < width_of(screw, 0));
+        let diameter = |i: usize| screw.prisms[i].filled_shapes[0].diameter();
+        let shank = usize::from(diameter(1) < diameter(0));
         let z = &mut screw.prisms[shank].z;
         if extends_down {
             z[0] -= extra_mm;
@@ -240,15 +249,15 @@ fn a_screw_that_is_too_long_is_detected() {
 
 #[test]
 fn swapped_layers_are_detected() {
-    // The head's upper and lower coupler exchange their heights.
-    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
-        let index_of = |name: &str| {
+    // The head's upper and lower couplers exchange their heights.
+    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+        let find_index = |name: &str| {
             bodies
                 .iter()
                 .position(|body| body.name == name)
                 .expect(name)
         };
-        let [lower_index, upper_index] = ["coupler A1", "coupler A2"].map(index_of);
+        let [lower_index, upper_index] = ["coupler A1", "coupler A2"].map(find_index);
         let z = bodies[lower_index].prisms[0].z;
         bodies[lower_index].prisms[0].z = bodies[upper_index].prisms[0].z;
         bodies[upper_index].prisms[0].z = z;
@@ -258,8 +267,8 @@ fn swapped_layers_are_detected() {
 }
 
 #[test]
-fn a_hole_beside_its_pin_is_detected() {
-    let altered_assembly = slotted_assembly("paper", "").with_changed_bodies(|bodies| {
+fn a_hole_that_is_displaced_from_its_pin_is_detected() {
+    let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         for body in bodies.iter_mut().filter(|body| body.name == "coupler A4") {
             for cut in &mut body.prisms[0].cut_shapes {
                 for point in &mut cut.points {
@@ -277,16 +286,16 @@ fn a_hole_beside_its_pin_is_detected() {
 }
 
 #[test]
-fn parts_that_come_too_near_are_refused_with_their_pose() {
-    // At the end of the rotation that the guard allows, the strut comes close to the servo's screws.
-    let altered_assembly = slotted_assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
+fn the_message_about_parts_that_come_too_near_has_their_pose() {
+    // At the limits of the guard, the strut comes close to the servo's screws.
+    let altered_assembly = build_slotted_assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
     let clash = find_clash(&altered_assembly, |body| body.name.starts_with("strut"));
     let message = clash.to_string();
     assert!(message.contains("strut"), "{message}");
     assert!(message.contains(" pose "), "{message}");
 }
 
-/// The smallest and largest x of a shape that is shifted by `shift_mm` along x, mm.
+/// Computes the least and greatest x of a shape that is shifted by `shift_mm` along x, mm.
 fn extent_along_x(shape: &Shape, shift_mm: f64) -> [f64; 2] {
     let xs = shape.points.iter().map(|point| point.x + shift_mm);
     let low = xs.clone().fold(f64::INFINITY, f64::min) - shape.radius;
@@ -294,30 +303,28 @@ fn extent_along_x(shape: &Shape, shift_mm: f64) -> [f64; 2] {
 }
 
 #[test]
-fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
+fn a_rod_stays_in_its_sleeve_throughout_the_stroke() {
     for name in ["paper", "large", "unequal"] {
-        let assembly = slotted_assembly(name, "");
+        let assembly = build_slotted_assembly(name, "");
         let (lizard, limits) = (assembly.robot().lizard(), assembly.robot().limits());
         for side in Side::ALL {
             let slider = lizard.side(side);
             let [sleeve, rod] = ["sleeve", "rod"].map(|part| {
-                let body = body(&assembly, &format!("{part} {side}"));
+                let body = find_body(&assembly, &format!("{part} {side}"));
                 let mut shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
             let [start, end] = extent_along_x(sleeve, 0.0);
             let mut least_overlap = f64::INFINITY;
             for step in 0..=100 {
-                let share = f64::from(step) / 100.0;
-                let stroke = limits.stroke_min + share * (limits.stroke_max - limits.stroke_min);
+                let fraction = f64::from(step) / 100.0;
+                let stroke = limits.stroke_min + fraction * (limits.stroke_max - limits.stroke_min);
                 let [rear, front] = extent_along_x(rod, slider.nominal_length + stroke);
                 least_overlap = least_overlap.min(front.min(end) - rear.max(start));
             }
-            // At the longest stroke, the rod still overlaps the sleeve by exactly the required length.
-            assert!(
-                (least_overlap - 20.0).abs() < 1e-9,
-                "{name} {side}: {least_overlap}"
-            );
+            // At the longest stroke, the rod overlaps the sleeve by exactly the required length.
+            let error = least_overlap - 20.0;
+            assert!(error.abs() < 1e-9, "{name} {side}: {least_overlap} mm");
         }
         let is_sleeve_and_rod =
             |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
@@ -336,9 +343,9 @@ fn a_rod_stays_in_its_sleeve_over_the_whole_stroke() {
 }
 
 #[test]
-fn a_struts_screw_has_clearance_along_its_whole_slot() {
-    let assembly = slotted_assembly("paper", "");
-    let strut = body(&assembly, "strut LF");
+fn the_screw_of_a_strut_has_clearance_along_its_whole_slot() {
+    let assembly = build_slotted_assembly("paper", "");
+    let strut = find_body(&assembly, "strut LF");
     let leg = assembly.layout().legs[0];
     let screw_radius = assembly.robot().parts().screw.diameter / 2.0;
     let is_at_screw = |cut: &&Shape| (cut.points[0].x - leg.strut_length).abs() < 1e-9;
@@ -351,13 +358,13 @@ fn a_struts_screw_has_clearance_along_its_whole_slot() {
         let travel = 5.0 * f64::from(step) / 10.0;
         let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
         let gap = pin.depth_in(slot, Vector::default());
-        assert!((gap - 0.1).abs() < 1e-9, "{travel}: {gap}");
+        assert!((gap - 0.1).abs() < 1e-9, "{gap} mm after {travel} mm");
     }
     let pin_beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw_radius);
     assert!(pin_beyond.depth_in(slot, Vector::default()) < 0.0);
 }
 
 #[test]
-fn the_least_allowed_distance_is_at_least_a_printers_error() {
-    assert!(MIN_GAP_MM >= slotted_assembly("paper", "").robot().parts().fit);
+fn the_least_allowed_distance_is_at_least_the_error_of_a_printer() {
+    assert!(MIN_GAP_MM >= build_slotted_assembly("paper", "").robot().parts().fit);
 }

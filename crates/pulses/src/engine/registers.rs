@@ -1,4 +1,4 @@
-//! The part of the engine that accesses registers.
+//! The engine's access to registers.
 
 use core::ptr::with_exposed_provenance_mut;
 
@@ -15,11 +15,11 @@ const TCCR1B: usize = 0x81;
 const TCNT1: usize = 0x84;
 const OCR1A: usize = 0x88;
 const OCR1B: usize = 0x8a;
-/// Compare match B: the bit OCF1B in TIFR1, and OCIE1B in TIMSK1.
+/// The bit of compare match B: OCF1B in TIFR1, OCIE1B in TIMSK1.
 const MATCH_B: u8 = 1 << 2;
-/// Compare match A: the bit OCF1A in TIFR1, and OCIE1A in TIMSK1.
+/// The bit of compare match A: OCF1A in TIFR1, OCIE1A in TIMSK1.
 const MATCH_A: u8 = 1 << 1;
-/// The value of TCCR1B that starts the timer (WGM12 and CS10): it counts every cycle up to OCR1A (CTC mode).
+/// The value of TCCR1B that starts the timer (WGM12 and CS10), which counts every cycle up to OCR1A (CTC mode).
 const RUN: u8 = 1 << 3 | 1;
 
 /// A compare value that the timer never reaches.
@@ -34,16 +34,16 @@ fn port_register(address: u8) -> *mut u8 {
 /// Writes to a register.
 ///
 /// # Safety
-/// The register is one of Timer1's.
+/// `register` must be the address of a Timer1 register of type `T`.
 #[inline(always)]
 unsafe fn write_register<T>(register: usize, value: T) {
-    // SAFETY: the caller fulfils the same condition.
+    // SAFETY: the caller guarantees the same condition.
     unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
 }
 
 impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
-    /// Sets the pins, in the order of the widths, drives them low and makes them outputs. Call it once, before the
-    /// first [`Engine::submit`], and with interrupts off if any handler changes other pins of these ports.
+    /// Sets the pins, in the order of the widths, drives them low and makes them outputs. Call this function once,
+    /// before the first [`Engine::submit`], and with interrupts off if any handler changes other pins of these ports.
     #[inline(always)]
     pub fn connect(&self, pins: [Pin; SERVOS]) {
         for (slot, pin) in self.pins.iter().zip(&pins) {
@@ -62,7 +62,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     #[inline(always)]
     pub unsafe fn start_with_fixed_pins(&self) {
         self.drive_pins_low();
-        // SAFETY: the caller fulfils the same condition.
+        // SAFETY: the caller guarantees the same condition.
         unsafe { self.start() }
     }
 
@@ -72,8 +72,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         for [address, mask] in &self.pins[..SERVOS] {
             let port = port_register(address.get());
             let mask = mask.get();
-            // SAFETY: a `Pin` holds only addresses of PORT registers, and DDR is the register just below PORT. No
-            // handler writes one of them before a width has been submitted.
+            // SAFETY: a `Pin` has only addresses of PORT registers, and DDR is the register just below PORT. No handler
+            // writes to these registers before a width has been submitted.
             unsafe {
                 let ddr = port.sub(1);
                 port.write_volatile(port.read_volatile() & !mask);
@@ -82,18 +82,18 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// Starts the timer. The first tick comes one slot later. Call it once.
+    /// Starts the timer. The first tick occurs one slot later. Call this function once.
     ///
     /// # Safety
-    /// Interrupts are off, and nothing else uses Timer1 from now on.
+    /// Interrupts must be off, and no other code may use Timer1 from now on.
     #[inline(always)]
     pub unsafe fn start(&self) {
         self.slot.set(Self::TICK_SLOT);
         self.fall_count.set(Self::NO_PULSE);
         self.allowed_pins.set(u8::MAX);
-        // SAFETY: these registers are Timer1's, which only this engine uses.
+        // SAFETY: these registers belong to Timer1, which only this engine uses.
         unsafe {
-            // A boot loader leaves the timer running for its LED, so it is stopped first.
+            // The timer is stopped first, because a boot loader leaves it running for the LED.
             write_register(TCCR1B, 0u8);
             write_register(TCCR1A, 0u8);
             write_register(TCNT1, 0u16);
@@ -105,8 +105,8 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         }
     }
 
-    /// The number of edges that were late because an interrupt was delayed for longer than [`LEAD_CYCLES`] allows. The
-    /// count saturates at 65535.
+    /// The number of edges that were late because an interrupt was delayed longer than [`LEAD_CYCLES`] allows, at most
+    /// 65535.
     #[inline(always)]
     pub fn late_edges(&self) -> u16 {
         self.late_edges.read()
@@ -115,20 +115,21 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Opens a slot: raises its pin or, in the slot without a pin, counts a tick.
     ///
     /// # Safety
-    /// Call it only in the handler of Timer1's compare match A.
+    /// Call this function only in the handler of Timer1's compare match A.
     #[doc(hidden)]
     #[inline(always)]
     pub unsafe fn open_slot(&self) {
         let mask = self.mask.get() & self.allowed_pins.get();
         if mask != 0 {
             let port = port_register(self.port.get());
-            // SAFETY: the port of a servo pin, in a handler, LEAD_CYCLES after the match.
+            // SAFETY: `port` is the port of a servo pin, interrupts are off in a handler, and the edge is due
+            // LEAD_CYCLES after the match.
             unsafe {
                 let level_before = port.read_volatile();
-                // A pin that is still high has missed its falling edge, so it may only go low.
-                let change = mask & !level_before;
-                let on_time = store_at([LEAD_CYCLES, 0], port, level_before & !mask, change);
-                if on_time & change == 0 {
+                // A pin that is still high has missed its falling edge and may only go low.
+                let set_mask = mask & !level_before;
+                let on_time_mask = store_at([LEAD_CYCLES, 0], port, level_before & !mask, set_mask);
+                if on_time_mask & set_mask == 0 {
                     self.late_edges.count();
                     self.mask.set(0);
                     self.fall_count.set(Self::NO_PULSE);
@@ -137,12 +138,11 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         } else if self.slot.get() == Self::TICK_SLOT {
             self.ticks.set(self.ticks.get().wrapping_add(1));
         }
-        // SAFETY: after `start` only the two handlers use Timer1, and they cannot
-        // interrupt each other.
+        // SAFETY: after `start` only the two handlers use Timer1, and they cannot interrupt each other.
         unsafe {
             write_register(OCR1B, self.fall_count.get() - u16::from(LEAD_CYCLES));
-            // If interrupts were off for very long, a match B from the previous slot, or one in this slot with the
-            // previous value of OCR1B, is pending here and would close this slot at once.
+            // If interrupts were off for very long, a match B is pending here, from the previous slot or from this slot
+            // with the previous value of OCR1B, and would close this slot at once.
             write_register(TIFR1, MATCH_B);
         }
     }
@@ -150,15 +150,15 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Closes a slot: lowers its pin and plans the next slot.
     ///
     /// # Safety
-    /// Call it only in the handler of Timer1's compare match B.
+    /// Call this function only in the handler of Timer1's compare match B.
     #[doc(hidden)]
     #[inline(always)]
     pub unsafe fn close_slot(&self) {
         let mask = self.mask.get();
         if mask != 0 {
             let port = port_register(self.port.get());
-            // SAFETY: the port of a servo pin, in a handler, LEAD_CYCLES after the match.
-            let on_time = unsafe {
+            // SAFETY: as in `open_slot`.
+            let on_time_mask = unsafe {
                 store_at(
                     self.fall_count.bytes(),
                     port,
@@ -166,7 +166,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
                     0,
                 )
             };
-            if on_time == 0 {
+            if on_time_mask == 0 {
                 self.late_edges.count();
             }
         }

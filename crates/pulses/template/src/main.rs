@@ -21,7 +21,7 @@ mod servos {
     servo_pulses::engine!(super::PINS);
 }
 
-/// The width of a frame's pulse in cycles: it goes from 1000 to 2000 us and back in 100 frames.
+/// Computes the width of a frame's pulse, cycles: from 1000 to 2000 us and back in 100 frames.
 fn width_cycles(frame: u8) -> u16 {
     let step = if frame < 50 { frame } else { 100 - frame };
     (1000 + 20 * u16::from(step)) * CYCLES_PER_US
@@ -29,7 +29,7 @@ fn width_cycles(frame: u8) -> u16 {
 
 #[avr_device::entry]
 fn main() -> ! {
-    // SAFETY: the engine has Timer1 and the servos' pins; the LED is on another one, D13.
+    // SAFETY: the engine uses Timer1 and the servos' pins; the LED is on another pin, D13.
     let led = unsafe { avr_device::atmega328p::Peripherals::steal() }.PORTB;
     led.ddrb.write(|w| w.pb5().set_bit());
     // SAFETY: interrupts are off, and nothing else uses Timer1.
@@ -39,7 +39,7 @@ fn main() -> ! {
     let mut last_tick = servos::ticks();
     let mut frame = 0;
     loop {
-        // After a new tick, there is the time of one frame to submit the next widths, which take effect together.
+        // After each tick, the program has one frame's time to submit the next widths, which take effect together.
         if servos::ticks() != last_tick {
             last_tick = servos::ticks();
             frame = (frame + 1) % 100;

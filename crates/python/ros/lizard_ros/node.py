@@ -1,4 +1,4 @@
-"""The ROS node: publishes a robot's `joint_states`, and drives it by `cmd_vel`. The logic is in `lizard.ros`."""
+"""The ROS node: publishes a robot's `joint_states`, and drives the robot from `cmd_vel`. `lizard.ros` has the logic."""
 
 import threading
 from contextlib import closing
@@ -12,27 +12,27 @@ from lizard import Model, Robot, RobotError
 from lizard.ros import JOINTS, Driver, joint_values
 
 
-class Lizard(Node):
-    """A robot at a serial port (parameter `port`), or a simulated one; the parameter `robot` is its robot.toml."""
+class LizardNode(Node):
+    """A robot on a serial port (parameter `port`), or a simulated robot; the parameter `robot` is its robot.toml."""
 
     def __init__(self) -> None:
         super().__init__("lizard")
         port = self.declare_parameter("port", "").value
-        file = self.declare_parameter("robot", "").value
-        self.every = self.declare_parameter("every", 2).value
-        self.model = Model.from_toml(file) if file else Model.default()
+        robot_path = self.declare_parameter("robot", "").value
+        self.frame_interval = self.declare_parameter("every", 2).value
+        self.model = Model.from_toml(robot_path) if robot_path else Model.default()
         self.robot = Robot(port) if port else Robot.simulated(self.model)
         self.driver = Driver(self.robot, self.model)
-        self.states = self.create_publisher(JointState, "joint_states", 10)
+        self.joint_publisher = self.create_publisher(JointState, "joint_states", 10)
         self.create_subscription(Twist, "cmd_vel", self.drive, 1)
         self.create_timer(0.1, self.stop_if_silent)
-        threading.Thread(target=self.publish, daemon=True).start()
+        threading.Thread(target=self.publish_joints, daemon=True).start()
 
-    def publish(self) -> None:
-        """Publishes the joints in every n-th frame (parameter `every`) until the port is gone, also after a reset."""
+    def publish_joints(self) -> None:
+        """Publishes the joints in every n-th frame (parameter `every`), also after a reset, until the port closes."""
         while rclpy.ok():
             try:
-                with closing(self.robot.watch(self.every)) as frames:
+                with closing(self.robot.watch(self.frame_interval)) as frames:
                     for frame in frames:
                         if not rclpy.ok():
                             return
@@ -40,7 +40,7 @@ class Lizard(Node):
                         state.header.stamp = self.get_clock().now().to_msg()
                         state.name = list(JOINTS)
                         state.position = joint_values(self.model, frame.pose).tolist()
-                        self.states.publish(state)
+                        self.joint_publisher.publish(state)
             except RobotError as error:
                 if rclpy.ok():
                     self.get_logger().error(str(error))
@@ -49,17 +49,17 @@ class Lizard(Node):
                 rclpy.try_shutdown()
 
     def drive(self, twist: Twist) -> None:
-        """Drives at a velocity of `cmd_vel`."""
-        self.attempt(self.driver.drive, twist.linear.x, twist.angular.z)
+        """Drives at the velocity received on `cmd_vel`."""
+        self.run_and_log_errors(self.driver.drive, twist.linear.x, twist.angular.z)
 
     def stop_if_silent(self) -> None:
-        """Stops the robot when velocities no longer arrive."""
-        self.attempt(self.driver.stop_if_silent)
+        """Stops the robot if no velocity has arrived for a while."""
+        self.run_and_log_errors(self.driver.stop_if_silent)
 
-    def attempt(self, action, *arguments) -> None:
-        """Performs an action that the robot may refuse, and logs the refusal."""
+    def run_and_log_errors(self, action, *args) -> None:
+        """Runs an action, and logs an error of the robot or its port."""
         try:
-            action(*arguments)
+            action(*args)
         except (RobotError, OSError) as error:
             self.get_logger().error(str(error), throttle_duration_sec=1.0)
 
@@ -67,12 +67,12 @@ class Lizard(Node):
 def main() -> None:
     """Runs the node, and stops the robot at the end."""
     rclpy.init()
-    node = Lizard()
+    node = LizardNode()
     try:
         rclpy.spin(node)
     except KeyboardInterrupt:
         pass
     finally:
         rclpy.try_shutdown()
-        node.attempt(node.driver.stop)
+        node.run_and_log_errors(node.driver.stop)
         node.robot.close()

@@ -1,4 +1,4 @@
-//! Tests of calibration files, console lines and transfers.
+//! Tests of calibration files, of console lines and of transfers.
 
 use super::*;
 
@@ -38,7 +38,7 @@ fn the_file_has_one_readable_line_for_each_setting() {
 }
 
 #[test]
-fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
+fn an_error_in_a_file_is_reported_with_its_line_and_key() {
     let valid_text = example_calibration().to_toml();
     let error_text = |old: &str, new: &str| {
         assert!(valid_text.contains(old), "{old}");
@@ -49,7 +49,8 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
     };
     let robot_file_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
         .expect_err("a robot file is not a calibration");
-    let sentence = "must be \"lizard calibration 1\": this is not a calibration that can be read";
+    let sentence =
+        "must be \"lizard calibration 1\": this is not a calibration file of a supported version";
     assert_eq!(
         robot_file_error.to_string(),
         format!("a.toml: format {sentence}")
@@ -86,7 +87,7 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         (
             "trim = -3.25",
             "trim = 1e9",
-            format!("{trim_prefix}is 1e9; it must be within -360 to 360 deg"),
+            format!("{trim_prefix}is 1e9; it must be between -360 and 360 deg"),
         ),
         (
             "arc left",
@@ -130,9 +131,9 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
         (
             "deadman = 1500",
             "deadman = -1",
-            "deadman is -1; it must be within 0 to 60000 ms",
+            "deadman is -1; it must be between 0 and 60000 ms",
         ),
-        ("format = \"", "format = \"x\n", "lacks the = between"),
+        ("format = \"", "format = \"x\n", "is missing the = between"),
     ] {
         let message = error_text(old, new);
         assert!(message.contains(phrase), "{message} / {phrase}");
@@ -140,7 +141,7 @@ fn a_mistake_in_a_file_is_reported_with_its_line_and_key() {
 }
 
 #[test]
-fn every_setting_is_read_from_the_answer_to_cal_and_set_by_a_console_line() {
+fn the_answer_to_cal_and_the_console_lines_contain_every_setting() {
     let answer = "# boot arc left|# deadman 1500|# A1 trim -3.25 limit 48.59 228.59 dir - scale 10|# t=1 pose=1,2,3,4|\
         # A2 trim 0 limit 48.59 228.59 dir - scale 10|# A3 trim 0.1 limit 48.59 228.59 dir - scale 10|\
         # A4 trim 20 limit 48.59 228.59 dir - scale 10";
@@ -158,7 +159,7 @@ fn every_setting_is_read_from_the_answer_to_cal_and_set_by_a_console_line() {
             "{remaining_lines:?}"
         );
     }
-    let console_lines = example_calibration().console_lines();
+    let console_lines = example_calibration().to_console_lines();
     assert_eq!(console_lines.len(), 18);
     let first_lines = [
         "dir 1 -",
@@ -172,7 +173,7 @@ fn every_setting_is_read_from_the_answer_to_cal_and_set_by_a_console_line() {
 
 #[test]
 fn changing_the_scale_or_the_direction_keeps_the_neutral_pulse_width() {
-    // The change of the neutral pulse width by the trim, us.
+    // The trim's effect on the neutral pulse width, us.
     let pulse_shift_us = |servo: ServoSettings| {
         let sign = if servo.dir == '+' { 1.0 } else { -1.0 };
         sign * servo.trim * servo.scale
@@ -202,7 +203,7 @@ fn changing_the_scale_or_the_direction_keeps_the_neutral_pulse_width() {
 }
 
 #[test]
-fn calibrations_are_equivalent_only_if_all_settings_agree_but_limits_may_differ_by_full_turns() {
+fn equivalent_calibrations_differ_at_most_by_full_turns_of_the_limits() {
     let changes: [fn(&mut Calibration); 6] = [
         |calibration| calibration.servos[0].trim = 0.01,
         |calibration| calibration.servos[1].limit[1] += 0.01,
@@ -224,8 +225,8 @@ fn calibrations_are_equivalent_only_if_all_settings_agree_but_limits_may_differ_
     assert!(turned_calibration.is_equivalent_to(&example_calibration()));
 }
 
-/// Sends the lines of a transfer to a robot that refuses some of them. Returns the lines that were sent, and true if
-/// every setting was accepted in the end.
+/// Sends the lines of a transfer to a robot that refuses some of the lines. Returns the sent lines, and true if every
+/// setting was accepted in the end.
 fn simulate_transfer(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<String>, bool) {
     let (mut transfer, mut sent_lines, mut accepted_lines) = (
         Transfer::new(&example_calibration()),
@@ -246,8 +247,8 @@ fn simulate_transfer(is_refused: impl Fn(&str, &[String]) -> bool) -> (Vec<Strin
 }
 
 #[test]
-fn refused_lines_are_sent_again_after_the_others_and_once_more_after_factory() {
-    let lines = example_calibration().console_lines();
+fn refused_lines_are_sent_again_and_once_more_after_factory() {
+    let lines = example_calibration().to_console_lines();
     assert_eq!(simulate_transfer(|_, _| false), (lines.clone(), true));
     // A trim that is accepted only after the limit.
     let (sent_lines, is_done) = simulate_transfer(|line, accepted| {
@@ -263,7 +264,7 @@ fn refused_lines_are_sent_again_after_the_others_and_once_more_after_factory() {
     assert!(is_done);
     assert_eq!(sent_lines[18..20], ["scale 2 10.00", "factory"]);
     assert_eq!(sent_lines[20..], lines);
-    // A line that is never accepted is given up after the round that starts with `factory`.
+    // The transfer gives up a line that is still refused after the round that starts with `factory`.
     let (sent_lines, is_done) = simulate_transfer(|line, _| line.starts_with("limit 4"));
     assert!(!is_done);
     assert_eq!(

@@ -1,11 +1,11 @@
-//! The error of the firmware's tables, compared with the gaits in floating point.
+//! The error of the firmware's tables relative to the gaits in floating point.
 
 use lizard_core::numbers::units::CYCLE16;
 
 use crate::gaits::Gait;
 use crate::tables::Tables;
 
-/// The error of a gait's tables over a cycle, compared with the gait in floating point.
+/// The error of a gait's tables over a cycle, relative to the gait in floating point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TableError {
     /// Largest error over all servos, deg.
@@ -18,12 +18,12 @@ pub struct TableError {
     pub phase: f64,
 }
 
-/// Number of phases in a cycle that the firmware distinguishes.
+/// Number of phases that the firmware distinguishes in a cycle.
 pub(crate) const PHASE_COUNT: usize = CYCLE16 as usize;
 
-/// Computes the error of the tables of the gait with this index over `phase_count` evenly spaced phases, where
-/// `phase_count` divides [`PHASE_COUNT`].
-pub(crate) fn table_error(
+/// Computes the table error of the gait with this index over `phase_count` evenly spaced phases, where `phase_count`
+/// divides [`PHASE_COUNT`].
+pub(crate) fn compute_table_error(
     gait: &Gait,
     index: usize,
     tables: &Tables,
@@ -63,7 +63,7 @@ mod tests {
     use crate::testing::all_robots;
 
     #[test]
-    fn the_maximum_error_is_the_largest_over_all_servos() {
+    fn the_maximum_error_covers_all_servos() {
         const SAMPLE_COUNT: usize = 1024;
         for (name, robot) in all_robots() {
             for gait in robot.gaits() {
@@ -77,12 +77,12 @@ mod tests {
                     }
                 }
                 let table_error = gait.table_error_over(SAMPLE_COUNT);
-                let largest_error = errors.into_iter().fold(0.0, f64::max);
-                assert_eq!(table_error.max, largest_error, "{name} {}", gait.name());
-                assert_eq!(errors[table_error.servo], largest_error);
+                let max_error = errors.into_iter().fold(0.0, f64::max);
+                assert_eq!(table_error.max, max_error, "{name} {}", gait.name());
+                assert_eq!(errors[table_error.servo], max_error);
                 assert!(
-                    table_error.rms <= largest_error
-                        && 2.0 * table_error.rms >= largest_error / SAMPLE_COUNT as f64
+                    table_error.rms <= max_error
+                        && 2.0 * table_error.rms >= max_error / SAMPLE_COUNT as f64
                 );
             }
         }

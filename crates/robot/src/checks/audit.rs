@@ -1,6 +1,6 @@
-//! The check of every sample of a gait, as the firmware will send it. Forward kinematics gives the pose of head,
+//! The check of every sample of a gait, as the firmware will send it. Forward kinematics computes the pose of head,
 //! tail, sides and legs, which is checked against all limits in floating point. The firmware's own guard then checks
-//! the same sample, because it would stop a gait that is closer to a limit than its integers resolve.
+//! the same sample, because the guard would stop a gait that is closer to a limit than its integers resolve.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -10,16 +10,16 @@ use lizard_core::numbers::units::Sweep;
 use lizard_kinematics::{Check, Solution, Violation};
 
 use crate::checks::accuracy::{self, PHASE_COUNT};
+use crate::config::servo::SERVO_NAMES;
+use crate::config::{RobotConfig, describe_open_loop, describe_violation};
 use crate::gaits::Gait;
-use crate::measures::servo::SERVO_NAMES;
-use crate::measures::{Measures, consequence, unclosed_loop_consequence};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
-/// Number of evenly spaced phases in a cycle that are checked in addition to the tables' own samples.
-const CHECKED_PHASES: usize = 1024;
+/// Number of evenly spaced phases in a cycle that are checked in addition to the tables' samples.
+const CHECKED_PHASE_COUNT: usize = 1024;
 /// Number of phases at which the speed over one frame is computed.
-const SPEED_PHASES: usize = 4096;
+const SPEED_PHASE_COUNT: usize = 4096;
 /// The largest error allowed in a table, deg.
 const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
@@ -86,25 +86,25 @@ impl LeastMargin {
     }
 }
 
-/// The message about a limit that a gait violates.
+/// The two parts of the message about a limit that a gait violates.
 pub(crate) struct LimitViolation {
-    /// The consequence for the robot, in words without figures.
+    /// The consequence for the robot, in words without numbers.
     pub consequence: String,
-    /// The figures, and the phase at which they occur.
+    /// The values, and the phase at which they occur.
     pub problem: String,
 }
 
 /// Checks a gait against the limits of its robot.
 ///
 /// # Errors
-/// Returns the first sample that is outside a servo's travel or whose loops do not close; if there is none, the worst
-/// violation of the limit that is violated first; then the first pose at which the firmware's guard would stop the gait;
-/// then a servo speed that is too high, or a table that is too coarse.
+/// Returns the first error that exists, in this order: the first sample that is outside a servo's travel or does not
+/// close its loops; the worst violation of the limit that is violated first; the first pose at which the firmware's
+/// guard would stop the gait; a servo speed that is too high; a table that is too coarse.
 pub(crate) fn check_gait(
     gait: &Gait,
     index: usize,
     tables: &Tables,
-    measures: &Measures,
+    config: &RobotConfig,
     core_robot: &lizard_core::numbers::robot::Robot<'_>,
 ) -> Result<Audit, LimitViolation> {
     let mut audit = Audit {
@@ -114,21 +114,21 @@ pub(crate) fn check_gait(
     let mut worst_violation: Option<(f64, Violation)> = None;
     let mut guard_stop: Option<(f64, Check)> = None;
     let at_phase = |phase: f64| format!("at phase {phase:.4}");
-    for phase in phases_to_check(&tables.gaits[index]) {
+    for phase in list_phases(&tables.gaits[index]) {
         let sweeps = tables.sweeps(index, phase);
         let angles = gait.angles_from_table(sweeps);
         let sweeps = Pose(sweeps.map(Sweep));
         let phase = f64::from(phase) / PHASES_PER_CYCLE;
-        check_travels(measures, angles, phase)?;
-        if let Some(hazard) = Clearance::of(core_robot, &sweeps).first_hazard(core_robot) {
+        check_travels(config, angles, phase)?;
+        if let Some(hazard) = Clearance::measure(core_robot, &sweeps).first_hazard(core_robot) {
             guard_stop.get_or_insert((phase, corresponding_check(&hazard)));
         }
-        let solution = measures.lizard.solve(&angles.into());
+        let solution = config.lizard.solve(&angles.into());
         let solution = solution.map_err(|infeasible| LimitViolation {
-            consequence: unclosed_loop_consequence(infeasible.mechanism),
+            consequence: describe_open_loop(infeasible.mechanism),
             problem: format!("{infeasible} {}", at_phase(phase)),
         })?;
-        for violation in measures.limits.violations(&solution) {
+        for violation in config.limits.violations(&solution) {
             worst_violation = Some(match worst_violation {
                 Some((earlier_phase, earlier)) if !is_worse_violation(violation, earlier) => {
                     (earlier_phase, earlier)
@@ -140,15 +140,15 @@ pub(crate) fn check_gait(
     }
     if let Some((phase, violation)) = worst_violation {
         return Err(LimitViolation {
-            consequence: consequence(violation.check),
+            consequence: describe_violation(violation.check),
             problem: format!("{violation} {}", at_phase(phase)),
         });
     }
     if let Some((phase, stopping_check)) = guard_stop {
         return Err(LimitViolation {
-            consequence: consequence(stopping_check),
+            consequence: describe_violation(stopping_check),
             problem: format!(
-                "margin or travel {stopping_check} is so near to its limit {} that the firmware's integers take it to be beyond; leave it a little room",
+                "margin or travel {stopping_check} is so close to its limit {} that the firmware's integers place it beyond the limit; leave more room",
                 at_phase(phase)
             ),
         });
@@ -158,7 +158,7 @@ pub(crate) fn check_gait(
         speed,
         phase,
     } = audit.peak_speed;
-    let limit = measures.speed_limits.gait_slew;
+    let limit = config.speed_limits.gait_slew;
     if speed > limit {
         return Err(LimitViolation {
             consequence: format!("servo {} would have to turn too fast", SERVO_NAMES[servo]),
@@ -168,7 +168,7 @@ pub(crate) fn check_gait(
             ),
         });
     }
-    let error = accuracy::table_error(gait, index, tables, CHECKED_PHASES);
+    let error = accuracy::compute_table_error(gait, index, tables, CHECKED_PHASE_COUNT);
     if error.max > MAX_TABLE_ERROR_DEG {
         return Err(LimitViolation {
             consequence: format!(
@@ -185,7 +185,7 @@ pub(crate) fn check_gait(
     Ok(audit)
 }
 
-/// Returns the floating-point check of the same condition as a hazard of the firmware's guard.
+/// Returns the floating-point check that corresponds to a hazard of the firmware's guard.
 fn corresponding_check(hazard: &Hazard) -> Check {
     match *hazard {
         Hazard::Margin { margin, .. } => match margin {
@@ -198,16 +198,16 @@ fn corresponding_check(hazard: &Hazard) -> Check {
     }
 }
 
-/// True if a violation exceeds the same limit as an earlier violation by more.
+/// True if a violation exceeds the limit by more than an earlier violation of the same limit.
 fn is_worse_violation(violation: Violation, earlier: Violation) -> bool {
-    let excess_of = |v: Violation| (v.value - v.limit).abs();
-    violation.check == earlier.check && excess_of(violation) > excess_of(earlier)
+    let excess = |v: Violation| (v.value - v.limit).abs();
+    violation.check == earlier.check && excess(violation) > excess(earlier)
 }
 
-/// Lists the phases to check, in 1/65536 cycle: evenly spaced ones, and every sample of every servo.
-fn phases_to_check(table: &TableGait) -> Vec<u16> {
+/// Lists the phases to check, in 1/65536 cycle: evenly spaced phases, and every sample of every servo.
+fn list_phases(table: &TableGait) -> Vec<u16> {
     let evenly_spaced = |count: usize| (0..count).map(move |i| (i * (PHASE_COUNT / count)) as u16);
-    let mut phases: Vec<u16> = evenly_spaced(CHECKED_PHASES).collect();
+    let mut phases: Vec<u16> = evenly_spaced(CHECKED_PHASE_COUNT).collect();
     for channel in &table.channels {
         phases.extend(
             evenly_spaced(SAMPLES_PER_WAVE).map(|sample| sample.wrapping_sub(channel.offset)),
@@ -218,11 +218,11 @@ fn phases_to_check(table: &TableGait) -> Vec<u16> {
     phases
 }
 
-/// Refuses servo angles outside a servo's travel.
-fn check_travels(measures: &Measures, angles: [f64; 4], phase: f64) -> Result<(), LimitViolation> {
-    // Both the limits of the travel and the sample are rounded to an angle step.
+/// Rejects angles outside a servo's travel.
+fn check_travels(config: &RobotConfig, angles: [f64; 4], phase: f64) -> Result<(), LimitViolation> {
+    // Both the travel's limits and the sample are rounded to an angle step.
     const STEP_DEG: f64 = 1.0 / STEPS_PER_DEGREE;
-    for ((servo, angle), name) in measures.servos.iter().zip(angles).zip(SERVO_NAMES) {
+    for ((servo, angle), name) in config.servos.iter().zip(angles).zip(SERVO_NAMES) {
         let (min, max) = servo.travel();
         let sweep = angle - servo.neutral;
         if sweep < min - STEP_DEG || sweep > max + STEP_DEG {
@@ -242,8 +242,8 @@ fn check_travels(measures: &Measures, angles: [f64; 4], phase: f64) -> Result<()
 fn find_peak_speed(gait: &Gait) -> PeakSpeed {
     let phase_per_frame = 1.0 / (FRAMES_PER_SECOND * gait.period);
     let mut peak = Audit::EMPTY.peak_speed;
-    for i in 0..SPEED_PHASES {
-        let phase = i as f64 / SPEED_PHASES as f64;
+    for i in 0..SPEED_PHASE_COUNT {
+        let phase = i as f64 / SPEED_PHASE_COUNT as f64;
         let (sweeps, next_sweeps) = (gait.sweeps(phase), gait.sweeps(phase + phase_per_frame));
         for servo in 0..4 {
             let speed = (next_sweeps[servo] - sweeps[servo]).abs() * FRAMES_PER_SECOND;
@@ -260,7 +260,7 @@ fn find_peak_speed(gait: &Gait) -> PeakSpeed {
 }
 
 impl Audit {
-    /// Adds the margins and strokes of the pose at a phase.
+    /// Adds the margins and slider travels of the pose at a phase.
     fn add(&mut self, solution: &Solution, phase: f64) {
         for (check, value) in solution.margins.iter() {
             let kinds = [

@@ -9,17 +9,17 @@ use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
 use crate::checks::audit::{self, Audit, LimitViolation};
-use crate::file::{Checked, UnlocatedError};
-use crate::gaits::{Bars, Gait, Stride, command_of};
-use crate::measures::Measures;
-use crate::measures::servo::FORWARD_TURN_SIGN;
+use crate::config::RobotConfig;
+use crate::config::servo::FORWARD_TURN_SIGN;
+use crate::file::{ReadResult, UnlocatedError};
+use crate::gaits::{Bars, Gait, Stride, to_command};
 use crate::tables::Tables;
 use crate::units::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-/// A gait of robot.toml whose every sample has been checked, in floating point and in the firmware's tables.
+/// A gait of robot.toml, all of whose samples have been checked, in floating point and in the firmware's tables.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckedGait {
-    /// The gait in floating point.
+    /// The gait's definition in floating point.
     gait: Gait,
     /// Index of the gait in robot.toml and in the tables.
     index: usize,
@@ -28,22 +28,22 @@ pub struct CheckedGait {
 }
 
 impl CheckedGait {
-    /// Checks a gait against the measures of its robot and with the firmware's own guard.
+    /// Checks a gait against its robot's configuration and with the firmware's own guard.
     pub(crate) fn new(
         gait: Gait,
         index: usize,
         tables: &Arc<Tables>,
-        measures: &Measures,
+        config: &RobotConfig,
         core_robot: &lizard_core::numbers::robot::Robot,
-    ) -> Checked<Self> {
-        let audit = audit::check_gait(&gait, index, tables, measures, core_robot);
+    ) -> ReadResult<Self> {
+        let audit = audit::check_gait(&gait, index, tables, config, core_robot);
         let audit = audit.map_err(
             |LimitViolation {
                  consequence,
                  problem,
              }| {
                 let name = &gait.name;
-                UnlocatedError::clause(format!("gait.{name}"), problem)
+                UnlocatedError::with_own_subject(format!("gait.{name}"), problem)
                     .with_consequence(format!("in \"{name}\" {consequence}"))
             },
         )?;
@@ -56,7 +56,7 @@ impl CheckedGait {
     }
 
     /// The gait in the firmware's tables.
-    pub(crate) fn table(&self) -> &TableGait {
+    pub(crate) fn table_gait(&self) -> &TableGait {
         &self.tables.gaits[self.index]
     }
 
@@ -67,7 +67,7 @@ impl CheckedGait {
 
     /// The console command that starts the gait.
     pub fn command(&self) -> String {
-        command_of(&self.gait.name)
+        to_command(&self.gait.name)
     }
 
     /// Index of the gait in the file.
@@ -85,9 +85,9 @@ impl CheckedGait {
         self.gait.is_reversed
     }
 
-    /// True if any servo moves in the course of a cycle.
+    /// True if any servo moves in a cycle.
     pub fn has_movement(&self) -> bool {
-        self.table().channels.iter().any(|channel| {
+        self.table_gait().channels.iter().any(|channel| {
             let wave = &self.tables.waves[usize::from(channel.wave)];
             channel.gain != 0 && wave.iter().any(|sample| *sample != wave[0])
         })
@@ -98,9 +98,12 @@ impl CheckedGait {
         &self.gait.strides
     }
 
-    /// The gait as bars; `None` if the gait does not move, or if a leg stands still or follows a path.
+    /// The gait in the bar editor's form: one waveform shared by all legs. `None` if the gait does not move, or if a
+    /// leg stands still or follows a path.
     pub fn bars(&self) -> Option<Bars> {
-        self.has_movement().then(|| Bars::of(&self.gait)).flatten()
+        self.has_movement()
+            .then(|| Bars::from_gait(&self.gait))
+            .flatten()
     }
 
     /// The neutral servo angles, deg, chassis frame, servo order.
@@ -108,7 +111,7 @@ impl CheckedGait {
         self.gait.neutral
     }
 
-    /// The phase (0 to 1) a given time after the gait started at phase 0, in seconds at full speed.
+    /// The phase (0 to 1) at a time in seconds after a start at phase 0, at full speed.
     pub fn phase_at(&self, seconds: f64) -> f64 {
         self.gait.phase_at(seconds)
     }
@@ -128,59 +131,59 @@ impl CheckedGait {
         self.angles(phase).into()
     }
 
-    /// The servos' sweeps at a phase in 1/65536 cycle as the firmware computes them: in 1/65536 turn from neutral,
+    /// The servos' sweeps from the firmware's tables, at a phase in 1/65536 cycle: in 1/65536 turn from neutral,
     /// counter-clockwise positive, servo order.
     pub fn table_sweeps(&self, phase: u16) -> [i16; 4] {
         self.tables.sweeps(self.index, phase)
     }
 
-    /// The servo angles at a phase in 1/65536 cycle as the firmware computes them: deg, chassis frame, servo order.
+    /// The servo angles from the firmware's tables, at a phase in 1/65536 cycle: deg, chassis frame, servo order.
     pub fn table_angles(&self, phase: u16) -> [f64; 4] {
         self.gait.angles_from_table(self.table_sweeps(phase))
     }
 
     /// The frames of one cycle at full speed, starting at phase 0: each frame's time in s and its phase in 1/65536
-    /// cycle. The last frame is the first one at or after the end of the cycle.
+    /// cycle. The last frame is at or just after the end of the cycle.
     pub fn frames(&self) -> impl Iterator<Item = (f64, u16)> + use<> {
-        let increment = self.table().increment;
+        let increment = self.table_gait().increment;
         // 1.1 s are 55 frames, although 1.1 * 50.0 is slightly more in floating point.
-        const SLACK: f64 = 1e-9;
-        let frame_count = (self.gait.period * FRAMES_PER_SECOND - SLACK).ceil() as i32;
+        const ROUNDING_TOLERANCE: f64 = 1e-9;
+        let frame_count = (self.gait.period * FRAMES_PER_SECOND - ROUNDING_TOLERANCE).ceil() as i32;
         (0..=frame_count).map(move |frame| {
             let phase = phase16((increment * frame) as u32);
             (f64::from(frame) / FRAMES_PER_SECOND, phase)
         })
     }
 
-    /// The margins, strokes and speeds that the check of every sample found.
+    /// The extreme margins, slider travels and speeds among all checked samples.
     pub fn audit(&self) -> &Audit {
         &self.audit
     }
 
-    /// The error of the tables over all phases.
+    /// Computes the error of the tables over all phases.
     pub fn table_error(&self) -> TableError {
         self.table_error_over(accuracy::PHASE_COUNT)
     }
 
-    /// The error of the tables over `count` evenly spaced phases.
+    /// Computes the error of the tables over `count` evenly spaced phases.
     pub(crate) fn table_error_over(&self, count: usize) -> TableError {
-        accuracy::table_error(&self.gait, self.index, &self.tables, count)
+        accuracy::compute_table_error(&self.gait, self.index, &self.tables, count)
     }
 
-    /// Predicts one cycle on this ground, from phase 0, with the contact model. If legs lag, the result is the
-    /// second cycle, which all later cycles repeat.
+    /// Predicts the displacement over one cycle from phase 0, according to the contact model. If the legs lag, the
+    /// result is the second cycle, which all later cycles repeat.
     ///
-    /// A component of the movement is unknown if it depends on a tie: two feet pull against the other two with equal
-    /// force. Ties are found with rigid legs, because they depend on the pads alone.
+    /// A component is unknown if it depends on a tie, in which two feet pull against the other two with equal force.
+    /// Ties are detected with rigid legs, because they depend only on the pads.
     pub fn predict(&self, ground: &Ground) -> Prediction {
         let prediction = ground
             .with_rigid_drive()
             .predict(self.sweeps_over_cycle(TIE_STEPS_PER_CYCLE));
-        prediction.known_components_of(self.simulate_cycle(ground).travel)
+        prediction.keep_decided(self.simulate_cycle(ground).travel)
     }
 
-    /// Simulates one cycle on this ground, even if the result depends on ties. If legs lag, the result is the second
-    /// cycle.
+    /// Simulates one cycle on this ground, even if the result depends on ties. If the legs lag, the result is the
+    /// second cycle.
     pub fn simulate_cycle(&self, ground: &Ground) -> SimulatedCycle {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase_at(0.0)));
         let mut step_count = RIGID_STEPS_PER_CYCLE;
@@ -206,20 +209,20 @@ impl CheckedGait {
         }
     }
 
-    /// Simulates two cycles on this ground, frame by frame as the firmware sends them, with servos that have these
-    /// motors. Returns the movement in the second cycle. `pace` is 1 for the gait's own speed.
+    /// Simulates two cycles on this ground with these motors, in the firmware's frames. Returns the displacement of the
+    /// second cycle. `pace` is relative to the gait's nominal pace.
     pub fn simulate_driven_cycle(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
-        self.simulate_scaled_cycle(ground, motors, pace, 1.0)
+        self.simulate_with_angle_scale(ground, motors, pace, 1.0)
     }
 
-    /// Simulates as [`CheckedGait::simulate_driven_cycle`] does, with servos that turn `scale` times as far as the
-    /// firmware assumes.
-    pub(crate) fn simulate_scaled_cycle(
+    /// Simulates as [`CheckedGait::simulate_driven_cycle`] does, with servos that turn `angle_scale` times as far as
+    /// the firmware assumes.
+    pub(crate) fn simulate_with_angle_scale(
         &self,
         ground: &Ground,
         motors: &Motors,
         pace: f64,
-        scale: f64,
+        angle_scale: f64,
     ) -> Travel {
         let frame_count = (self.period() / pace * FRAMES_PER_SECOND).round().max(1.0) as usize;
         let sweeps_at = |frame: usize| -> [f64; 4] {
@@ -227,7 +230,7 @@ impl CheckedGait {
             let phase = (self.phase_at(seconds) * 65536.0).round() as i64;
             let table_sweeps = self.table_sweeps(phase.rem_euclid(65536) as u16);
             std::array::from_fn(|i| {
-                scale * FORWARD_TURN_SIGN[i] * f64::from(table_sweeps[i]) / STEPS_PER_DEGREE
+                angle_scale * FORWARD_TURN_SIGN[i] * f64::from(table_sweeps[i]) / STEPS_PER_DEGREE
             })
         };
         let mut walker = Walker::new(*ground, sweeps_at(0));
@@ -249,20 +252,20 @@ impl CheckedGait {
     }
 }
 
-/// Steps in a cycle with rigid legs; twice as many change no result by 0.01 mm.
+/// Steps in a cycle with rigid legs. Doubling the number changes no result by as much as 0.01 mm.
 const RIGID_STEPS_PER_CYCLE: usize = 1000;
-/// Steps in a cycle with legs that lag, which takes longer to compute; four times as many change no result by 0.05
-/// mm.
+/// Steps in a cycle with legs that lag, which takes longer to compute. Quadrupling the number changes no result by as
+/// much as 0.05 mm.
 const LAGGING_STEPS_PER_CYCLE: usize = 250;
-/// Steps in a cycle for detecting ties. Such a step takes longer to compute than one of a simulation.
+/// Steps in a cycle for detecting ties. Such a step takes longer to compute than a simulation step.
 const TIE_STEPS_PER_CYCLE: usize = 250;
 
 /// The result of a cycle simulated step by step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SimulatedCycle {
-    /// The movement of the body over the cycle.
+    /// The displacement of the body over the cycle.
     pub travel: Travel,
-    /// Largest lag of a leg behind its servo, deg; 0 if legs are rigid.
+    /// Largest lag of a leg behind its servo, deg; 0 if the legs are rigid.
     pub max_lag: f64,
 }
 
@@ -271,7 +274,7 @@ mod tests {
     use crate::testing::{all_robots, robot};
 
     #[test]
-    fn frames_are_20_ms_apart_and_the_last_completes_the_cycle() {
+    fn frames_are_20_ms_apart_and_cover_the_cycle() {
         for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let frames: Vec<(f64, u16)> = gait.frames().collect();
@@ -289,7 +292,7 @@ mod tests {
                         (f64::from(phase) / 65536.0 - gait.phase_at(seconds)).rem_euclid(1.0);
                     assert!(
                         error.min(1.0 - error) < 1e-4,
-                        "{name} {} {seconds}",
+                        "{name} {} at {seconds} s",
                         gait.name()
                     );
                 }

@@ -1,9 +1,9 @@
-//! The effort of the servos in a gait: their torque and speed compared with the torque-speed lines of their motors.
+//! The servos' effort in a gait: their torque and speed relative to the torque-speed lines of their motors.
 //!
-//! A motor's line runs from its stall torque to its no-load speed. A servo that needs a torque at a speed uses the
-//! share torque / stall torque + speed / no-load speed of its line; this is also the share of the supply voltage that
-//! its motor needs. Above 1 the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque
-//! at any pace; the rotor's inertia takes less at a lower pace.
+//! A motor's torque-speed line runs from its stall torque to its no-load speed. The utilisation of the line is torque /
+//! stall torque + speed / no-load speed, which is also the fraction of the supply voltage that the motor needs. Above 1
+//! the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque at any pace; the rotor's
+//! inertia takes less at a lower pace.
 
 use lizard_contact::{Ground, Motor, Motors, Walker};
 
@@ -11,10 +11,9 @@ use crate::checks::checked_gait::CheckedGait;
 
 /// Duration of a simulation step, s.
 const STEP_SECONDS: f64 = 0.0025;
-/// Share of the torque-speed line above which a servo has little reserve: play, cold gears or a thin wire may use
-/// it up.
-pub const HIGH_LINE_SHARE: f64 = 0.9;
-/// Factor by which a motor's torque and speed are raised so that it follows every gait exactly.
+/// Utilisation above which a servo has little reserve: play, cold gears or a thin wire may use up the rest.
+pub const HIGH_UTILISATION: f64 = 0.9;
+/// Factor that raises a motor's torque and speed so that the servo follows every gait exactly.
 const STRONG_FACTOR: f64 = 1e6;
 /// Bisection steps of the search for the highest pace.
 const BISECTION_STEPS: usize = 20;
@@ -33,25 +32,25 @@ struct Sample {
 /// The effort of the servos over a cycle of a gait.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
-    /// For each servo, its motor as given to [`Effort::of`] and its samples at the gait's own pace.
+    /// For each servo, its motor as passed to [`Effort::simulate`], and its samples at the gait's nominal pace.
     servos: [(Motor, Vec<Sample>); 4],
 }
 
 impl Effort {
-    /// Simulates a gait on this ground, with servos that follow it exactly, and measures their effort.
+    /// Simulates a gait on this ground with servos that follow the gait exactly, and measures their effort.
     #[must_use]
-    pub fn of(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
+    pub fn simulate(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
         let mut servos = motors.per_servo.map(|motor| (motor, Vec::new()));
         if !gait.has_movement() {
             return Self { servos };
         }
-        // The motors keep their gain and damping, but have no limits; the rotor's torque is added afterwards.
+        // The motors keep their gain and damping but have no limits; the rotor's torque is added afterwards.
         let strong_motors = Motors {
             per_servo: motors.per_servo.map(|motor| Motor {
                 stall_torque: motor.stall_torque * STRONG_FACTOR,
                 no_load_speed: motor.no_load_speed * STRONG_FACTOR,
                 full_torque_error: motor.full_torque_error * STRONG_FACTOR,
-                spin_up_time: 0.0,
+                rotor_time_constant: 0.0,
                 half_dead_band: 0.0,
             }),
             ..*motors
@@ -77,7 +76,7 @@ impl Effort {
                     (next_target[i] - 2.0 * target[i] + previous_target[i]).to_radians();
                 samples.push(Sample {
                     load_torque: torque - motor.damping() * speed.to_radians(),
-                    rotor_torque: motor.inertia() * second_difference
+                    rotor_torque: motor.reflected_inertia() * second_difference
                         / (step_seconds * step_seconds),
                     speed,
                 });
@@ -86,32 +85,35 @@ impl Effort {
         Self { servos }
     }
 
-    /// Returns the largest share of a servo's torque-speed line that the gait uses at a pace (1 is the gait's own).
-    /// `supply` is the supply voltage as a share of the one for which the motors in [`Effort::of`] are given.
+    /// Computes the highest utilisation of any servo at `pace`, which is relative to the gait's nominal pace. `supply`
+    /// is the supply voltage relative to the motors' voltage in [`Effort::simulate`].
     #[must_use]
-    pub fn line_share(&self, pace: f64, supply: f64) -> f64 {
-        let share_of = |(motor, samples): &(Motor, Vec<Sample>)| {
-            let motor = motor.at_supply(supply);
-            let shares = samples.iter().map(|sample| {
+    pub fn utilisation(&self, pace: f64, supply: f64) -> f64 {
+        let servo_utilisation = |(motor, samples): &(Motor, Vec<Sample>)| {
+            let motor = motor.with_supply_ratio(supply);
+            let utilisations = samples.iter().map(|sample| {
                 let torque = sample.load_torque + sample.rotor_torque * pace * pace;
-                motor.line_share(torque, sample.speed * pace).abs()
+                motor.utilisation(torque, sample.speed * pace).abs()
             });
-            shares.fold(0.0, f64::max)
+            utilisations.fold(0.0, f64::max)
         };
-        self.servos.iter().map(share_of).fold(0.0, f64::max)
+        self.servos
+            .iter()
+            .map(servo_utilisation)
+            .fold(0.0, f64::max)
     }
 
-    /// Returns the highest pace, up to 1, at which no servo exceeds its torque-speed line; 0 if a servo exceeds its
-    /// line at every pace. `supply` is as in [`Effort::line_share`].
+    /// Finds the highest pace, up to 1, at which no servo exceeds its torque-speed line; 0 if a servo exceeds its line
+    /// at every pace. `supply` is as in [`Effort::utilisation`].
     #[must_use]
-    pub fn max_sustainable_pace(&self, supply: f64) -> f64 {
-        if self.line_share(1.0, supply) <= 1.0 {
+    pub fn find_max_pace(&self, supply: f64) -> f64 {
+        if self.utilisation(1.0, supply) <= 1.0 {
             return 1.0;
         }
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..BISECTION_STEPS {
             let middle = f64::midpoint(low, high);
-            match self.line_share(middle, supply) <= 1.0 {
+            match self.utilisation(middle, supply) <= 1.0 {
                 true => low = middle,
                 false => high = middle,
             }

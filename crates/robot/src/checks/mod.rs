@@ -1,8 +1,8 @@
-//! The checks that every gait must pass before it may be walked.
+//! The checks that every gait must pass before the robot may walk with it.
 //!
-//! One bad sample of one gait can lock the linkage or strip a servo's gears. So every sample is checked as the
-//! firmware will send it, both in floating point and in the core's own integers. A gait that passes is a
-//! [`CheckedGait`]: it may be walked, and the contact model can predict its movement.
+//! A single bad sample can lock the linkage or strip a servo's gears. Every sample is therefore checked as the firmware
+//! will send it, both in floating point and in the firmware's integer arithmetic. A gait that passes is a
+//! [`CheckedGait`]: the robot may walk with it, and the contact model can predict its displacement.
 
 mod accuracy;
 mod audit;
@@ -12,4 +12,4 @@ mod effort;
 pub use accuracy::TableError;
 pub use audit::{Audit, LeastMargin, PeakSpeed};
 pub use checked_gait::{CheckedGait, SimulatedCycle};
-pub use effort::{Effort, HIGH_LINE_SHARE};
+pub use effort::{Effort, HIGH_UTILISATION};

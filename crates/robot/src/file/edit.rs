@@ -1,13 +1,13 @@
-//! Edits of single values in the text of a robot.toml. Comments, white space and all other lines stay as they are.
+//! Edits of single values in a robot.toml's text. Comments, whitespace and all other lines stay unchanged.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The keys of the hips' distances ahead and to the side. Without these keys, the distances are computed from the
+/// The keys of the hips' distances forward and to the side. Without these keys, the distances are computed from the
 /// legs.
 pub const HIP_KEYS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
-/// Optional keys of robot.toml that are added to the text when they are set.
+/// Optional keys of robot.toml that an edit adds to the text if they are missing.
 const OPTIONAL_KEYS: [&str; 16] = [
     HIP_KEYS[0],
     HIP_KEYS[1],
@@ -27,14 +27,14 @@ const OPTIONAL_KEYS: [&str; 16] = [
     "servo.spin_up_ms",
 ];
 
-/// The error for a key that the text does not have or that cannot be changed.
+/// The error for a key that is missing or cannot be changed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NoSuchKey(
+pub struct KeyError(
     /// The full name of the key.
     pub String,
 );
 
-impl std::fmt::Display for NoSuchKey {
+impl std::fmt::Display for KeyError {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         write!(f, "robot.toml has no number {}", self.0)
     }
@@ -45,7 +45,7 @@ impl std::fmt::Display for NoSuchKey {
 ///
 /// # Errors
 /// Fails if the text is not TOML, has no number at this key, or writes the table of a missing key on one line.
-pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKey> {
+pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, KeyError> {
     with_value(text, key, &format!("{value:?}"), |value| {
         matches!(value, DeValue::Float(_) | DeValue::Integer(_))
     })
@@ -55,7 +55,7 @@ pub fn with_number(text: &str, key: &str, value: f64) -> Result<String, NoSuchKe
 ///
 /// # Errors
 /// Fails if the text is not TOML, has no list at this key, or writes the table of a missing key on one line.
-pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoSuchKey> {
+pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, KeyError> {
     with_value(text, key, &format!("{values:?}"), |value| {
         matches!(value, DeValue::Array(_))
     })
@@ -64,16 +64,16 @@ pub fn with_numbers(text: &str, key: &str, values: &[f64]) -> Result<String, NoS
 /// Adds the comment `# word rest` at the end of a key's line, or replaces a comment there that begins with `word`.
 ///
 /// # Errors
-/// Fails if the text is not TOML or does not have the key.
-pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, NoSuchKey> {
-    let key_error = || NoSuchKey(key.to_string());
+/// Fails if the text is not TOML, or if the key is missing.
+pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<String, KeyError> {
+    let key_error = || KeyError(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
     let value = find_value(document.get_ref(), key).ok_or_else(key_error)?;
     let start = value.span().end;
-    let line = &text[start..line_end(text, start)];
+    let line = &text[start..find_line_end(text, start)];
     let comment = format!(" # {word} ");
-    let kept_text = line.find(&comment).map_or(line, |index| &line[..index]);
-    let end = start + kept_text.trim_end().len();
+    let kept_line = line.find(&comment).map_or(line, |index| &line[..index]);
+    let end = start + kept_line.trim_end().len();
     let trailing_space = &line[line.trim_end().len()..];
     let text_after = &text[start + line.len()..];
     Ok(format!(
@@ -86,20 +86,20 @@ pub fn with_comment(text: &str, key: &str, word: &str, rest: &str) -> Result<Str
 ///
 /// # Errors
 /// Fails if the text is not TOML, has no string at this key, or writes the table of a missing key on one line.
-pub fn with_string(text: &str, key: &str, string: &str) -> Result<String, NoSuchKey> {
+pub fn with_string(text: &str, key: &str, string: &str) -> Result<String, KeyError> {
     with_value(text, key, &format!("\"{string}\""), |value| {
         matches!(value, DeValue::String(_))
     })
 }
 
-/// Sets the value of a key; `value` is TOML. It is an error if `has_type` is false for the old value.
+/// Sets the value of a key; `value` is TOML. Fails if `has_type` is false for the old value.
 fn with_value(
     text: &str,
     key: &str,
     value: &str,
     has_type: fn(&DeValue) -> bool,
-) -> Result<String, NoSuchKey> {
-    let key_error = || NoSuchKey(key.to_string());
+) -> Result<String, KeyError> {
+    let key_error = || KeyError(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
     let (table, name) = key.rsplit_once('.').ok_or_else(key_error)?;
     if let Some(old_value) = find_value(document.get_ref(), key) {
@@ -126,7 +126,7 @@ fn with_value(
         let is_toml = DeTable::parse(&new_text).is_ok();
         return is_toml.then_some(new_text).ok_or_else(key_error);
     };
-    let end = line_end(text, last_end);
+    let end = find_line_end(text, last_end);
     let mut new_text = text.to_string();
     new_text.insert_str(end, &format!("\n{line}"));
     // If the table is written on one line, the new line would belong to another table.
@@ -137,12 +137,12 @@ fn with_value(
     }
 }
 
-/// Removes the line of an optional key. Without the key, the text stays as it is.
+/// Removes the line of an optional key. If the key is missing, the text stays unchanged.
 ///
 /// # Errors
 /// Fails if the text is not TOML, or if the key is in a table that is written on one line.
-pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
-    let key_error = || NoSuchKey(key.to_string());
+pub fn without_key(text: &str, key: &str) -> Result<String, KeyError> {
+    let key_error = || KeyError(key.to_string());
     let document = DeTable::parse(text).map_err(|_| key_error())?;
     let (_, name) = key.rsplit_once('.').ok_or_else(key_error)?;
     let Some(value) = find_value(document.get_ref(), key) else {
@@ -151,14 +151,14 @@ pub fn without_key(text: &str, key: &str) -> Result<String, NoSuchKey> {
     let start = text[..value.span().start]
         .rfind('\n')
         .map_or(0, |line_break| line_break + 1);
-    let end = (line_end(text, value.span().end) + 1).min(text.len());
+    let end = (find_line_end(text, value.span().end) + 1).min(text.len());
     if !text[start..end].trim_start().starts_with(name) {
         return Err(key_error());
     }
     Ok(text[..start].to_string() + &text[end..])
 }
 
-/// Adds the table of a gait: in place of the gait with the same name if there is one, otherwise at the end of the text.
+/// Adds the table of a gait: in place of an existing gait with this name, otherwise at the end of the text.
 pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     let (mut result, is_replaced) = replace_gait(text, name, table);
     if !is_replaced {
@@ -168,7 +168,7 @@ pub fn with_gait(text: &str, name: &str, table: &str) -> String {
     result
 }
 
-/// Removes the tables of a gait. Without the gait, the text stays as it is.
+/// Removes the tables of a gait. If the gait is missing, the text stays unchanged.
 pub fn without_gait(text: &str, name: &str) -> String {
     replace_gait(text, name, "").0
 }
@@ -199,7 +199,7 @@ fn replace_gait(text: &str, name: &str, table: &str) -> (String, bool) {
     (result, is_replaced)
 }
 
-/// A routine as written in the file, whether valid or not.
+/// A routine as written in the file, valid or not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct WrittenRoutine {
@@ -209,9 +209,9 @@ pub struct WrittenRoutine {
     pub steps: Vec<String>,
 }
 
-/// Returns the routines of a text in their order. They are not checked, so that a routine with a mistake can be shown
-/// and corrected. Routines whose steps are not strings are left out.
-pub fn routines(text: &str) -> Vec<WrittenRoutine> {
+/// Reads a text's routines in their order, without a check, so that a routine with a mistake can be shown and
+/// corrected. Routines whose steps are not strings are left out.
+pub fn read_routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
     };
@@ -234,8 +234,8 @@ pub fn routines(text: &str) -> Vec<WrittenRoutine> {
     entries.into_iter().filter_map(read_routine).collect()
 }
 
-/// Sets the steps of a routine. A missing routine is added at the end of the text. The routine's other lines,
-/// such as `repeat`, stay as they are.
+/// Sets the steps of a routine. A missing routine is added at the end of the text. The routine's other lines, such as
+/// `repeat`, stay unchanged.
 pub fn with_steps(text: &str, name: &str, steps: &[String]) -> String {
     let steps: Vec<_> = steps.iter().map(|step| format!("{step:?}")).collect();
     let steps = format!("[{}]", steps.join(", "));
@@ -264,8 +264,8 @@ fn find_value<'a>(table: &'a DeTable<'a>, key: &str) -> Option<&'a Spanned<DeVal
     }
 }
 
-/// The byte offset of the end of the line that contains the offset `start`.
-fn line_end(text: &str, start: usize) -> usize {
+/// Finds the byte offset at the end of the line that contains the offset `start`.
+fn find_line_end(text: &str, start: usize) -> usize {
     text[start..]
         .find('\n')
         .map_or(text.len(), |length| start + length)
@@ -310,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn a_list_is_replaced_as_a_whole_or_a_missing_one_is_added() {
+    fn a_list_is_replaced_and_a_missing_list_is_added() {
         let changed = with_numbers("[body]\ncentre = [0, 0] # mm\n", "body.centre", &[1.5, 0.0]);
         assert_eq!(changed, Ok("[body]\ncentre = [1.5, 0.0] # mm\n".to_owned()));
         let added = with_numbers("[body]\nmass = 250.0\n", "body.centre", &[1.5, -2.0]);
@@ -323,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comment_is_appended_and_replaces_an_earlier_one_with_the_same_first_word() {
+    fn a_comment_is_appended_or_replaces_one_with_the_same_first_word() {
         for (before, after) in [
             ("[links]\nl0 = 1.0", "[links]\nl0 = 1.0 # was: 2"),
             (
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_string_is_replaced_or_a_missing_one_is_added() {
+    fn a_string_is_replaced_and_a_missing_string_is_added() {
         const DRIVE: &str = "[leg.drive] # links\nkind = \"rigid\" # or a strut\n";
         let changed = with_string(DRIVE, "leg.drive.kind", "strut").expect("the key can be set");
         assert_eq!(changed, DRIVE.replace("rigid", "strut"));
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gait_is_removed_or_replaced_with_all_its_tables_and_no_other() {
+    fn only_the_tables_of_a_gait_are_removed_or_replaced() {
         const GAITS: &str = "[gait.look]\nperiod = 4.0\n[gait.look.head]\nx = [[1.0, 0.0]]\n# next table\n[gait.look-up]\nlike = \"walk\"\n";
         let rest = "# next table\n[gait.look-up]\nlike = \"walk\"\n";
         assert_eq!(without_gait(GAITS, "look"), rest);
@@ -398,9 +398,9 @@ mod tests {
     /// A robot.toml with two routines.
     const ROUTINES: &str = "name = \"x\"\n\n[routine.patrol] # by night\nsteps = [\n  \"walk 4\", # on\n  \"left 6\",\n]\nrepeat = 3 # rounds\n\n[routine.about]\nsteps = ['left 12']\n";
 
-    /// The names and steps of a text's routines.
-    fn names_and_steps(text: &str) -> Vec<(String, Vec<String>)> {
-        let written_routines = routines(text).into_iter();
+    /// Reads the names and steps of a text's routines.
+    fn read_names_and_steps(text: &str) -> Vec<(String, Vec<String>)> {
+        let written_routines = read_routines(text).into_iter();
         written_routines
             .map(|WrittenRoutine { name, steps }| (name, steps))
             .collect()
@@ -412,13 +412,13 @@ mod tests {
     }
 
     #[test]
-    fn routines_are_read_as_they_are_written_in_the_order_of_the_text() {
+    fn routines_are_read_unchanged_in_the_order_of_the_text() {
         let [patrol, about] = ["patrol", "about"].map(str::to_string);
         let expected = [
             (patrol, to_strings(&["walk 4", "left 6"])),
             (about, to_strings(&["left 12"])),
         ];
-        assert_eq!(names_and_steps(ROUTINES), expected);
+        assert_eq!(read_names_and_steps(ROUTINES), expected);
         for text in [
             "[routine",
             "",
@@ -426,15 +426,15 @@ mod tests {
             "[routine]\na = 1",
             "[routine.a]\nsteps = [1]",
         ] {
-            assert_eq!(names_and_steps(text), [], "{text}");
+            assert_eq!(read_names_and_steps(text), [], "{text}");
         }
     }
 
     #[test]
-    fn the_steps_of_a_routine_are_replaced_and_all_other_text_stays() {
+    fn only_the_steps_of_a_routine_are_replaced() {
         let steps = to_strings(&["walk until \"nose\"", "wait\\", "rest"]);
         let changed = with_steps(ROUTINES, "patrol", &steps);
-        assert_eq!(names_and_steps(&changed)[0].1, steps);
+        assert_eq!(read_names_and_steps(&changed)[0].1, steps);
         let start = ROUTINES.find("[\n").expect("the text has a list of steps");
         assert!(changed.starts_with(&ROUTINES[..start]));
         assert!(
@@ -453,12 +453,12 @@ mod tests {
         }
         for name in ["", "a b", "a]\n[b", "\"", "x.y"] {
             let added = with_steps(ROUTINES, name, &to_strings(&["walk 1"]));
-            assert_eq!(names_and_steps(&added)[2].0, name);
+            assert_eq!(read_names_and_steps(&added)[2].0, name);
         }
     }
 
     #[test]
-    fn an_unknown_key_or_a_value_that_is_not_a_number_is_refused() {
+    fn unknown_keys_and_values_of_another_type_are_rejected() {
         for key in ["links.l2", "links.name", "wings.l0", "links", "servo.A1"] {
             assert!(with_number(TEXT, key, 1.0).is_err(), "{key}");
         }

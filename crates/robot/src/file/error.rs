@@ -1,22 +1,22 @@
-//! Mistakes in robot.toml: the message that its author reads, and the location in the file.
+//! Errors in robot.toml: the message for the author, and the location in the file.
 
 use std::fmt;
 
-/// A mistake in robot.toml, with its file, line and key.
+/// An error in robot.toml, with its file, line and key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
     /// Name of the file, as given by the caller.
     pub file: String,
-    /// Line of the key, counted from 1; `None` if the mistake belongs to no line.
+    /// Line of the key, counted from 1; `None` if the error is not on a particular line.
     pub line: Option<usize>,
-    /// Full name of the key, such as `servo.A1.pin`; empty if the mistake concerns the whole file.
+    /// Full name of the key, such as `servo.A1.pin`; empty if the error concerns the whole file.
     pub key: String,
-    /// The consequence of the mistake for the robot, without keys and figures; `None` if `problem` states it.
+    /// The consequence for the robot, without keys or numbers; `None` if `problem` states the consequence.
     pub consequence: Option<String>,
     /// The message without file, line, key and consequence.
     pub problem: String,
-    /// True if `problem` is a clause with its own subject; false if the key is its subject.
-    pub(crate) is_clause: bool,
+    /// True if `problem` has its own subject, false if the key is the subject.
+    pub(crate) has_own_subject: bool,
 }
 
 impl fmt::Display for Error {
@@ -32,7 +32,7 @@ impl fmt::Display for Error {
         if let Some(consequence) = &self.consequence {
             return write!(f, "{consequence}: {} ({location})", self.problem);
         }
-        let separator = if self.key.is_empty() || self.is_clause {
+        let separator = if self.key.is_empty() || self.has_own_subject {
             ":"
         } else {
             ""
@@ -43,42 +43,42 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// A mistake at a key whose file and line are not known yet.
+/// An error at a key whose file and line are not known yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct UnlocatedError {
-    /// Full name of the key; empty if the mistake concerns the whole file.
+    /// Full name of the key; empty if the error concerns the whole file.
     pub key: String,
     /// See [`Error::consequence`].
     consequence: Option<String>,
     /// See [`Error::problem`].
     problem: String,
-    /// See [`Error::is_clause`].
-    is_clause: bool,
+    /// See [`Error::has_own_subject`].
+    has_own_subject: bool,
 }
 
-/// A checked value, or the mistake that was found in it.
-pub(crate) type Checked<T> = Result<T, UnlocatedError>;
+/// The result of reading and checking a value.
+pub(crate) type ReadResult<T> = Result<T, UnlocatedError>;
 
 impl UnlocatedError {
-    /// A mistake whose message has the key as its subject, such as `servo.A1.pin is 3; it must be ...`.
+    /// Creates an error whose message has the key as its subject, such as `servo.A1.pin is 3; it must be ...`.
     pub fn new(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
             key: key.into(),
             consequence: None,
             problem: problem.into(),
-            is_clause: false,
+            has_own_subject: false,
         }
     }
 
-    /// A mistake whose message has its own subject, such as `gait.look: the point ...`.
-    pub fn clause(key: impl Into<String>, problem: impl Into<String>) -> Self {
+    /// Creates an error whose message has its own subject, such as `gait.look: the point ...`.
+    pub fn with_own_subject(key: impl Into<String>, problem: impl Into<String>) -> Self {
         Self {
-            is_clause: true,
+            has_own_subject: true,
             ..Self::new(key, problem)
         }
     }
 
-    /// Adds the consequence for the robot to the mistake, such as `in "walk" the left front leg would lock`.
+    /// Adds the consequence for the robot, such as `in "walk" the left front leg would lock`.
     pub fn with_consequence(self, consequence: impl Into<String>) -> Self {
         Self {
             consequence: Some(consequence.into()),
@@ -86,24 +86,24 @@ impl UnlocatedError {
         }
     }
 
-    /// A mistake in a number outside its range.
+    /// Creates the error for a number outside its range.
     pub fn out_of_range(key: String, value: f64, (min, max): (f64, f64), unit: &str) -> Self {
         let value = format_number(value);
         Self::new(
             key,
-            format!("is {value}; it must be within {min} to {max} {unit}"),
+            format!("is {value}; it must be between {min} and {max} {unit}"),
         )
     }
 
-    /// Adds file and line to the mistake.
-    pub fn in_file(self, file: String, line: Option<usize>) -> Error {
+    /// Adds the file and the line.
+    pub fn with_location(self, file: String, line: Option<usize>) -> Error {
         Error {
             file,
             line,
             key: self.key,
             consequence: self.consequence,
             problem: self.problem,
-            is_clause: self.is_clause,
+            has_own_subject: self.has_own_subject,
         }
     }
 }
@@ -117,8 +117,8 @@ pub(crate) fn format_number(value: f64) -> String {
     }
 }
 
-/// Returns a hint for a word that is not allowed: the most similar allowed word, otherwise all of them.
-pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
+/// Returns a suggestion for a word that is not allowed: the most similar allowed word, or all allowed words.
+pub(crate) fn suggest(word: &str, allowed: &[&str]) -> String {
     let nearest = allowed
         .iter()
         .map(|candidate| (levenshtein_distance(word, candidate), candidate))
@@ -131,11 +131,11 @@ pub(crate) fn hint(word: &str, allowed: &[&str]) -> String {
         {
             format!("did you mean \"{candidate}\"?")
         }
-        _ => format!("allowed are {}", allowed.join(", ")),
+        _ => format!("allowed: {}", allowed.join(", ")),
     }
 }
 
-/// The Levenshtein distance between two words, ignoring case: the number of letters to change, add or remove.
+/// Computes the Levenshtein distance between two words, ignoring case: the number of letters to change, add or remove.
 fn levenshtein_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.to_lowercase().chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();

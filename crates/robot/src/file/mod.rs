@@ -1,8 +1,8 @@
-//! robot.toml as a file: its text, its tables, and the message for every mistake in them.
+//! robot.toml as a file: its text, its tables, and the messages for all errors in them.
 //!
-//! People write robot.toml by hand, so most files have mistakes at first. So that a mistake is found quickly, the error
-//! names the file, the line, the key, the mistake and its correction. This module does not know the meaning of any
-//! value.
+//! People write robot.toml by hand, so most files contain mistakes at first. To make a mistake easy to find, its error
+//! states the file, the line, the key, the problem and the correction. This module is independent of the meaning of the
+//! values.
 
 pub mod edit;
 mod error;
@@ -11,7 +11,7 @@ mod syntax;
 mod text;
 
 pub use error::Error;
-pub(crate) use error::{Checked, UnlocatedError, format_number, hint};
+pub(crate) use error::{ReadResult, UnlocatedError, format_number, suggest};
 #[cfg(test)]
 pub(crate) use reader::{KEY_READS, KeyRead};
 pub(crate) use reader::{Section, parse};

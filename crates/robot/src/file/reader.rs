@@ -1,35 +1,34 @@
-//! A reader of robot.toml as typed values. A [`Section`] is one table of the file; it refuses unknown keys, and
-//! every error has the full name of its key.
+//! A reader of robot.toml as typed values. A [`Section`] is one table of the file; it rejects unknown keys, and every
+//! error contains the full name of its key.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::file::error::{Checked, Error, UnlocatedError, hint};
+use crate::file::error::{Error, ReadResult, UnlocatedError, suggest};
 use crate::file::syntax::explain_mistake;
 
 /// Parses the text of a robot file and reads it with `read`. Skips a byte order mark at the start.
 ///
 /// # Errors
-/// Returns the first mistake in the text, with its line.
-pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> Checked<T>) -> Result<T, Error> {
+/// Returns the first error in the text, with its line.
+pub(crate) fn parse<T>(text: &str, read: impl Fn(&DeTable) -> ReadResult<T>) -> Result<T, Error> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let file = "robot.toml".to_string();
-    let line_of = |offset: usize| text[..offset].matches('\n').count() + 1;
+    let line_at = |offset: usize| text[..offset].matches('\n').count() + 1;
     let document = DeTable::parse(text).map_err(|error| {
         let offset = error.span().map(|span| span.start);
         let message = explain_mistake(text, offset.unwrap_or(text.len()), error.message());
-        UnlocatedError::new("", message).in_file(file.clone(), offset.map(line_of))
+        UnlocatedError::new("", message).with_location(file.clone(), offset.map(line_at))
     })?;
     let table = document.get_ref();
     read(table).map_err(|error| {
-        let line = key_position(table, &error.key).map(line_of);
-        error.in_file(file, line)
+        let line = find_key(table, &error.key).map(line_at);
+        error.with_location(file, line)
     })
 }
 
-/// The byte offset in the text of a key, or of the innermost existing table in its name; `None` if no table of the name
-/// exists.
-fn key_position(mut table: &DeTable, key: &str) -> Option<usize> {
+/// Finds the byte offset of a key, or of the innermost table in the key's name that exists; `None` if no table exists.
+fn find_key(mut table: &DeTable, key: &str) -> Option<usize> {
     let (mut rest, mut innermost_start) = (key, None);
     loop {
         // A quoted key may contain a dot, so the longest matching key counts.
@@ -54,7 +53,7 @@ fn key_position(mut table: &DeTable, key: &str) -> Option<usize> {
     }
 }
 
-/// A record of one read of a key. The reference of all keys is generated from these records.
+/// A record of one read of a key. The reference for all keys is generated from these records.
 #[cfg(test)]
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum KeyRead {
@@ -86,7 +85,7 @@ pub(crate) struct Section<'a> {
 
 impl<'a> Section<'a> {
     /// Opens the file's root table, which may have only the keys `allowed`.
-    pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> Checked<Self> {
+    pub fn root(table: &'a DeTable<'a>, allowed: &[&str]) -> ReadResult<Self> {
         Self {
             key: String::new(),
             table,
@@ -95,12 +94,12 @@ impl<'a> Section<'a> {
     }
 
     /// Opens the table `name`, which must exist and may have only the keys `allowed`.
-    pub fn section(&self, name: &str, allowed: &[&str]) -> Checked<Self> {
+    pub fn section(&self, name: &str, allowed: &[&str]) -> ReadResult<Self> {
         self.open(name)?.require_known_keys(allowed)
     }
 
     /// Opens the table `name`, which may have any keys.
-    pub fn open(&self, name: &str) -> Checked<Self> {
+    pub fn open(&self, name: &str) -> ReadResult<Self> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
         match self.required_value(name, "a table")? {
@@ -108,12 +107,12 @@ impl<'a> Section<'a> {
                 key: self.full_key(name),
                 table,
             }),
-            value => Err(self.wrong_type_error(name, value, "a table")),
+            value => Err(self.type_error(name, value, "a table")),
         }
     }
 
-    /// Returns the table if all its keys are in `allowed`; refuses any other key.
-    pub fn require_known_keys(self, allowed: &[&str]) -> Checked<Self> {
+    /// Returns the table if all its keys are in `allowed`, otherwise an error.
+    pub fn require_known_keys(self, allowed: &[&str]) -> ReadResult<Self> {
         #[cfg(test)]
         for name in allowed {
             self.record_read(name, KeyRead::Allowed);
@@ -121,18 +120,18 @@ impl<'a> Section<'a> {
         let is_unknown = |name: &&str| !allowed.contains(name);
         match self.key_names().into_iter().find(is_unknown) {
             Some(name) => {
-                let hint = hint(name, allowed);
-                Err(self.error(name, format!("is not a known key; {hint}")))
+                let suggestion = suggest(name, allowed);
+                Err(self.error(name, format!("is not a known key; {suggestion}")))
             }
             None => Ok(self),
         }
     }
 
-    /// Refuses the keys `names`, which belong to an earlier version of the file; `instead` says what to write.
-    pub fn refuse_former_keys(&self, names: &[&str], instead: &str) -> Checked<()> {
+    /// Rejects the keys `names`, which belong to an earlier version of the file; `replacement` is the current notation.
+    pub fn reject_removed_keys(&self, names: &[&str], replacement: &str) -> ReadResult<()> {
         match names.iter().find(|name| self.has_key(name)) {
             Some(name) => {
-                let message = format!("is not read any more; write {instead}");
+                let message = format!("is no longer supported; write {replacement}");
                 Err(self.error(name, message))
             }
             None => Ok(()),
@@ -151,7 +150,7 @@ impl<'a> Section<'a> {
         self.table.contains_key(name)
     }
 
-    /// The full name of a key of this table.
+    /// The full name of a key in this table.
     pub fn full_key(&self, name: &str) -> String {
         if self.key.is_empty() {
             name.to_string()
@@ -160,23 +159,23 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Makes the error for a mistake at a key of this table.
+    /// Creates the error for a key in this table.
     pub fn error(&self, name: &str, problem: impl Into<String>) -> UnlocatedError {
         UnlocatedError::new(self.full_key(name), problem)
     }
 
     /// Reads a number from `min` to `max`, both included.
-    pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> Checked<f64> {
+    pub fn number(&self, name: &str, min: f64, max: f64, unit: &str) -> ReadResult<f64> {
         #[cfg(test)]
         self.record_number_read(name, (min, max), unit, None);
         const EXPECTED_TYPE: &str = "a number";
         let value = self.required_value(name, EXPECTED_TYPE)?;
-        let value = to_decimal_number(value)
-            .ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))?;
+        let value =
+            to_decimal_number(value).ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))?;
         self.require_in_range(name, value, (min, max), unit)
     }
 
-    /// Reads the number of a key; returns `default` if the key is left out.
+    /// Reads a number; returns `default` if the key is left out.
     pub fn number_or(
         &self,
         name: &str,
@@ -184,7 +183,7 @@ impl<'a> Section<'a> {
         min: f64,
         max: f64,
         unit: &str,
-    ) -> Checked<f64> {
+    ) -> ReadResult<f64> {
         #[cfg(test)]
         self.record_number_read(name, (min, max), unit, Some(default));
         if self.has_key(name) {
@@ -194,8 +193,14 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Refuses the `value` of a key unless it is less than `limit`, the value of the key `limit_key` in the same table.
-    pub fn require_less(&self, name: &str, value: f64, limit_key: &str, limit: f64) -> Checked<()> {
+    /// Rejects a key's `value` unless it is less than `limit`, the value of the key `limit_key` in the same table.
+    pub fn require_less(
+        &self,
+        name: &str,
+        value: f64,
+        limit_key: &str,
+        limit: f64,
+    ) -> ReadResult<()> {
         if value < limit {
             return Ok(());
         }
@@ -204,11 +209,11 @@ impl<'a> Section<'a> {
     }
 
     /// Reads a string.
-    pub fn text(&self, name: &str) -> Checked<&'a str> {
+    pub fn text(&self, name: &str) -> ReadResult<&'a str> {
         const EXPECTED_TYPE: &str = "a string";
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let text = value.as_str();
-        text.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))
+        text.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))
     }
 
     /// Reads an array of exactly `N` numbers from `min` to `max`.
@@ -218,7 +223,7 @@ impl<'a> Section<'a> {
         min: f64,
         max: f64,
         unit: &str,
-    ) -> Checked<[f64; N]> {
+    ) -> ReadResult<[f64; N]> {
         #[cfg(test)]
         self.record_number_read(name, (min, max), unit, None);
         let expected_type = match N {
@@ -227,7 +232,7 @@ impl<'a> Section<'a> {
         };
         let value = self.required_value(name, expected_type)?;
         let DeValue::Array(array) = value else {
-            return Err(self.wrong_type_error(name, value, expected_type));
+            return Err(self.type_error(name, value, expected_type));
         };
         let numbers: Option<Vec<f64>> = array
             .iter()
@@ -244,17 +249,17 @@ impl<'a> Section<'a> {
     }
 
     /// Reads an array of strings.
-    pub fn strings(&self, name: &str) -> Checked<Vec<&'a str>> {
+    pub fn strings(&self, name: &str) -> ReadResult<Vec<&'a str>> {
         const EXPECTED_TYPE: &str = "an array of strings";
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let strings = value
             .as_array()
             .and_then(|array| array.iter().map(|item| item.get_ref().as_str()).collect());
-        strings.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))
+        strings.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))
     }
 
-    /// Reads an array of tables that may have only the keys `allowed`; empty if the key is left out.
-    pub fn sections(&self, name: &str, allowed: &[&str]) -> Checked<Vec<Section<'a>>> {
+    /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is left out.
+    pub fn sections(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Section<'a>>> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);
         const EXPECTED_TYPE: &str = "an array of tables";
@@ -263,7 +268,7 @@ impl<'a> Section<'a> {
         }
         let value = self.required_value(name, EXPECTED_TYPE)?;
         let items = value.as_array();
-        let items = items.ok_or_else(|| self.wrong_type_error(name, value, EXPECTED_TYPE))?;
+        let items = items.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))?;
         let read_section = |(i, item): (usize, &'a Spanned<DeValue<'a>>)| {
             let name = format!("{name}[{i}]");
             match item.get_ref() {
@@ -272,7 +277,7 @@ impl<'a> Section<'a> {
                     table,
                 }
                 .require_known_keys(allowed),
-                value => Err(self.wrong_type_error(&name, value, "a table")),
+                value => Err(self.type_error(&name, value, "a table")),
             }
         };
         items.iter().enumerate().map(read_section).collect()
@@ -294,21 +299,21 @@ impl<'a> Section<'a> {
         self.record_read(name, read);
     }
 
-    /// Returns the value of a key; refuses a missing key.
-    fn required_value(&self, name: &str, expected_type: &str) -> Checked<&'a DeValue<'a>> {
+    /// Returns a key's value; a missing key is an error.
+    fn required_value(&self, name: &str, expected_type: &str) -> ReadResult<&'a DeValue<'a>> {
         let missing_error = || self.error(name, format!("is missing; it must be {expected_type}"));
         let value = self.table.get(name).map(Spanned::get_ref);
         value.ok_or_else(missing_error)
     }
 
-    /// Returns a key's value if it is in a range, both limits included; refuses it otherwise.
+    /// Returns a key's value if it is in a range, both limits included, otherwise an error.
     fn require_in_range(
         &self,
         name: &str,
         value: f64,
         range: (f64, f64),
         unit: &str,
-    ) -> Checked<f64> {
+    ) -> ReadResult<f64> {
         match (range.0..=range.1).contains(&value) {
             true => Ok(value),
             false => Err(UnlocatedError::out_of_range(
@@ -320,8 +325,8 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Makes the error for a value of the wrong type.
-    fn wrong_type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> UnlocatedError {
+    /// Creates the error for a value of the wrong type.
+    fn type_error(&self, name: &str, value: &DeValue, expected_type: &str) -> UnlocatedError {
         let found_type = match value {
             DeValue::String(text) => format!("the string \"{text}\""),
             DeValue::Integer(number) => number.to_string(),
@@ -335,7 +340,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// The value of a decimal integer or a finite float; `None` for anything else, such as TOML's nan, inf or 0x1f.
+/// Converts a decimal integer or a finite float; `None` for anything else, such as TOML's nan, inf or 0x1f.
 fn to_decimal_number(value: &DeValue) -> Option<f64> {
     let text = match value {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),

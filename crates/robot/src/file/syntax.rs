@@ -1,10 +1,10 @@
-//! The likely mistake in a line that is not TOML.
+//! Explains the likely mistake in a line that is not valid TOML.
 //!
-//! A parser's message names the token that it expected, in the terms of its grammar. The author needs to
-//! read the mistake itself: a missing value, a decimal comma, or a unit after a number. So this
-//! module checks the line for such mistakes. If it finds none, the parser's message is kept.
+//! A parser's message names the expected token in terms of the grammar. The author needs to read the mistake itself: a
+//! missing value, a decimal comma, or a unit after a number. This module therefore checks the line for such mistakes.
+//! If there are none, the parser's message is kept.
 
-/// Makes the message for a mistake at byte `offset` of a text; `message` is the parser's own message.
+/// Explains a mistake at byte `offset` of a text; `message` is the parser's own message.
 pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
     let line_index = text
         .get(..offset)
@@ -16,19 +16,19 @@ pub fn explain_mistake(text: &str, offset: usize, message: &str) -> String {
     duplicate_message
         .flatten()
         .or_else(|| explain_mistake_in_line(line))
-        .unwrap_or_else(|| format!("this is not TOML: {message}"))
+        .unwrap_or_else(|| format!("invalid TOML: {message}"))
 }
 
-/// Removes a line's comment, and the white space at both ends.
+/// Removes a line's comment, and the whitespace at both ends.
 fn strip_comment(line: &str) -> &str {
     let mut open_quote = None;
     let mut is_escaped = false;
-    for (index, letter) in line.char_indices() {
-        match (open_quote, letter) {
+    for (index, c) in line.char_indices() {
+        match (open_quote, c) {
             _ if is_escaped => is_escaped = false,
             (Some('"'), '\\') => is_escaped = true,
-            (Some(mark), letter) if letter == mark => open_quote = None,
-            (None, '"' | '\'') => open_quote = Some(letter),
+            (Some(mark), c) if c == mark => open_quote = None,
+            (None, '"' | '\'') => open_quote = Some(c),
             (None, '#') => return line[..index].trim(),
             _ => {}
         }
@@ -41,8 +41,7 @@ fn table_header_name(line: &str) -> Option<&str> {
     line.strip_prefix('[')?.strip_suffix(']').map(str::trim)
 }
 
-/// Returns the message for a table or a key that is repeated in line `line_index`, counted from 0; `None` if its first
-/// occurrence is not found.
+/// Explains a repeated table or key on line `line_index`, counted from 0; `None` if the first occurrence is not found.
 fn explain_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
     let lines_before = lines.get(..line_index)?;
     let line = lines.get(line_index)?;
@@ -52,7 +51,7 @@ fn explain_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
             .position(|line| table_header_name(line) == Some(table))?
             + 1;
         return Some(format!(
-            "the table [{table}] is there twice, first in line {first_line}; put all its keys under one of them"
+            "the table [{table}] is defined twice, first on line {first_line}; put all its keys into one table"
         ));
     }
     let key = line.split_once('=')?.0.trim();
@@ -66,21 +65,21 @@ fn explain_duplicate(lines: &[&str], line_index: usize) -> Option<String> {
     };
     let first_line = table_start + lines_before[table_start..].iter().position(is_key)? + 1;
     Some(format!(
-        "`{key}` is there twice, first in line {first_line}; keep one of them"
+        "`{key}` is defined twice, first on line {first_line}; keep one definition"
     ))
 }
 
-/// The message for a mistake within one line; `None` if no known mistake is found.
+/// Explains a mistake within one line; `None` if no known mistake is found.
 fn explain_mistake_in_line(line: &str) -> Option<String> {
     if line.starts_with('[') && !line.contains('=') && !line.ends_with(']') {
-        return Some(format!("`{line}` lacks the ] after the table's name"));
+        return Some(format!("`{line}` is missing the ] after the table name"));
     }
     let Some((key, value)) = line.split_once('=') else {
         let key = line.split_whitespace().next()?;
         let is_key = key
             .chars()
             .all(|c| c.is_alphanumeric() || "_-.".contains(c));
-        return is_key.then(|| format!("`{line}` lacks the = between `{key}` and its value"));
+        return is_key.then(|| format!("`{line}` is missing the = between `{key}` and its value"));
     };
     let (key, value) = (key.trim(), value.trim());
     if value.is_empty() {
@@ -89,22 +88,22 @@ fn explain_mistake_in_line(line: &str) -> Option<String> {
     explain_number(value).or_else(|| explain_unquoted_string(value))
 }
 
-/// The message for a number in a form that TOML does not allow; `None` for anything else.
+/// Explains a number in a form that TOML does not allow; `None` for anything else.
 fn explain_number(value: &str) -> Option<String> {
     let is_number =
         |text: &str| text.parse::<f64>().is_ok() && !text.starts_with(char::is_alphabetic);
-    let are_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    let is_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
     if let Some((integer, fraction)) = value.split_once(',')
-        && are_digits(integer.trim_start_matches(['-', '+']))
-        && are_digits(fraction)
+        && is_digits(integer.trim_start_matches(['-', '+']))
+        && is_digits(fraction)
     {
         return Some(format!(
-            "`{value}` is not a number; the decimal mark is a point: {integer}.{fraction}"
+            "`{value}` is not a number; use a point as the decimal separator: {integer}.{fraction}"
         ));
     }
     let unsigned_value = value.trim_start_matches(['-', '+']);
     if let Some(fraction) = unsigned_value.strip_prefix('.')
-        && are_digits(fraction)
+        && is_digits(fraction)
     {
         let sign = if value.starts_with('-') { "-" } else { "" };
         return Some(format!(
@@ -112,7 +111,7 @@ fn explain_number(value: &str) -> Option<String> {
         ));
     }
     if let Some(integer) = unsigned_value.strip_suffix('.')
-        && are_digits(integer)
+        && is_digits(integer)
     {
         return Some(format!("`{value}` is not a number in TOML; write {value}0"));
     }
@@ -120,76 +119,77 @@ fn explain_number(value: &str) -> Option<String> {
     let (amount, unit) = (value[..split_index].trim(), value[split_index..].trim());
     let is_unit = unit.starts_with(|c: char| c.is_alphabetic() || c == '%');
     (is_number(amount) && is_unit).then(|| {
-        format!(
-            "`{value}`: a number stands alone; write {amount}, with `{unit}` only in a comment after #"
-        )
+        format!("`{value}`: a number takes no unit; write {amount}, and put `{unit}` in a comment")
     })
 }
 
-/// The message for a string without quotation marks; `None` for anything else.
+/// Explains a string without quotation marks; `None` for anything else.
 fn explain_unquoted_string(value: &str) -> Option<String> {
     let is_plain = |c: char| c.is_alphanumeric() || "_-. ".contains(c);
     let is_word = value.starts_with(char::is_alphabetic) && value.chars().all(is_plain);
-    let is_toml_word = ["true", "false", "inf", "nan"].contains(&value);
-    (is_word && !is_toml_word)
-        .then(|| format!("`{value}` lacks its quotation marks; write \"{value}\""))
+    let is_toml_keyword = ["true", "false", "inf", "nan"].contains(&value);
+    (is_word && !is_toml_keyword)
+        .then(|| format!("`{value}` is missing quotation marks; write \"{value}\""))
 }
 
 #[cfg(test)]
 mod tests {
     use super::explain_mistake;
 
-    /// The message for a text whose last line has the mistake.
-    fn message_for(text: &str) -> String {
+    /// Explains the mistake in the last line of a text.
+    fn explain_last_line(text: &str) -> String {
         let offset = text.trim_end().rfind('\n').map_or(0, |end| end + 1);
         explain_mistake(text, offset, "expected newline")
     }
 
     #[test]
-    fn a_mistake_is_named_with_its_correction() {
+    fn each_mistake_is_reported_with_its_correction() {
         for (line, expected) in [
             ("l1 = ", "`l1` has no value after the ="),
             ("l1 = # mm", "`l1` has no value after the ="),
             (
                 "l1 = 30,0",
-                "`30,0` is not a number; the decimal mark is a point: 30.0",
+                "`30,0` is not a number; use a point as the decimal separator: 30.0",
             ),
             (
                 "l1 = -0,5 # mm",
-                "`-0,5` is not a number; the decimal mark is a point: -0.5",
+                "`-0,5` is not a number; use a point as the decimal separator: -0.5",
             ),
             ("l1 = .5", "`.5` is not a number in TOML; write 0.5"),
             ("l1 = -.5", "`-.5` is not a number in TOML; write -0.5"),
             ("l1 = 30.", "`30.` is not a number in TOML; write 30.0"),
             (
                 "l1 = 30 mm",
-                "`30 mm`: a number stands alone; write 30, with `mm` only in a comment after #",
+                "`30 mm`: a number takes no unit; write 30, and put `mm` in a comment",
             ),
             (
                 "l1 = 30mm",
-                "`30mm`: a number stands alone; write 30, with `mm` only in a comment after #",
+                "`30mm`: a number takes no unit; write 30, and put `mm` in a comment",
             ),
-            ("l1 30", "`l1 30` lacks the = between `l1` and its value"),
-            ("pin = D9", "`D9` lacks its quotation marks; write \"D9\""),
-            ("[links", "`[links` lacks the ] after the table's name"),
+            (
+                "l1 30",
+                "`l1 30` is missing the = between `l1` and its value",
+            ),
+            ("pin = D9", "`D9` is missing quotation marks; write \"D9\""),
+            ("[links", "`[links` is missing the ] after the table name"),
         ] {
-            assert_eq!(message_for(line), expected);
+            assert_eq!(explain_last_line(line), expected);
             assert_eq!(
-                message_for(&format!("[links]\nl0 = 20.0\n{line}\n")),
+                explain_last_line(&format!("[links]\nl0 = 20.0\n{line}\n")),
                 expected
             );
         }
     }
 
     #[test]
-    fn a_second_occurrence_is_named_with_the_line_of_the_first() {
+    fn a_duplicate_is_reported_with_the_line_of_its_first_occurrence() {
         let text = "[a]\nx = 1\n[b]\nx = 2 # once\ny = 3\nx = 4\n";
         let offset = text
             .rfind("x = 4")
             .expect("the text has the second occurrence");
         assert_eq!(
             explain_mistake(text, offset, "duplicate key"),
-            "`x` is there twice, first in line 4; keep one of them"
+            "`x` is defined twice, first on line 4; keep one definition"
         );
         let text = "[servo.A1]\npin = \"D9\"\n[servo.A2]\n[servo.A1] # again\n";
         let offset = text
@@ -197,7 +197,7 @@ mod tests {
             .expect("the text has the second occurrence");
         assert_eq!(
             explain_mistake(text, offset, "duplicate key"),
-            "the table [servo.A1] is there twice, first in line 1; put all its keys under one of them"
+            "the table [servo.A1] is defined twice, first on line 1; put all its keys into one table"
         );
     }
 
@@ -205,12 +205,12 @@ mod tests {
     fn any_other_mistake_keeps_the_parsers_message() {
         for line in ["l1 = \"a", "l1 = [1, 2", "l1 = 1 2", "= 3", "l1 = 'it''s'"] {
             assert_eq!(
-                message_for(line),
-                "this is not TOML: expected newline",
+                explain_last_line(line),
+                "invalid TOML: expected newline",
                 "{line}"
             );
         }
-        assert_eq!(explain_mistake("", 0, "x"), "this is not TOML: x");
-        assert_eq!(explain_mistake("a = 1", 99, "x"), "this is not TOML: x");
+        assert_eq!(explain_mistake("", 0, "x"), "invalid TOML: x");
+        assert_eq!(explain_mistake("a = 1", 99, "x"), "invalid TOML: x");
     }
 }

@@ -3,14 +3,14 @@
 use std::io::Read;
 use std::path::Path;
 
-/// The largest size of a robot file, bytes. A real file has a few thousand bytes, but a device or a pipe might never
-/// end.
+/// The largest size of a robot file, bytes. A real file has a few thousand bytes, but a device or a pipe might be
+/// endless.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// Reads a file of at most [`MAX_FILE_BYTES`] bytes.
 ///
 /// # Errors
-/// Returns the message for a file that cannot be read, is too long, or is not UTF-8 text.
+/// Returns a message if the file cannot be read, is too long, or is not UTF-8 text.
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)

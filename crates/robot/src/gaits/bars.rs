@@ -1,9 +1,9 @@
-//! A gait as the four bars of a gait diagram: one per leg, from the start to the end of its
-//! stance. The page edits gaits in this form, and `lizard tune` varies them.
+//! A gait as the four bars of a gait diagram: one per leg, from the start to the end of the leg's stance. The page
+//! edits gaits in this form, and `lizard tune` varies them.
 
+use crate::config::servo::LEG_NAMES;
 use crate::gaits::gait::Gait;
 use crate::gaits::waveform::Waveform;
-use crate::measures::servo::LEG_NAMES;
 
 /// A gait whose legs share one waveform, each with its own start and gain.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,21 +16,21 @@ pub struct Bars {
     pub held: bool,
     /// Duration of a cycle at full speed, s.
     pub period: f64,
-    /// The stance's share of the cycle (duty factor); unused if the legs hold.
+    /// The duty factor: the stance's fraction of the cycle; unused if the legs hold.
     pub duty: f64,
     /// Largest sweep of a leg, deg.
     pub amplitude: f64,
-    /// Phase at which each stance starts, 0 to 1, in servo order: LF, RF, RH, LH. If legs hold,
-    /// only the order of the phases matters: it is the order of the swings.
+    /// Phase at which each stance starts, 0 to 1, in servo order: LF, RF, RH, LH. If the legs hold, only the order of
+    /// the phases matters: it is the order of the swings.
     pub start: [f64; 4],
-    /// Each leg's amplitude as a share of `amplitude`; negative if the leg moves opposite to the others.
+    /// Each leg's amplitude relative to `amplitude`; negative if the leg moves opposite to the others.
     pub gain: [f64; 4],
 }
 
 impl Bars {
     /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait
-    /// becomes the bars of the same movement.
-    pub(crate) fn of(gait: &Gait) -> Option<Self> {
+    /// is converted to the bars of the same movement.
+    pub(crate) fn from_gait(gait: &Gait) -> Option<Self> {
         let pick_larger = |max: f64, leg_amplitude: f64| max.max(leg_amplitude.abs());
         let amplitudes = gait.strides.each_ref().map(|stride| stride.amplitude);
         let amplitude = amplitudes.into_iter().fold(0.0, pick_larger);
@@ -64,17 +64,16 @@ impl Bars {
 
     /// Returns the gait reversed in time: a gait that walks forward becomes one that walks backward.
     ///
-    /// A wave's stance and swing are each point-symmetric about their middle. So a wave played
-    /// backwards is the negated wave, whose stance starts where the original one ends. A held gait
-    /// played backwards is the negated gait with the opposite order of legs; all four legs are
-    /// shifted in time equally, which makes no difference.
+    /// A wave's stance and swing are each point-symmetric about their middle. A wave played backwards is therefore the
+    /// negated wave, whose stance starts where the original stance ends. A held gait played backwards is the negated
+    /// gait with the opposite order of legs; all four legs are shifted in time equally, which makes no difference.
     pub fn reversed(&self) -> Self {
-        let start_of = |leg: usize| match self.held {
+        let reversed_start = |leg: usize| match self.held {
             true => 1.0 - self.start[leg],
             false => (-self.start[leg] - self.duty).rem_euclid(1.0),
         };
         let mut reversed = Self {
-            start: std::array::from_fn(start_of),
+            start: std::array::from_fn(reversed_start),
             gain: self.gain.map(|gain| -gain),
             ..self.clone()
         };

@@ -1,4 +1,4 @@
-//! Gait definitions in robot.toml: each gives a waveform, a path, or another gait from which the gait is derived.
+//! Gait definitions in robot.toml: each contains a waveform, a path, or the name of a gait from which it is derived.
 
 use std::collections::HashMap;
 
@@ -7,13 +7,13 @@ use lizard_core::memory::settings::gait_key;
 use lizard_core::numbers::gaits::{MAX_GAITS, MAX_NAME_BYTES};
 use lizard_kinematics::End;
 
-use crate::file::{Checked, Section, UnlocatedError, hint};
+use crate::config::RobotConfig;
+use crate::config::servo::LEG_NAMES;
+use crate::file::{ReadResult, Section, UnlocatedError, suggest};
 use crate::gaits::gait::{Gait, Stride};
 use crate::gaits::path::{Harmonic, Path};
 use crate::gaits::path_leg::PathLeg;
 use crate::gaits::waveform::Waveform;
-use crate::measures::Measures;
-use crate::measures::servo::LEG_NAMES;
 
 /// The keys of a gait's table.
 const GAIT_KEYS: [&str; 12] = [
@@ -36,7 +36,7 @@ const WAVEFORM_NAMES: [&str; 3] = ["still", "wave", "held"];
 const REFERENCE_KEYS: [&str; 3] = ["reverse", "mirror", "like"];
 
 /// Reads the gaits in the order of the file and resolves their references.
-pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gait>> {
+pub(crate) fn read_gaits(root: &Section, config: &RobotConfig) -> ReadResult<Vec<Gait>> {
     let section = root.open("gait")?;
     let names = section.key_names();
     for name in &names {
@@ -44,21 +44,19 @@ pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gai
     }
     if names.len() > MAX_GAITS {
         let count = names.len();
-        let message = format!(
-            "holds {count} gaits; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
-        );
+        let message = format!("has {count} gaits; the firmware supports at most {MAX_GAITS}");
         return Err(UnlocatedError::new("gait", message));
     }
     check_boot_keys(&section, &names)?;
     if names.first() != Some(&"stand") {
         let message =
             "the first gait must be stand, the neutral pose that the robot takes at power-on";
-        return Err(UnlocatedError::clause("gait", message));
+        return Err(UnlocatedError::with_own_subject("gait", message));
     }
     let mut resolver = Resolver {
         section,
         names,
-        measures,
+        config,
         resolved_gaits: HashMap::new(),
         reference_chain: Vec::new(),
     };
@@ -67,7 +65,7 @@ pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gai
         .clone()
         .into_iter()
         .map(|name| resolver.resolve(name))
-        .collect::<Checked<Vec<_>>>()?;
+        .collect::<ReadResult<Vec<_>>>()?;
     let is_still = |stride: &Stride| stride.waveform == Waveform::Still;
     if gaits[0].strides.iter().all(is_still) {
         Ok(gaits)
@@ -77,9 +75,9 @@ pub(crate) fn read_gaits(root: &Section, measures: &Measures) -> Checked<Vec<Gai
     }
 }
 
-/// Refuses two gaits or routines that the EEPROM cannot distinguish: it stores the gait or routine of `boot` as a
-/// number computed from the name.
-pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> {
+/// Rejects gaits or routines that the EEPROM cannot distinguish: it stores the gait or routine of `boot` as a number
+/// computed from the name.
+pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> ReadResult<()> {
     let mut names_by_key = HashMap::new();
     for name in names {
         let console_name = name
@@ -87,7 +85,7 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
             .map(|byte| if byte == b'-' { b' ' } else { byte });
         if let Some(other_name) = names_by_key.insert(gait_key(console_name), *name) {
             let message = format!(
-                "is not a gait name: the memory would take it for {other_name} when `boot` begins it, so one of them needs another name"
+                "is not a gait name: the EEPROM cannot distinguish it from {other_name} as the value of `boot`; rename one of them"
             );
             return Err(section.error(name, message));
         }
@@ -95,39 +93,40 @@ pub(super) fn check_boot_keys(section: &Section, names: &[&str]) -> Checked<()> 
     Ok(())
 }
 
-/// Refuses a name that the console cannot accept as a command or cannot print. `noun` is "gait" or "routine", for the
-/// message.
+/// Rejects a name that the console cannot accept as a command or cannot print. `noun`, "gait" or "routine", is used in
+/// the message.
 pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     let is_allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
-    let refuse = |reason: String| Err(format!("is not a {noun} name: {reason}"));
+    let reject = |reason: String| Err(format!("is not a {noun} name: {reason}"));
     if !name.chars().all(is_allowed) || !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-        return refuse(
-            "it must be lower-case letters, digits and dashes, a letter first".to_string(),
+        return reject(
+            "it must consist of lower-case letters, digits and dashes, and begin with a letter"
+                .to_string(),
         );
     }
     if name.len() > MAX_NAME_BYTES {
         let length = name.len();
-        return refuse(format!(
-            "it has {length} characters, but `status` must fit into a line of the console with it, so it may have {MAX_NAME_BYTES}"
+        return reject(format!(
+            "it has {length} characters; at most {MAX_NAME_BYTES} are allowed, so that the answer to `status` fits into a line"
         ));
     }
     if name.ends_with('-') || name.contains("--") {
-        return refuse("a dash stands for a blank between two words".to_string());
+        return reject("a dash must stand between two words".to_string());
     }
     let word = name.split('-').next().unwrap_or(name);
     if Word::find(word.as_bytes()).is_some_and(Word::is_reserved) {
-        return refuse(format!("\"{word}\" is a command of the console"));
+        return reject(format!("\"{word}\" is a console command"));
     }
     Ok(())
 }
 
-/// A reader of gaits by name. It reads a gait only after the gait to which it refers.
+/// A reader of gaits by name, which reads a gait only after the gait to which it refers.
 struct Resolver<'a> {
     /// The table `gait`.
     section: Section<'a>,
     /// The names of all gaits, in the order of the file.
     names: Vec<&'a str>,
-    measures: &'a Measures,
+    config: &'a RobotConfig,
     resolved_gaits: HashMap<&'a str, Gait>,
     /// Names of the gaits that are being read, each of which refers to the next.
     reference_chain: Vec<&'a str>,
@@ -135,15 +134,15 @@ struct Resolver<'a> {
 
 impl<'a> Resolver<'a> {
     /// Reads the gait with this name, unless it has been read already.
-    fn resolve(&mut self, name: &'a str) -> Checked<Gait> {
+    fn resolve(&mut self, name: &'a str) -> ReadResult<Gait> {
         if let Some(gait) = self.resolved_gaits.get(name) {
             return Ok(gait.clone());
         }
         self.reference_chain.push(name);
         let table = self.section.section(name, &GAIT_KEYS)?;
         let gait = match definition_key(&table)? {
-            "waveform" => read_waveform(name, &table, self.measures)?,
-            "head or tail" => read_path(name, &table, self.measures)?,
+            "waveform" => read_waveform(name, &table, self.config)?,
+            "head or tail" => read_path(name, &table, self.config)?,
             reference => self.read_derived(name, &table, reference)?,
         };
         self.reference_chain.pop();
@@ -151,26 +150,30 @@ impl<'a> Resolver<'a> {
         Ok(gait)
     }
 
-    /// Reads a gait that is derived from another one.
+    /// Reads a gait that is derived from another gait.
     fn read_derived(
         &mut self,
         name: &'a str,
         table: &Section<'a>,
         reference: &'static str,
-    ) -> Checked<Gait> {
-        allow_only(table, &[reference, "period", "gain"], reference)?;
+    ) -> ReadResult<Gait> {
+        reject_keys_outside(table, &[reference, "period", "gain"], reference)?;
         let base_name = table.text(reference)?;
         if !self.names.contains(&base_name) {
-            let hint = hint(base_name, &self.names);
-            let message = format!("names the gait \"{base_name}\", which does not exist; {hint}");
+            let suggestion = suggest(base_name, &self.names);
+            let message =
+                format!("names the gait \"{base_name}\", which does not exist; {suggestion}");
             return Err(table.error(reference, message));
         }
         if self.reference_chain.contains(&base_name) {
-            let circle = [self.reference_chain.as_slice(), &[base_name]]
+            let cycle = [self.reference_chain.as_slice(), &[base_name]]
                 .concat()
                 .join(" -> ");
-            let message = format!("the gaits refer to each other in a circle: {circle}");
-            return Err(UnlocatedError::clause(table.full_key(reference), message));
+            let message = format!("circular reference: {cycle}");
+            return Err(UnlocatedError::with_own_subject(
+                table.full_key(reference),
+                message,
+            ));
         }
         let mut gait = self.resolve(base_name)?;
         match reference {
@@ -185,7 +188,7 @@ impl<'a> Resolver<'a> {
 }
 
 /// Returns the only key that defines this gait; the keys `head` and `tail` of a path count as one.
-fn definition_key(table: &Section) -> Checked<&'static str> {
+fn definition_key(table: &Section) -> ReadResult<&'static str> {
     let has_path = table.has_key("head") || table.has_key("tail");
     let mut definitions: Vec<&'static str> = REFERENCE_KEYS
         .into_iter()
@@ -203,26 +206,26 @@ fn definition_key(table: &Section) -> Checked<&'static str> {
     }
 }
 
-/// Refuses keys outside `allowed`: they are meaningless together with `partner`.
-fn allow_only(table: &Section, allowed: &[&str], partner: &str) -> Checked<()> {
+/// Rejects keys outside `allowed`, which are meaningless together with `partner`.
+fn reject_keys_outside(table: &Section, allowed: &[&str], partner: &str) -> ReadResult<()> {
     let mut names = table.key_names().into_iter();
     match names.find(|name| !allowed.contains(name)) {
-        Some(name) => Err(table.error(name, format!("does not go with {partner}"))),
+        Some(name) => Err(table.error(name, format!("is not allowed with {partner}"))),
         None => Ok(()),
     }
 }
 
 /// Reads a gait that a waveform defines.
-fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
+fn read_waveform(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Gait> {
     let waveform_name = table.text("waveform")?;
     let partner = format!("waveform = \"{waveform_name}\"");
     let strides = match waveform_name {
         "still" => {
-            allow_only(table, &["waveform", "period"], &partner)?;
+            reject_keys_outside(table, &["waveform", "period"], &partner)?;
             [Stride::STILL; 4]
         }
         "wave" => {
-            allow_only(
+            reject_keys_outside(
                 table,
                 &["waveform", "period", "duty", "amplitude", "start", "gain"],
                 &partner,
@@ -240,7 +243,7 @@ fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Ga
             })
         }
         "held" => {
-            allow_only(
+            reject_keys_outside(
                 table,
                 &["waveform", "period", "amplitude", "order", "gain"],
                 &partner,
@@ -253,16 +256,16 @@ fn read_waveform(name: &str, table: &Section, measures: &Measures) -> Checked<Ga
             })
         }
         word => {
-            let hint = hint(word, &WAVEFORM_NAMES);
-            return Err(table.error("waveform", format!("is \"{word}\"; {hint}")));
+            let suggestion = suggest(word, &WAVEFORM_NAMES);
+            return Err(table.error("waveform", format!("is \"{word}\"; {suggestion}")));
         }
     };
-    build_gait(name, table, measures, strides)
+    build_gait(name, table, config, strides)
 }
 
 /// Reads a gait that the paths of head and tail define.
-fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> {
-    allow_only(table, &["period", "head", "tail", "gain"], "a path")?;
+fn read_path(name: &str, table: &Section, config: &RobotConfig) -> ReadResult<Gait> {
+    reject_keys_outside(table, &["period", "head", "tail", "gain"], "a path")?;
     let mut strides = [Stride::STILL; 4];
     for end in End::ALL {
         if !table.has_key(end.name()) {
@@ -274,10 +277,11 @@ fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> 
             x: read_harmonics(&section, "x")?,
             y: read_harmonics(&section, "y")?,
         };
-        let legs = PathLeg::for_both_servos(measures.lizard, measures.neutral_angles(), end, &path)
+        let legs = PathLeg::for_both_servos(config.lizard, config.neutral_angles(), end, &path)
             .map_err(|problem| {
-                let consequence = format!("in \"{name}\" the {end} would not reach its line");
-                UnlocatedError::clause(section.key.clone(), problem).with_consequence(consequence)
+                let consequence = format!("in \"{name}\" the {end} would not reach its path");
+                UnlocatedError::with_own_subject(section.key.clone(), problem)
+                    .with_consequence(consequence)
             })?;
         for (servo, leg) in legs {
             strides[servo] = Stride {
@@ -287,28 +291,28 @@ fn read_path(name: &str, table: &Section, measures: &Measures) -> Checked<Gait> 
             };
         }
     }
-    build_gait(name, table, measures, strides)
+    build_gait(name, table, config, strides)
 }
 
 /// Builds a gait from its strides, with the period and the gains of its table.
 fn build_gait(
     name: &str,
     table: &Section,
-    measures: &Measures,
+    config: &RobotConfig,
     strides: [Stride; 4],
-) -> Checked<Gait> {
+) -> ReadResult<Gait> {
     let gait = Gait {
         name: name.to_string(),
         period: read_period(table, None)?,
         is_reversed: false,
         strides,
-        neutral: measures.neutral_angles(),
+        neutral: config.neutral_angles(),
     };
     Ok(gait.scaled(read_gains(table)?))
 }
 
-/// Reads the duration of a cycle, s. Without a default, the key is required.
-fn read_period(table: &Section, default: Option<f64>) -> Checked<f64> {
+/// Reads the duration of a cycle, s. The key is required if there is no default.
+fn read_period(table: &Section, default: Option<f64>) -> ReadResult<f64> {
     match default {
         Some(period) => table.number_or("period", period, 0.2, 60.0, "s"),
         None => table.number("period", 0.2, 60.0, "s"),
@@ -316,12 +320,12 @@ fn read_period(table: &Section, default: Option<f64>) -> Checked<f64> {
 }
 
 /// Reads the largest sweep, deg.
-fn read_amplitude(table: &Section) -> Checked<f64> {
+fn read_amplitude(table: &Section) -> ReadResult<f64> {
     table.number("amplitude", 0.0, 90.0, "deg")
 }
 
 /// Reads the legs' gains, in servo order; 1 for a leg without a gain.
-fn read_gains(table: &Section) -> Checked<[f64; 4]> {
+fn read_gains(table: &Section) -> ReadResult<[f64; 4]> {
     if !table.has_key("gain") {
         return Ok([1.0; 4]);
     }
@@ -329,14 +333,14 @@ fn read_gains(table: &Section) -> Checked<[f64; 4]> {
     read_leg_values(&section, Some(1.0), -4.0, 4.0, "(a factor)")
 }
 
-/// Reads a number for each leg, in servo order. Without a default, each leg must have its number.
+/// Reads a number for each leg, in servo order. Every leg needs its number if there is no default.
 fn read_leg_values(
     section: &Section,
     default: Option<f64>,
     min: f64,
     max: f64,
     unit: &'static str,
-) -> Checked<[f64; 4]> {
+) -> ReadResult<[f64; 4]> {
     let mut values = [0.0; 4];
     for (value, leg) in values.iter_mut().zip(LEG_NAMES) {
         *value = match default {
@@ -347,8 +351,8 @@ fn read_leg_values(
     Ok(values)
 }
 
-/// Reads the order of the swings. Returns each leg's position in it, 0 to 3, in servo order.
-fn read_order(table: &Section) -> Checked<[usize; 4]> {
+/// Reads the order of the swings. Returns each leg's position in this order, 0 to 3, in servo order.
+fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
     let words = table.strings("order")?;
     let order_error = || table.error("order", "must list each of LF, RF, RH, LH exactly once");
     if words.len() != LEG_NAMES.len() {
@@ -365,17 +369,17 @@ fn read_order(table: &Section) -> Checked<[usize; 4]> {
 }
 
 /// Reads the harmonics of one coordinate of a path.
-fn read_harmonics(section: &Section, name: &str) -> Checked<Vec<Harmonic>> {
+fn read_harmonics(section: &Section, name: &str) -> ReadResult<Vec<Harmonic>> {
     let terms = section.sections(name, &["k", "amplitude", "shift"])?;
     let read_term = |term: Section| {
-        let k = term.number("k", 1.0, 16.0, "periods in a cycle")?;
-        if k.fract() != 0.0 {
-            return Err(term.error("k", format!("is {k}; it must be a whole number")));
+        let order = term.number("k", 1.0, 16.0, "periods in a cycle")?;
+        if order.fract() != 0.0 {
+            return Err(term.error("k", format!("is {order}; it must be a whole number")));
         }
         Ok(Harmonic {
-            k,
+            order,
             amplitude: term.number("amplitude", -255.0, 255.0, "mm")?,
-            shift: term.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
+            phase_shift: term.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
         })
     };
     terms.into_iter().map(read_term).collect()

@@ -1,7 +1,7 @@
 //! A gait in floating point: the reference for tables, pulses and predictions.
 
+use crate::config::servo::{FORWARD_TURN_SIGN, OPPOSITE_SERVO};
 use crate::gaits::waveform::Waveform;
-use crate::measures::servo::{FORWARD_TURN_SIGN, OPPOSITE_SERVO};
 use crate::units::STEPS_PER_DEGREE;
 
 /// The movement of one leg over a cycle: `amplitude * waveform(phase - start)`.
@@ -45,7 +45,7 @@ pub(crate) struct Gait {
 }
 
 impl Gait {
-    /// The phase (0 to 1) a given time after the gait started at phase 0, in seconds at full speed.
+    /// The phase (0 to 1) at a time in seconds after a start at phase 0, at full speed.
     pub fn phase_at(&self, seconds: f64) -> f64 {
         let cycles = seconds / self.period;
         (if self.is_reversed { -cycles } else { cycles }).rem_euclid(1.0)
@@ -62,10 +62,10 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i])
     }
 
-    /// Converts the firmware's turns from neutral, in angle steps, counter-clockwise positive, to servo angles: deg,
+    /// Converts the firmware's rotations from neutral (angle steps, counter-clockwise positive) to servo angles: deg,
     /// chassis frame, servo order.
-    pub fn angles_from_table(&self, turns: [i16; 4]) -> [f64; 4] {
-        std::array::from_fn(|i| self.neutral[i] + f64::from(turns[i]) / STEPS_PER_DEGREE)
+    pub fn angles_from_table(&self, rotations: [i16; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| self.neutral[i] + f64::from(rotations[i]) / STEPS_PER_DEGREE)
     }
 
     /// Returns the gait with the strides of the left and right legs exchanged; the neutral angles stay.

@@ -1,8 +1,8 @@
 //! Gaits in floating point, as robot.toml defines them.
 //!
-//! A gait is a movement that four legs repeat, each with its own phase. An author defines it by a waveform, by the
-//! path of the head or the tail, or by another gait with changes. Here each definition becomes the sweep of each
-//! leg at any phase, the reference for tables, pulses and predictions.
+//! A gait is a movement that four legs repeat, each with its own phase. An author defines a gait by a waveform, by a
+//! path of the head or the tail, or by changes to another gait. This module converts each definition to the sweep of
+//! each leg at any phase, which is the reference for tables, pulses and predictions.
 
 mod bars;
 pub(crate) mod define;
@@ -21,7 +21,7 @@ pub use routine::Routine;
 pub use waveform::Waveform;
 pub(crate) use waveform::canonicalize;
 
-/// Returns the console command that starts the gait or routine of this name: hyphens become spaces.
-pub fn command_of(name: &str) -> String {
+/// Converts the name of a gait or routine to its console command: hyphens become spaces.
+pub fn to_command(name: &str) -> String {
     name.replace('-', " ")
 }

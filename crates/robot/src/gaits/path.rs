@@ -4,19 +4,19 @@ use std::f64::consts::TAU;
 
 use lizard_kinematics::Vector;
 
-/// One harmonic of a path's coordinate: `amplitude * sin(2 pi (k phase + shift))`.
+/// One harmonic of a path's coordinate: `amplitude * sin(2 pi (order * phase + phase_shift))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Harmonic {
-    /// Order of the harmonic: its number of periods in a cycle, a whole number so that the path closes.
-    pub k: f64,
+    /// Order of the harmonic: the number of its periods in a cycle, a whole number so that the path closes.
+    pub order: f64,
     /// Amplitude, mm.
     pub amplitude: f64,
     /// Phase shift, in periods of this harmonic.
-    pub shift: f64,
+    pub phase_shift: f64,
 }
 
 /// A closed curve: a centre plus a sum of harmonics in each coordinate. The coordinates are in mm from the middle of
-/// the base; y is positive outward.
+/// the base, which is the line between the end's two servo shafts; positive y points outward.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Path {
     /// The mean point, mm.
@@ -28,16 +28,15 @@ pub struct Path {
 }
 
 impl Path {
-    /// The point at a phase of 0 to 1, mm.
+    /// Returns the point at `phase` (0 to 1), mm.
     pub fn point_at(&self, phase: f64) -> Vector {
-        let sum_of = |terms: &[Harmonic]| {
-            let value_of =
-                |term: &Harmonic| term.amplitude * (TAU * (term.k * phase + term.shift)).sin();
-            terms.iter().map(value_of).sum::<f64>()
+        let sum = |terms: &[Harmonic]| -> f64 {
+            let angle = |term: &Harmonic| TAU * (term.order * phase + term.phase_shift);
+            terms
+                .iter()
+                .map(|term| term.amplitude * angle(term).sin())
+                .sum()
         };
-        Vector::new(
-            self.centre[0] + sum_of(&self.x),
-            self.centre[1] + sum_of(&self.y),
-        )
+        Vector::new(self.centre[0] + sum(&self.x), self.centre[1] + sum(&self.y))
     }
 }

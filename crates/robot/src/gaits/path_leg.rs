@@ -1,10 +1,10 @@
-//! The sweeps of the two cranks of the head or the tail that move its end point along a path:
-//! the inverse kinematics of the five-bar.
+//! The crank sweeps that move the end point of the head or the tail along a path: the inverse kinematics of the
+//! five-bar.
 
 use lizard_kinematics::{End, Lizard, Vector, wrap};
 
+use crate::config::servo::FORWARD_TURN_SIGN;
 use crate::gaits::path::Path;
-use crate::measures::servo::FORWARD_TURN_SIGN;
 
 /// The motion of one of the two servos that move the end point of the head or the tail along a path.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +23,11 @@ pub struct PathLeg {
 const CHECKED_POINTS_PER_CYCLE: usize = 4096;
 
 impl PathLeg {
-    /// Computes the motions of the two servos of the head or the tail, each with its servo's index.
-    /// `neutral` contains the neutral angles of all four servos, deg.
+    /// Creates the motions of both servos of the head or the tail, each with its servo's index. `neutral` contains the
+    /// neutral angles of all four servos, deg.
     ///
     /// # Errors
-    /// Returns the message for a point of the path that is out of reach.
+    /// Returns a message if a point of the path is out of reach.
     pub(crate) fn for_both_servos(
         lizard: Lizard,
         neutral: [f64; 4],

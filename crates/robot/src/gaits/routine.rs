@@ -1,13 +1,13 @@
-//! Routines of robot.toml: sequences of gaits, rests and waits for a button. Each gait lasts for some cycles, for
-//! some time, or until a contact closes.
+//! Routines of robot.toml: sequences of gaits, rests and waits for a button. Each gait lasts for a number of cycles,
+//! for a time, or until a contact closes.
 
 use lizard_core::console::command::MAX_CYCLES;
 use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
 
-use crate::file::{Checked, Section, UnlocatedError, hint};
-use crate::gaits::command_of;
+use crate::config::{INPUT_NAMES, Inputs};
+use crate::file::{ReadResult, Section, UnlocatedError, suggest};
 use crate::gaits::define::{check_boot_keys, check_name};
-use crate::measures::{INPUT_NAMES, Inputs};
+use crate::gaits::to_command;
 use crate::units::FRAMES_PER_SECOND;
 
 /// The largest number of steps of a routine.
@@ -19,7 +19,7 @@ const MAX_STEP_SECONDS: f64 = 999.0;
 /// The value of `repeat` for a routine that never ends.
 const FOR_EVER: &str = "for ever";
 
-/// A routine whose every step has been checked.
+/// A routine, all of whose steps have been checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Routine {
     name: String,
@@ -32,18 +32,18 @@ pub struct Routine {
 }
 
 impl Routine {
-    /// Name of the routine.
+    /// The routine's name in robot.toml.
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// The console command that starts the routine.
     pub fn command(&self) -> String {
-        command_of(&self.name)
+        to_command(&self.name)
     }
 
-    /// The routine's step records in the section: one for each step. If an input ends a step, a record of that input
-    /// precedes it.
+    /// The routine's step records in the section: one for each step. If an input ends a step, a record of the input
+    /// precedes the step's record.
     pub fn step_records(&self) -> &[Step] {
         &self.step_records
     }
@@ -64,9 +64,9 @@ impl Routine {
         (self.rounds > 0).then_some(self.rounds)
     }
 
-    /// The routine's record in the section. `first_record_index` is the index of its first step record among the step
-    /// records of all routines; `name_start` is the index at which its name starts in the table of names.
-    pub(crate) fn record(&self, first_record_index: usize, name_start: usize) -> Record {
+    /// Creates the routine's record in the section. `first_record_index` is the index of the first step record among
+    /// the step records of all routines; `name_start` is the index at which the name starts in the table of names.
+    pub(crate) fn to_record(&self, first_record_index: usize, name_start: usize) -> Record {
         let mut record = Record {
             name_start: name_start as u16,
             name_length: self.name.len() as u16,
@@ -81,12 +81,12 @@ impl Routine {
     }
 }
 
-/// Reads the routines, in the order of the file, of a robot with these gaits and inputs.
+/// Reads the routines of a robot with these gaits and inputs, in the order of the file.
 pub(crate) fn read_routines(
     root: &Section,
     gaits: &[&str],
     inputs: &Inputs,
-) -> Checked<Vec<Routine>> {
+) -> ReadResult<Vec<Routine>> {
     if !root.has_key("routine") {
         return Ok(Vec::new());
     }
@@ -95,7 +95,7 @@ pub(crate) fn read_routines(
     for name in &names {
         check_name(name, "routine").map_err(|problem| section.error(name, problem))?;
         if gaits.contains(name) {
-            return Err(section.error(name, "has the name of a gait; give it another one"));
+            return Err(section.error(name, "has the name of a gait; choose another name"));
         }
     }
     let all_names: Vec<&str> = gaits.iter().chain(&names).copied().collect();
@@ -103,7 +103,7 @@ pub(crate) fn read_routines(
     if all_names.len() > MAX_GAITS {
         let count = all_names.len();
         let message = format!(
-            "and gait are {count} together; the firmware numbers them with a byte, so leave at most {MAX_GAITS}"
+            "and gait have {count} entries together; the firmware supports at most {MAX_GAITS}"
         );
         return Err(UnlocatedError::new("routine", message));
     }
@@ -118,23 +118,23 @@ fn read_routine(
     gaits: &[&str],
     routines: &[&str],
     inputs: &Inputs,
-) -> Checked<Routine> {
+) -> ReadResult<Routine> {
     let table = section.section(name, &["steps", "repeat", "repeat_from"])?;
     let step_texts = table.strings("steps")?;
     if step_texts.is_empty() || step_texts.len() > MAX_STEPS {
         let count = step_texts.len();
-        let message = format!("has {count} steps; it must have 1 to {MAX_STEPS}");
+        let message = format!("has {count} steps; it must have between 1 and {MAX_STEPS}");
         return Err(table.error("steps", message));
     }
     let parse_step_text = |(index, text): (usize, &&str)| {
-        let error_of = |problem| {
+        let step_error = |problem| {
             let message = format!("step {}, \"{text}\", {problem}", index + 1);
-            UnlocatedError::clause(table.full_key("steps"), message)
+            UnlocatedError::with_own_subject(table.full_key("steps"), message)
         };
-        parse_records(text, name, gaits, routines, inputs).map_err(error_of)
+        parse_records(text, name, gaits, routines, inputs).map_err(step_error)
     };
     let steps = step_texts.iter().enumerate().map(parse_step_text);
-    let steps = steps.collect::<Checked<Vec<_>>>()?;
+    let steps = steps.collect::<ReadResult<Vec<_>>>()?;
     let unit = "(a step)";
     let first_repeated_step = table.number_or("repeat_from", 1.0, 1.0, steps.len() as f64, unit)?;
     if first_repeated_step.fract() != 0.0 {
@@ -150,7 +150,7 @@ fn read_routine(
 }
 
 /// Reads the number of rounds; 0 if the routine repeats for ever.
-fn read_rounds(table: &Section) -> Checked<u16> {
+fn read_rounds(table: &Section) -> ReadResult<u16> {
     if table.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
     }
@@ -176,7 +176,7 @@ fn parse_records(
     let until_record = |name: &str| {
         let input = inputs
             .find_input(name)
-            .ok_or_else(|| missing_input_message(name))?;
+            .ok_or_else(|| format_missing_input(name))?;
         Ok::<_, String>(Step {
             kind: Step::UNTIL,
             gait: input.byte(),
@@ -184,7 +184,7 @@ fn parse_records(
         })
     };
     match words.as_slice() {
-        ["wait"] => Err("must say for what, as \"wait button\"".to_string()),
+        ["wait"] => Err("must name an input, for example \"wait button\"".to_string()),
         ["wait", name] if name.parse::<f64>().is_err() => {
             let wait = Step {
                 kind: Step::WAIT,
@@ -193,7 +193,9 @@ fn parse_records(
             };
             Ok(vec![until_record(name)?, wait])
         }
-        [.., "until"] => Err("must say until what, as \"walk until nose\"".to_string()),
+        [.., "until"] => {
+            Err("must name an input after until, for example \"walk until nose\"".to_string())
+        }
         [words @ .., "until", name] if !words.is_empty() => Ok(vec![
             until_record(name)?,
             parse_step(words, own_name, gaits, routines, true)?,
@@ -202,15 +204,15 @@ fn parse_records(
     }
 }
 
-/// Makes the message about a step with an input that robot.toml does not have.
-fn missing_input_message(name: &str) -> String {
+/// Formats the message about a step with an input that robot.toml does not define.
+fn format_missing_input(name: &str) -> String {
     if INPUT_NAMES.contains(&name) {
         return format!(
-            "names the input \"{name}\", which has no pin; [input.{name}] must have one, as pin = \"A1\""
+            "names the input \"{name}\", which has no pin; set one in [input.{name}], for example pin = \"A1\""
         );
     }
-    let hint = hint(name, &INPUT_NAMES);
-    format!("names the input \"{name}\", which does not exist; {hint}")
+    let suggestion = suggest(name, &INPUT_NAMES);
+    format!("names the input \"{name}\", which does not exist; {suggestion}")
 }
 
 /// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. A step that an input ends needs neither a
@@ -244,10 +246,10 @@ fn parse_step(
         return Err(if name == own_name {
             "is the routine itself, which would never end".to_string()
         } else if routines.contains(&&*name) {
-            "is a routine; a step is a gait".to_string()
+            "is a routine; a step must be a gait".to_string()
         } else {
-            let hint = hint(&name, gaits);
-            format!("names the gait \"{name}\", which does not exist; {hint}")
+            let suggestion = suggest(&name, gaits);
+            format!("names the gait \"{name}\", which does not exist; {suggestion}")
         });
     };
     let gait = gait as u8;
@@ -260,7 +262,7 @@ fn parse_step(
     match count.parse() {
         Ok(count @ 1..=MAX_CYCLES) => Ok(Step { kind, gait, count }),
         _ => Err(format!(
-            "must say how long: cycles, as \"{name} 3\", a whole number of 1 to {MAX_CYCLES}, or a time, as \"{name} 2 s\""
+            "needs a length: 1 to {MAX_CYCLES} cycles, for example \"{name} 3\", or a time, for example \"{name} 2 s\""
         )),
     }
 }
@@ -273,7 +275,7 @@ fn parse_frames(time: &str) -> Result<u16, String> {
         Ok((seconds * FRAMES_PER_SECOND).round() as u16)
     } else {
         Err(format!(
-            "has a time that is not within {min} to {MAX_STEP_SECONDS} s"
+            "has a time that is not between {min} and {MAX_STEP_SECONDS} s"
         ))
     }
 }

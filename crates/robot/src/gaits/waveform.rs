@@ -1,13 +1,13 @@
 //! The shape of one leg's sweep over a cycle. Feet are never lifted: their pads drag, and the robot walks because
-//! three feet hold while one returns. So a waveform is a slow stance, in which the foot moves back, and a fast swing
-//! forward. If the swing is long enough, stance and swing join without a jump in speed.
+//! three feet hold while one returns. A waveform is therefore a slow stance, in which the foot moves back, and a fast
+//! swing forward. If the swing is long enough, stance and swing join without a step in speed.
 //!
 //! A waveform maps the phase (one cycle = 1) to -1..1, foot forward = 1.
 
 use crate::gaits::path_leg::PathLeg;
 
-/// The share of the cycle that each of the five moves of a held gait takes.
-const MOVE_SHARE: f64 = 0.2;
+/// The fraction of the cycle that each of the five moves of a held gait takes.
+const MOVE_FRACTION: f64 = 0.2;
 
 /// A function of the phase with values from -1 to 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +17,7 @@ pub enum Waveform {
     /// A linear stance over `duty` of the cycle, then a cubic Hermite swing that
     /// has the stance's speed at both ends. The swing's peak is 1.
     Wave {
-        /// The duty factor: the stance's share of the cycle, 0 to 1.
+        /// The duty factor: the stance's fraction of the cycle, 0 to 1.
         duty: f64,
     },
     /// A smoothstep back in the first fifth of the cycle, the stance common to all legs. The swing is a smoothstep
@@ -46,8 +46,8 @@ impl Waveform {
 
 /// The value at phase u of a wave with duty factor beta. The stance is 1 - 2u/beta. The swing is the Hermite cubic in
 /// t = (u - beta)/(1 - beta) from -1 to 1, with the stance's slope m = -2 (1 - beta)/beta at both ends. Since the foot
-/// keeps its speed there, it overshoots a little before it reverses (by 1.4 % at beta = 0.75). So both parts are
-/// divided by the cubic's peak, and the amplitude includes the overshoot.
+/// keeps its speed at both ends, it overshoots a little before it reverses (by 1.4 % at beta = 0.75). Both parts are
+/// therefore divided by the cubic's peak, and the amplitude includes the overshoot.
 fn wave_value(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {
@@ -68,8 +68,8 @@ fn hermite(t: f64, m: f64) -> f64 {
 
 /// The value of a held waveform at phase u.
 fn held_value(u: f64, swing_index: usize) -> f64 {
-    let start = MOVE_SHARE * (swing_index + 1) as f64;
-    1.0 - 2.0 * smoothstep(u / MOVE_SHARE) + 2.0 * smoothstep((u - start) / MOVE_SHARE)
+    let start = MOVE_FRACTION * (swing_index + 1) as f64;
+    1.0 - 2.0 * smoothstep(u / MOVE_FRACTION) + 2.0 * smoothstep((u - start) / MOVE_FRACTION)
 }
 
 /// The smoothstep t^2 (3 - 2t) for t from 0 to 1; 0 before, 1 after.
@@ -78,18 +78,18 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Reduces a waveform to one that has a table: `value_at(u) = sign * base.value_at(u - shift)`. Returns base, shift
-/// and sign.
+/// Reduces a waveform to a waveform with its own table: `value_at(u) = sign * base.value_at(u - shift)`. Returns base,
+/// shift and sign.
 ///
-/// The held waveforms of the first and the last swing are each other's negative with a shift in phase, and so are
-/// those of the second and the third swing. So two tables are enough for all four.
+/// The held waveforms of the first and the last swing are each other's negative with a phase shift, and so are the
+/// waveforms of the second and the third swing. Two tables are therefore enough for all four.
 pub(crate) fn canonicalize(waveform: &Waveform) -> (Waveform, f64, f64) {
     match waveform {
         Waveform::Held { swing_index } if *swing_index >= 2 => (
             Waveform::Held {
                 swing_index: 3 - swing_index,
             },
-            MOVE_SHARE * (swing_index + 1) as f64,
+            MOVE_FRACTION * (swing_index + 1) as f64,
             -1.0,
         ),
         canonical => (canonical.clone(), 0.0, 1.0),
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn every_waveform_reaches_1_and_minus_1_and_is_continuous_where_the_cycle_repeats() {
+    fn every_waveform_is_continuous_and_reaches_1_and_minus_1() {
         for waveform in all_waveforms() {
             let samples: Vec<f64> = (0..=10_000)
                 .map(|i| waveform.value_at(i as f64 / 1e4))
@@ -152,7 +152,8 @@ mod tests {
 
     #[test]
     fn a_wave_starts_its_stance_just_below_its_peak() {
-        // For duty factor 3/4, a numerical search finds the turning point at t = 0.0435645, with the value -1.0143010.
+        // For a duty factor of 3/4, a numerical search finds the turning point at t = 0.0435645 with the value
+        // -1.0143010.
         assert!((Waveform::Wave { duty: 0.75 }.value_at(0.0) - 1.0 / 1.014_301_03).abs() < 1e-7);
     }
 

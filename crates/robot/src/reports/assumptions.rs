@@ -1,34 +1,34 @@
-//! Sensitivity analysis of the prediction: varies each assumption over its plausible range and lists the assumptions
-//! that change a gait's movement by 10 % or more.
+//! A sensitivity analysis of the prediction, which varies each assumption over its plausible range and lists the
+//! assumptions that change a gait's displacement by 10 % or more.
 
 use std::fmt;
 
 use lizard_contact::{Ground, Motors, Travel};
 
 use crate::checks::CheckedGait;
-use crate::measures::ServoType;
+use crate::config::ServoType;
 use crate::robot::Robot;
 
-/// Smallest change of a movement that gets a row in the table, percent.
+/// Smallest change of a displacement that has a row in the table, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
-/// Smallest noticeable distance of a cycle, mm.
+/// Smallest noticeable distance per cycle, mm.
 const MIN_DISTANCE_MM: f64 = 1.0;
-/// Smallest noticeable turn of a cycle, deg.
+/// Smallest noticeable turn per cycle, deg.
 const MIN_TURN_DEG: f64 = 0.5;
-/// Largest difference (mm or deg) at which two movements count as those of a gait and of its mirror image or reverse.
+/// Largest difference (mm or deg) between the displacements of a gait and of its mirror image or reverse.
 const MIRROR_TOLERANCE: f64 = 0.02;
 
-/// The note about assumptions for which the model has no input.
+/// The note about assumptions without an input of the model.
 const UNMODELLED_NOTE: &str = "\
-The model cannot vary the floor's edges and slopes, a lost pad, servos that drive in bursts, a mass centre farther off, \
-or the mass of the limbs.\n\
-docs/limits.md has a table of them by MuJoCo, for the paper's robot.";
+The model cannot vary the floor's edges and slopes, a missing pad, servos that drive in bursts, a centre of mass farther \
+off, or the limbs' mass.\n\
+docs/limits.md lists the effect of these assumptions in MuJoCo, for the paper's robot.";
 
 /// The inputs of the model that an assumption can vary.
 #[derive(Clone, Copy)]
 struct ModelInputs {
     ground: Ground,
-    /// The type of all four servos, with their supply.
+    /// The type of all four servos, with their supply voltage.
     servo: ServoType,
     /// Friction of the pins, N mm, and of a slider, N.
     joints: [f64; 2],
@@ -37,27 +37,30 @@ struct ModelInputs {
 }
 
 impl ModelInputs {
-    /// The inputs of a robot's prediction.
-    fn of(robot: &Robot) -> Self {
-        let joints = robot.motors().joints;
+    /// Returns the inputs of a robot's prediction.
+    fn for_robot(robot: &Robot) -> Self {
+        let friction = robot.motors().joint_friction;
         Self {
             ground: *robot.ground(),
             servo: *robot.servo_type(),
-            joints: [joints.pin_torque, joints.slider_force],
+            joints: [friction.pin_torque, friction.slider_force],
             angle_scale: 1.0,
         }
     }
 
-    /// Simulates a cycle of a gait and returns its movement; `pace` is 1 for the gait's own pace.
+    /// Simulates a cycle of a gait and returns the displacement; `pace` is relative to the gait's nominal pace.
     fn simulate_cycle(&self, robot: &Robot, gait: &CheckedGait, pace: f64) -> Travel {
         let Motors {
             per_servo,
-            mut joints,
-        } = robot.motors_of_type(&self.servo, self.servo.volts);
-        [joints.pin_torque, joints.slider_force] = self.joints;
-        gait.simulate_scaled_cycle(
+            mut joint_friction,
+        } = robot.motors_with_type(&self.servo, self.servo.supply_volts);
+        [joint_friction.pin_torque, joint_friction.slider_force] = self.joints;
+        gait.simulate_with_angle_scale(
             &self.ground,
-            &Motors { per_servo, joints },
+            &Motors {
+                per_servo,
+                joint_friction,
+            },
             pace,
             self.angle_scale,
         )
@@ -76,17 +79,17 @@ struct Assumption {
 enum Variation {
     /// One input is set to each value.
     Value(fn(&mut ModelInputs) -> &mut f64),
-    /// A change that is made for the value 1 and not for 0, which is the value in the prediction.
+    /// A change is made for the value 1, but not for 0, which is the value in the prediction.
     Switch(fn(&mut ModelInputs)),
     /// One input is set to each value after another change, without which the input has no effect.
     ValueAfterChange(fn(&mut ModelInputs), fn(&mut ModelInputs) -> &mut f64),
 }
 
 impl Variation {
-    /// The value that the prediction uses.
+    /// The value in the prediction.
     fn nominal_value(&self, mut inputs: ModelInputs) -> f64 {
         match self {
-            Self::Value(field_of) | Self::ValueAfterChange(_, field_of) => *field_of(&mut inputs),
+            Self::Value(field) | Self::ValueAfterChange(_, field) => *field(&mut inputs),
             Self::Switch(_) => 0.0,
         }
     }
@@ -94,19 +97,19 @@ impl Variation {
     /// Changes the inputs so that the assumption has this value.
     fn set(&self, inputs: &mut ModelInputs, value: f64) {
         match self {
-            Self::Value(field_of) => *field_of(inputs) = value,
+            Self::Value(field) => *field(inputs) = value,
             Self::Switch(change) if value > 0.0 => change(inputs),
             Self::Switch(_) => {}
-            Self::ValueAfterChange(change, field_of) => {
+            Self::ValueAfterChange(change, field) => {
                 change(inputs);
-                *field_of(inputs) = value;
+                *field(inputs) = value;
             }
         }
     }
 }
 
-/// Makes the table of assumptions. A row has the description, the unit, the range, and the way in which the assumption
-/// changes the inputs: `number` for [`Variation::Value`], `case` for [`Variation::Switch`], and `after` for
+/// Creates the table of assumptions. A row has the description, the unit, the range, and the way in which the
+/// assumption changes the inputs: `number` for [`Variation::Value`], `case` for [`Variation::Switch`], and `after` for
 /// [`Variation::ValueAfterChange`].
 macro_rules! assumptions {
     ($($description:literal, $unit:literal, $from:literal to $to:literal, $kind:ident($($of:tt)+);)+) => {
@@ -126,40 +129,40 @@ macro_rules! assumptions {
 
 /// The assumptions in the order of robot.toml.
 const ASSUMPTIONS: [Assumption; 21] = assumptions! {
-    "stall torque of a servo", "kg cm", 1.2 to 2.2, number(servo.stall_kg_cm);
-    "time of a servo for 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);
-    "supply of the servos", "V", 4.0 to 5.2, number(servo.volts);
-    "spin-up of a servo's rotor", "ms", 2.0 to 40.0, number(servo.spin_up_ms);
-    "error at the full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
-    "dead band of a servo", "us", 2.0 to 20.0, number(servo.dead_band_us);
-    // The range of servos that trial 3 of docs/measure.md accepts: 11 or 9 us per deg instead of 10.
-    "angle of the servos over the one sent", "", 0.91 to 1.11, number(angle_scale);
+    "servo stall torque", "kg cm", 1.2 to 2.2, number(servo.stall_torque_kg_cm);
+    "servo time per 60 deg", "s", 0.1 to 0.15, number(servo.s_per_60_deg);
+    "servo supply voltage", "V", 4.0 to 5.2, number(servo.supply_volts);
+    "rotor time constant", "ms", 2.0 to 40.0, number(servo.rotor_time_constant_ms);
+    "error at full torque", "deg", 1.0 to 6.0, number(servo.full_torque_deg);
+    "servo dead band", "us", 2.0 to 20.0, number(servo.dead_band_us);
+    // The range that trial 3 of docs/measure.md accepts: 11 or 9 us per deg instead of 10.
+    "servo angle over commanded angle", "", 0.91 to 1.11, number(angle_scale);
     "digital servos", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo = ServoType {
-            volts: inputs.servo.volts,
+            supply_volts: inputs.servo.supply_volts,
             ..ServoType::DIGITAL
         };
     });
-    "rotor 2 ms and full torque at 1 deg", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
-        inputs.servo.spin_up_ms = 2.0;
+    "rotor 2 ms, full torque at 1 deg", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
+        inputs.servo.rotor_time_constant_ms = 2.0;
         inputs.servo.full_torque_deg = 1.0;
     });
-    "friction of pins", "N mm", 0.0 to 20.0, number(joints[0]);
-    "friction of a slider", "N", 0.0 to 1.0, number(joints[1]);
+    "pin friction", "N mm", 0.0 to 20.0, number(joints[0]);
+    "slider friction", "N", 0.0 to 1.0, number(joints[1]);
     "mass", "g", 350.0 to 500.0, number(ground.body.mass);
-    "mass centre ahead", "mm", -15.0 to 15.0, number(ground.body.mass_centre[0]);
-    "friction of a pad", "", 0.4 to 1.2, number(ground.friction_coefficient);
-    "friction backward over forward", "", 0.67 to 1.5, number(ground.friction_ratio);
+    "centre of mass ahead", "mm", -15.0 to 15.0, number(ground.body.centre_of_mass[0]);
+    "pad friction", "", 0.4 to 1.2, number(ground.friction_coefficient);
+    "backward over forward friction", "", 0.67 to 1.5, number(ground.friction_ratio);
     "hips ahead of the middle", "mm", 50.0 to 60.0, number(ground.feet.hip_forward);
     "mounting of the legs", "deg", -10.0 to 41.4, number(ground.feet.mount_angle);
-    "play of a leg", "deg", 0.0 to 2.0, number(ground.drive.play);
+    "leg play", "deg", 0.0 to 2.0, number(ground.drive.play);
     "front left foot too long", "mm", -1.0 to 1.0, number(ground.stance.twist);
-    "stiffness of feet, that foot 0.5 mm too long", "N/mm", 0.3 to 3.3, after(
+    "foot stiffness, front left foot 0.5 mm too long", "N/mm", 0.3 to 3.3, after(
         |inputs| inputs.ground.stance.twist = 0.5,
         ground.stance.stiffness
     );
     "clone servos, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
-        inputs.servo.stall_kg_cm = 1.2;
+        inputs.servo.stall_torque_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
         inputs.joints = [17.0, 0.5];
         inputs.ground.friction_coefficient = 1.0;
@@ -167,7 +170,7 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     });
 };
 
-/// The plausible range of the assumption with this description; `None` if no assumption has it.
+/// The plausible range of the assumption with this description; `None` if there is no such assumption.
 pub fn plausible_range(description: &str) -> Option<[f64; 2]> {
     let assumption = ASSUMPTIONS
         .iter()
@@ -184,7 +187,7 @@ struct Row {
     nominal: f64,
     /// The lowest and the highest plausible value.
     range: [f64; 2],
-    /// Change of each gait's movement at the lowest and at the highest value of the range, percent.
+    /// Change of each gait's displacement at the lowest and the highest value of the range, percent.
     changes: Vec<[f64; 2]>,
 }
 
@@ -197,34 +200,35 @@ pub struct Assumptions {
 }
 
 impl Assumptions {
-    /// Simulates a robot's gaits, with its servos, at the lowest and the highest value of each assumption. Takes some
+    /// Simulates a robot's gaits with its servos, at the lowest and the highest value of each assumption. Takes a few
     /// seconds.
-    pub fn of(robot: &Robot) -> Self {
-        let nominal = ModelInputs::of(robot);
-        let gaits = distinct_gaits(robot, |gait| nominal.simulate_cycle(robot, gait, 1.0));
-        let row_of = |assumption: &Assumption| {
-            let change_of = |gait: &CheckedGait, movement: &Travel, value: f64| {
+    pub fn compute(robot: &Robot) -> Self {
+        let nominal = ModelInputs::for_robot(robot);
+        let gaits = find_distinct_gaits(robot, |gait| nominal.simulate_cycle(robot, gait, 1.0));
+        let compute_row = |assumption: &Assumption| {
+            let compute_change = |gait: &CheckedGait, displacement: &Travel, value: f64| {
                 let mut inputs = nominal;
                 assumption.variation.set(&mut inputs, value);
-                let component = principal_component(movement);
+                let component = principal_component(displacement);
                 100.0
-                    * (component(&inputs.simulate_cycle(robot, gait, 1.0)) / component(movement)
+                    * (component(&inputs.simulate_cycle(robot, gait, 1.0))
+                        / component(displacement)
                         - 1.0)
             };
-            let changes_of = |(gait, movement): &(&CheckedGait, Travel)| {
+            let compute_changes = |(gait, displacement): &(&CheckedGait, Travel)| {
                 assumption
                     .range
-                    .map(|value| change_of(gait, movement, value))
+                    .map(|value| compute_change(gait, displacement, value))
             };
             Row {
                 description: assumption.description,
                 unit: assumption.unit,
                 nominal: assumption.variation.nominal_value(nominal),
                 range: assumption.range,
-                changes: gaits.iter().map(changes_of).collect(),
+                changes: gaits.iter().map(compute_changes).collect(),
             }
         };
-        let mut rows: Vec<Row> = ASSUMPTIONS.iter().map(row_of).collect();
+        let mut rows: Vec<Row> = ASSUMPTIONS.iter().map(compute_row).collect();
         rows.sort_by(|a, b| b.max_change().total_cmp(&a.max_change()));
         Self {
             gaits: gaits
@@ -236,33 +240,33 @@ impl Assumptions {
     }
 }
 
-/// The movement of a cycle with one assumption changed, and that assumption.
+/// The displacement over a cycle with one assumption changed, and the changed assumption.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extreme {
-    /// The movement: mm ahead, or deg of turn.
+    /// The displacement: mm forward, or deg of turn.
     pub movement: f64,
     /// The description of the assumption; `None` if all assumptions have the values of robot.toml.
     pub assumption: Option<&'static str>,
 }
 
-/// The smallest and the largest movement of a gait, if one assumption at a time is set to the lowest or the highest
+/// The smallest and the largest displacement of a gait if one assumption at a time is set to the lowest or the highest
 /// value of its plausible range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MovementRange {
-    /// True if the gait turns on the spot, so that the movement is its turn; false if the movement is its distance
-    /// ahead.
+    /// True if the gait turns on the spot, so that the displacement is its turn; false if the displacement is its
+    /// forward distance.
     pub is_turn: bool,
-    /// The smallest movement, with its sign.
+    /// The smallest displacement, with its sign.
     pub smallest: Extreme,
-    /// The largest movement, with its sign.
+    /// The largest displacement, with its sign.
     pub largest: Extreme,
 }
 
 impl MovementRange {
-    /// Simulates a gait, with the robot's servos, at the lowest and the highest value of every range; `pace` is 1 for
-    /// the gait's own pace.
-    pub fn of(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
-        let nominal = ModelInputs::of(robot);
+    /// Simulates a gait with the robot's servos, at the lowest and the highest value of every range; `pace` is relative
+    /// to the gait's nominal pace.
+    pub fn compute(robot: &Robot, gait: &CheckedGait, pace: f64) -> Self {
+        let nominal = ModelInputs::for_robot(robot);
         let travel = nominal.simulate_cycle(robot, gait, pace);
         let component = principal_component(&travel);
         let nominal_extreme = Extreme {
@@ -296,8 +300,8 @@ impl MovementRange {
     }
 }
 
-/// The gaits that move the robot noticeably, each with its movement. Mirror images and reverses are left out.
-fn distinct_gaits(
+/// Finds the gaits that move the robot noticeably, each with its displacement, without mirror images and reverses.
+fn find_distinct_gaits(
     robot: &Robot,
     simulate: impl Fn(&CheckedGait) -> Travel,
 ) -> Vec<(&CheckedGait, Travel)> {
@@ -307,36 +311,37 @@ fn distinct_gaits(
         if !gait.predict(&rigid_ground).is_decided() {
             continue;
         }
-        let movement = simulate(gait);
+        let displacement = simulate(gait);
         let is_mirror_or_reverse = |(_, listed): &(_, Travel)| {
             let is_close = |a: f64, b: f64| (a.abs() - b.abs()).abs() < MIRROR_TOLERANCE;
-            is_close(movement.forward, listed.forward) && is_close(movement.turn, listed.turn)
+            is_close(displacement.forward, listed.forward)
+                && is_close(displacement.turn, listed.turn)
         };
         let moves_noticeably =
-            movement.forward.abs() > MIN_DISTANCE_MM || movement.turn.abs() > MIN_TURN_DEG;
+            displacement.forward.abs() > MIN_DISTANCE_MM || displacement.turn.abs() > MIN_TURN_DEG;
         if moves_noticeably && !gaits.iter().any(is_mirror_or_reverse) {
-            gaits.push((gait, movement));
+            gaits.push((gait, displacement));
         }
     }
     gaits
 }
 
 /// True for a gait that turns on the spot: its turn in deg is at least its distance in mm.
-fn is_turn(movement: &Travel) -> bool {
-    movement.turn.abs() >= movement.forward.abs()
+fn is_turn(displacement: &Travel) -> bool {
+    displacement.turn.abs() >= displacement.forward.abs()
 }
 
-/// The component of the movement that is the gait's purpose: the distance ahead, or the turn of a gait that turns
-/// on the spot.
-fn principal_component(movement: &Travel) -> fn(&Travel) -> f64 {
-    match is_turn(movement) {
-        true => |movement| movement.turn,
-        false => |movement| movement.forward,
+/// Returns the component that is the gait's purpose: the forward distance, or the turn of a gait that turns on the
+/// spot.
+fn principal_component(displacement: &Travel) -> fn(&Travel) -> f64 {
+    match is_turn(displacement) {
+        true => |displacement| displacement.turn,
+        false => |displacement| displacement.forward,
     }
 }
 
 impl Row {
-    /// The largest change of a movement, percent.
+    /// The largest change of a displacement, percent.
     fn max_change(&self) -> f64 {
         let changes = self.changes.as_flattened().iter();
         changes.map(|change| change.abs()).fold(0.0, f64::max)
@@ -347,7 +352,7 @@ impl fmt::Display for Assumptions {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(
             f,
-            "Change of the movement per cycle, in percent, at the lowest and at the highest value of each assumption.\n"
+            "Change in displacement per cycle, in percent, at the lowest and the highest value of each assumption.\n"
         )?;
         let width = self
             .rows
@@ -378,13 +383,13 @@ impl fmt::Display for Assumptions {
             }
             writeln!(f)?;
         }
-        let line_of = |row: &Row| {
+        let format_line = |row: &Row| {
             let [min, max] = row.range;
             format!("  {}, {min} to {max} {}", row.description, row.unit)
                 .trim_end()
                 .to_string()
         };
-        let other_lines: Vec<String> = other_rows.into_iter().map(line_of).collect();
+        let other_lines: Vec<String> = other_rows.into_iter().map(format_line).collect();
         if !other_lines.is_empty() {
             writeln!(
                 f,

@@ -1,19 +1,19 @@
-//! Tables about a robot's gaits for people, and the reasons why a pose is refused.
+//! Tables about a robot's gaits for people, and the reasons for which a pose is not allowed.
 //!
-//! The author of a gait needs to know three things: how far the gait is from the limits, how it moves the robot, and
-//! how another floor, other feet or softer legs change this movement. A table answers each question.
+//! The author of a gait needs to know three things: the gait's distance from the limits, the displacement of the robot,
+//! and the effect of another floor, other feet or softer legs on this displacement. A table answers each question.
 
 mod assumptions;
+mod drive_effect;
 mod report;
-mod round;
+mod routine_row;
 mod sensitivity;
 mod servos;
-mod spring_cost;
 pub mod verdict;
 
 pub use assumptions::{Assumptions, Extreme, MovementRange, plausible_range};
-pub use report::{Report, Row, UNDECIDED_NOTE, WITHOUT_CONTACTS_NOTE};
-pub use round::Round;
+pub use drive_effect::DriveEffect;
+pub use report::{GaitRow, OPEN_INPUTS_NOTE, Report, UNDECIDED_NOTE};
+pub use routine_row::RoutineRow;
 pub use sensitivity::Sensitivity;
 pub use servos::{PACES_PERCENT, ServoTable};
-pub use spring_cost::SpringCost;

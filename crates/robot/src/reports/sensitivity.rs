@@ -1,5 +1,4 @@
-//! The sensitivity of the gaits to friction, mounting, feet and play, for a robot or a floor that differs from
-//! robot.toml.
+//! The gaits' sensitivity to friction, mounting, feet and play, for a robot or a floor that differs from robot.toml.
 
 use std::fmt;
 
@@ -23,8 +22,8 @@ struct Parameter {
 
 /// The varied parameters in the order of the report.
 const PARAMETERS: [Parameter; 5] = [
-    // Ratio of a pad's friction when it slides backward to its friction when it slides forward: below 1 for pads
-    // mounted in reverse, 1 for equal friction.
+    // Ratio of a pad's backward friction to its forward friction: below 1 for pads mounted in reverse, 1 for equal
+    // friction.
     Parameter {
         title: "friction",
         values: &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
@@ -33,7 +32,7 @@ const PARAMETERS: [Parameter; 5] = [
             ..*ground
         },
     },
-    // A leg mounted 41.4 deg outward is in line with its servo's horn.
+    // A leg that is mounted 41.4 deg outward is in line with its servo's horn.
     Parameter {
         title: "mount, deg",
         values: &[0.0, 20.0, 41.4, 49.0, -41.4],
@@ -71,7 +70,7 @@ const PARAMETERS: [Parameter; 5] = [
     },
 ];
 
-/// The ground with feet of this stiffness (N/mm), and the front left foot too long by `excess_length` (mm).
+/// Returns the ground with feet of this stiffness (N/mm), and the front left foot too long by `excess_length` (mm).
 fn ground_with_stance(ground: &Ground, stiffness: f64, excess_length: f64) -> Ground {
     Ground {
         stance: Stance {
@@ -93,8 +92,8 @@ pub struct Sensitivity {
 }
 
 impl Sensitivity {
-    /// Predicts the gaits of a robot for each value of each parameter.
-    pub fn of(robot: &Robot) -> Self {
+    /// Predicts a robot's gaits for each value of each parameter.
+    pub fn compute(robot: &Robot) -> Self {
         let ground = robot.ground();
         let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
         let rows = moving_gaits.map(|gait| {
@@ -114,7 +113,7 @@ impl Sensitivity {
 impl fmt::Display for Sensitivity {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(
-            "One cycle with ideal servos: mm ahead, and deg counter-clockwise where it turns.\n",
+            "One cycle with ideal servos: mm forward, and deg of counter-clockwise turn if not zero.\n",
         )?;
         let width = column_width(self.rows.iter().map(|(name, _)| name.as_str()));
         let mut is_every_prediction_decided = true;
@@ -123,12 +122,12 @@ impl fmt::Display for Sensitivity {
             match *title {
                 "too long, mm" => {
                     let stiffness = self.foot_stiffness;
-                    writeln!(
-                        f,
-                        "The front left foot too long, on feet of {stiffness} N/mm:"
-                    )?;
+                    writeln!(f, "Front left foot too long, feet of {stiffness} N/mm:")?;
                 }
-                "feet, N/mm" => writeln!(f, "Too long by {EXCESS_LENGTH_MM} mm, on other feet:")?,
+                "feet, N/mm" => writeln!(
+                    f,
+                    "Front left foot {EXCESS_LENGTH_MM} mm too long, other feet:"
+                )?,
                 _ => {}
             }
             write!(f, "{title:<width$}")?;

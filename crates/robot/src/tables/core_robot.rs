@@ -1,9 +1,9 @@
 //! The core's view of a robot on a host.
 //!
 //! The core reads a robot from a section of flash. On a host this section is in memory, and a simulation of the core
-//! borrows it for as long as it runs. So the section of a robot that is simulated ([`crate::Robot::firmware`]) is kept
-//! until the program ends. A section is at most 4 KiB, and equal sections are stored once. The section of a robot that
-//! is only checked ([`crate::Robot::core`]) is not kept, so a search may try thousands of robots.
+//! borrows the section for its whole duration. The section of a simulated robot ([`crate::Robot::firmware`]) is
+//! therefore kept until the program ends. A section is at most 4 KiB, and equal sections are stored once. The section
+//! of a robot that is only checked ([`crate::Robot::core`]) is not kept, so a search may try thousands of robots.
 
 use std::collections::HashSet;
 use std::sync::{Mutex, PoisonError};

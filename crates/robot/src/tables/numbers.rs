@@ -1,11 +1,11 @@
-//! The robot's numbers as integers, in the types of the core.
+//! The robot's numbers as integers, in the core's types.
 //!
-//! Sixteen bits can hold any robot's lengths if the step suits the robot's size, so each five-bar and each slider has
-//! its own scale. Limits are rounded to the safe side: the limits of margins up, strokes and travels inward, and the
-//! slew limit down. All other numbers are rounded to the nearest integer.
+//! Sixteen bits are enough for any robot's lengths if the step suits the robot's size, so each five-bar and each slider
+//! has its own scale. Limits are rounded to the safe side: margin limits up, strokes and travels inward, and the slew
+//! limit down. All other numbers are rounded to the nearest integer.
 
 use lizard_avr::Flash;
-use lizard_core::numbers::calibration::{Calibration, NeededTravel};
+use lizard_core::numbers::calibration::{Calibration, SweepRange};
 use lizard_core::numbers::couplers::Couplers;
 use lizard_core::numbers::gaits::SAMPLES_PER_WAVE;
 use lizard_core::numbers::limits::Limits;
@@ -15,9 +15,9 @@ use lizard_core::numbers::slider::Slider;
 use lizard_core::numbers::units::{Angle, PulseWidth, Scale, Sine, Sweep};
 use lizard_kinematics as kinematics;
 
+use crate::config::servo::Servo;
+use crate::config::{RobotConfig, scale};
 use crate::gaits::Routine;
-use crate::measures::servo::Servo;
-use crate::measures::{Measures, scale};
 use crate::tables::table::Tables;
 use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER_DEGREE};
 
@@ -25,38 +25,38 @@ use crate::units::{CYCLES_PER_US, FRAMES_PER_SECOND, ONE_Q14, ONE_Q15, STEPS_PER
 const ROUNDING_ALLOWANCE: f64 = 1e-6;
 
 /// Computes the content of a robot's section, without the maps of certified cells.
-pub(crate) fn section_content(
+pub(crate) fn build_content(
     name: &str,
-    measures: &Measures,
+    config: &RobotConfig,
     tables: &Tables,
     routines: &[Routine],
 ) -> Content {
-    let Measures {
+    let RobotConfig {
         lizard,
         servos,
         limits,
         speed_limits,
         supplies,
         ..
-    } = measures;
+    } = config;
     let pins = servos.map(|servo| servo.pin);
     let neutral =
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
-    let calibrations = servos.map(|servo| calibration_of(&servo));
-    let needed_travels = needed_travels_of(tables, &calibrations);
+    let calibrations = servos.map(|servo| convert_calibration(&servo));
+    let needed_travels = find_needed_travels(tables, &calibrations);
     let (mut gaits, mut names) = (tables.gaits.clone(), tables.names.clone());
     let mut steps = Vec::new();
     for routine in routines {
-        gaits.push(routine.record(steps.len(), names.len()));
+        gaits.push(routine.to_record(steps.len(), names.len()));
         steps.extend_from_slice(routine.step_records());
         names.extend(routine.command().bytes());
     }
     Content {
         name: name.to_string(),
-        servo_hash: servo_hash(&pins, &neutral, &calibrations),
+        servo_hash: compute_servo_hash(&pins, &neutral, &calibrations),
         pins,
         rail_pin: supplies.rail.map(|rail| rail.pin),
-        slow_pace: supplies.slow_pace,
+        slow_pace: supplies.slow_pace_percent,
         neutral_angles: neutral,
         calibration: calibrations,
         needed_travel: needed_travels,
@@ -68,7 +68,7 @@ pub(crate) fn section_content(
         slew: Slew::new(floor_with_allowance(
             speed_limits.slew * STEPS_PER_DEGREE / FRAMES_PER_SECOND,
         ) as u16),
-        supplies: supplies.core_supplies(),
+        supplies: supplies.to_core(),
         ends: kinematics::End::ALL.map(|end| convert_five_bar(&lizard.end(end))),
         sliders: kinematics::Side::ALL.map(|side| convert_side(&lizard.side(side), limits)),
         gaits,
@@ -81,8 +81,8 @@ pub(crate) fn section_content(
 
 /// Computes the hash of the servos' numbers. A saved calibration contains this hash, so that the firmware uses it only
 /// with the servos for which it was made. Gaits, bars and limits do not change the hash.
-fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
-    // Boards keep this hash, so the text must stay the same whatever the fields are called.
+fn compute_servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 4]) -> u32 {
+    // Boards store this hash, so the text must not change, even if the fields are renamed.
     let angles = neutral
         .map(|angle| format!("Angle({})", angle.0))
         .join(", ");
@@ -96,19 +96,19 @@ fn servo_hash(pins: &[u8; 4], neutral: &[Angle; 4], calibration: &[Calibration; 
 
 /// Converts the lengths of a five-bar to integers.
 fn convert_five_bar(five_bar: &kinematics::FiveBar) -> FiveBarLengths {
-    let scale = scale::five_bar_scale(five_bar);
-    let length_of = |mm: f64| to_steps(mm, scale) as i16;
-    // The crank tips are farthest apart if both cranks point outward. The core takes their squared distance in units of
+    let scale = scale::find_five_bar_scale(five_bar);
+    let to_length = |mm: f64| to_steps(mm, scale) as i16;
+    // The crank tips are farthest apart if both cranks point outward. The core expects the squared distance in units of
     // four squared steps, so half the distance is squared.
     let [base, left, right] = [
         five_bar.base,
         five_bar.left_crank_length,
         five_bar.right_crank_length,
     ]
-    .map(length_of);
+    .map(to_length);
     let half_tip_distance = (base as u32 + left as u32 + right as u32) / 2 + 2;
     let [left_coupler, right_coupler] =
-        [five_bar.left_coupler_length, five_bar.right_coupler_length].map(length_of);
+        [five_bar.left_coupler_length, five_bar.right_coupler_length].map(to_length);
     FiveBarLengths {
         scale,
         base,
@@ -123,7 +123,7 @@ fn convert_five_bar(five_bar: &kinematics::FiveBar) -> FiveBarLengths {
 }
 
 /// Converts a servo's pulse widths, gain and travel to integers; its travel is rounded inward.
-fn calibration_of(servo: &Servo) -> Calibration {
+fn convert_calibration(servo: &Servo) -> Calibration {
     let (min, max) = servo.travel();
     let gain = servo.us_per_degree * CYCLES_PER_US / STEPS_PER_DEGREE * ONE_Q14;
     Calibration {
@@ -134,11 +134,11 @@ fn calibration_of(servo: &Servo) -> Calibration {
     }
 }
 
-/// Computes the range of each servo's sweep over all gaits, neutral included. Between two samples a gait is
-/// interpolated linearly, so no phase exceeds the samples. The travel is rounded inward, so a gait that uses the whole
-/// travel may exceed it by a step of rounding; therefore the range is limited to the travel.
-fn needed_travels_of(tables: &Tables, calibrations: &[Calibration; 4]) -> [NeededTravel; 4] {
-    let mut needed_travels = [NeededTravel::default(); 4];
+/// Finds the range of each servo's sweep over all gaits, neutral included. Gaits are interpolated linearly between
+/// samples, so no phase exceeds the samples. The travel is rounded inward, so a gait that uses the whole travel may
+/// exceed the rounded travel by a step; the range is therefore limited to the travel.
+fn find_needed_travels(tables: &Tables, calibrations: &[Calibration; 4]) -> [SweepRange; 4] {
+    let mut needed_travels = [SweepRange::default(); 4];
     for gait in &tables.gaits {
         for (needed, channel) in needed_travels.iter_mut().zip(&gait.channels) {
             let wave = Flash::from(&tables.waves[usize::from(channel.wave)]);
@@ -160,29 +160,29 @@ fn needed_travels_of(tables: &Tables, calibrations: &[Calibration; 4]) -> [Neede
 
 /// Converts the slider of a side to integers; its stroke is rounded inward.
 fn convert_side(slider: &kinematics::Slider, limits: &kinematics::Limits) -> Slider {
-    let scale = scale::side_scale(slider, limits.stroke_max);
-    let length_of = |mm: f64| to_steps(mm, scale);
-    let per_mm = scale::steps_per_mm(scale);
+    let scale = scale::find_slider_scale(slider, limits.stroke_max);
+    let to_length = |mm: f64| to_steps(mm, scale);
+    let steps_per_mm = scale::steps_per_mm(scale);
     Slider {
         scale,
-        offset: length_of(slider.front_offset) as i16,
-        base: length_of(slider.base) as u16,
-        front_arm: length_of(slider.front_arm) as i16,
-        rear_arm: length_of(slider.rear_arm) as i16,
-        nominal_length: length_of(slider.nominal_length) as u16,
-        stroke_min: ceil_with_allowance((slider.nominal_length + limits.stroke_min) * per_mm)
+        offset: to_length(slider.front_offset) as i16,
+        base: to_length(slider.base) as u16,
+        front_arm: to_length(slider.front_arm) as i16,
+        rear_arm: to_length(slider.rear_arm) as i16,
+        nominal_length: to_length(slider.nominal_length) as u16,
+        stroke_min: ceil_with_allowance((slider.nominal_length + limits.stroke_min) * steps_per_mm)
             as u16,
-        stroke_max: floor_with_allowance((slider.nominal_length + limits.stroke_max) * per_mm)
+        stroke_max: floor_with_allowance((slider.nominal_length + limits.stroke_max) * steps_per_mm)
             as u16,
     }
 }
 
-/// Converts a length to steps, rounded to the nearest.
+/// Converts a length to steps, rounded to the nearest step.
 fn to_steps(mm: f64, scale: Scale) -> i32 {
     (mm * scale::steps_per_mm(scale)).round() as i32
 }
 
-/// Converts the limit of a margin to an integer, rounded up.
+/// Converts a margin's limit to an integer, rounded up.
 fn to_sine(margin: f64) -> Sine {
     Sine(ceil_with_allowance(margin * ONE_Q15) as i16)
 }
@@ -319,7 +319,7 @@ mod tests {
                     min_us: 1500.0 - half_width_us,
                     max_us: 1500.0 + half_width_us,
                 };
-                let calibration = calibration_of(&servo);
+                let calibration = convert_calibration(&servo);
                 let steps = 1024 * k as i16;
                 assert_eq!(
                     [calibration.travel_min.0, calibration.travel_max.0],
@@ -331,8 +331,8 @@ mod tests {
 
     #[test]
     fn a_loop_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
-        // The threshold is three quarters of the squared reach of the couplers, so base plus cranks must exceed 0.866
-        // of the sum of both couplers.
+        // The threshold is three quarters of the couplers' squared reach, so base plus cranks must exceed 0.866 of the
+        // couplers' sum.
         for (base_and_cranks, is_near) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn the_needed_travel_is_the_range_of_the_sweeps_of_all_gaits() {
+    fn the_needed_travel_spans_the_sweeps_of_all_gaits() {
         for (name, robot) in all_robots() {
             let firmware = robot.firmware();
             let mut sweep_ranges = [(0, 0); 4];
@@ -401,24 +401,24 @@ mod tests {
     }
 
     #[test]
-    fn the_slowest_robot_is_one_that_the_core_can_move() {
+    fn the_core_can_move_the_slowest_robot() {
         let slow_robot = robot_with("paper", &[("\nslew = 300.0", "\nslew = 10.0")])
             .expect("the robot is valid");
         assert!(slow_robot.firmware().slew().per_frame >= Slew::MIN_PER_FRAME);
     }
 
     /// Reads the numbers of a robot's section.
-    fn numbers_of(robot: &crate::Robot) -> Numbers {
+    fn read_numbers(robot: &crate::Robot) -> Numbers {
         let section = robot.section();
         Flash::from(section.as_slice()).read(size_of::<Header>())
     }
 
     #[test]
-    fn only_unequal_couplers_and_wide_cranks_have_further_curves() {
+    fn only_unequal_couplers_and_wide_cranks_have_additional_curves() {
         for (name, robot) in all_robots() {
-            // The offset of each curve in the section; 0 if the section lacks the curve. Head and tail share the
-            // curves that depend on the couplers alone, because their couplers are equal.
-            let [head, tail] = numbers_of(&robot).curves;
+            // The offset of each curve in the section; 0 if the curve is missing. Head and tail share the curves that
+            // depend only on the couplers, because their couplers are equal.
+            let [head, tail] = read_numbers(&robot).curves;
             let [rise, stretched, folded, skew] = head;
             assert_ne!(rise, 0, "{name}");
             for curve in [folded, skew] {
@@ -435,7 +435,7 @@ mod tests {
     }
 
     #[test]
-    fn a_larger_robot_has_a_coarser_step_where_its_lengths_need_one() {
+    fn a_larger_robot_has_a_coarser_step_only_where_needed() {
         let (paper, large) = (robot("paper"), robot("large"));
         for end in [End::Head, End::Tail] {
             assert_eq!(paper.firmware().five_bar(end).bars().scale().bits, 8);

@@ -1,5 +1,5 @@
-//! The gaits as the firmware stores them: waveforms of 64 samples that several servos share, each servo with its
-//! own offset and gain.
+//! The gaits in the firmware's form: waveforms of 64 samples that several servos share, each servo with its own offset
+//! and gain.
 //!
 //! The core defines the meaning of a table and the interpolation between its samples:
 //! [`lizard_core::numbers::gaits`].
@@ -8,9 +8,9 @@ use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES_PER_WAVE, Wave};
 use lizard_core::numbers::units::CYCLE;
 
-use crate::file::{Checked, UnlocatedError};
-use crate::gaits::{Gait, Stride, Waveform, canonicalize, command_of};
-use crate::measures::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
+use crate::config::servo::{FORWARD_TURN_SIGN, SERVO_NAMES};
+use crate::file::{ReadResult, UnlocatedError};
+use crate::gaits::{Gait, Stride, Waveform, canonicalize, to_command};
 use crate::units::{FRAMES_PER_SECOND, ONE_Q14, PHASES_PER_CYCLE, STEPS_PER_DEGREE};
 
 /// Largest difference between two waveforms that share one table, deg: about a third of an angle step.
@@ -33,7 +33,7 @@ impl Tables {
     /// # Errors
     /// Fails at the first gait that sweeps a servo by half a turn or more, or that needs more than [`MAX_WAVES`]
     /// waveforms.
-    pub fn new(gaits: &[Gait]) -> Checked<Self> {
+    pub fn new(gaits: &[Gait]) -> ReadResult<Self> {
         let mut bank = WaveformBank::default();
         let mut stored_strides = Vec::new();
         for gait in gaits {
@@ -47,20 +47,21 @@ impl Tables {
                         gait.name
                     );
                     let message = "its sweep is half a turn or more";
-                    return Err(UnlocatedError::clause(key, message).with_consequence(consequence));
+                    return Err(UnlocatedError::with_own_subject(key, message)
+                        .with_consequence(consequence));
                 };
                 stored_strides.push(stored_stride);
             }
             if bank.samples.len() > MAX_WAVES {
                 let message = format!(
-                    "needs one waveform more than the {MAX_WAVES} that the firmware can number with a byte; gaits that differ only in amplitude, start, gain, period or direction share one"
+                    "needs more than the {MAX_WAVES} waveforms that the firmware supports; gaits that differ only in amplitude, start, gain, period or direction share a waveform"
                 );
                 return Err(UnlocatedError::new(key, message));
             }
         }
-        let peak_amplitudes = bank.peak_amplitudes(&stored_strides);
+        let peak_amplitudes = bank.find_peak_amplitudes(&stored_strides);
         if bank.samples.is_empty() {
-            // A robot that only stands still reads a single table, of zeros.
+            // A robot that only stands still needs a single table, of zeros.
             bank.samples.push([0.0; SAMPLES_PER_WAVE]);
         }
         let waves = bank
@@ -70,7 +71,7 @@ impl Tables {
             .map(|(samples, peak)| {
                 samples.map(|value| (value * peak * STEPS_PER_DEGREE).round() as i16)
             });
-        let channel_of = |stride: &StoredStride| {
+        let build_channel = |stride: &StoredStride| {
             let gain = stride.amplitude / peak_amplitudes.get(stride.wave).copied().unwrap_or(1.0);
             Channel {
                 wave: stride.wave as u16,
@@ -85,10 +86,10 @@ impl Tables {
             table_gaits.push(TableGait {
                 name_start: names.len() as u16,
                 name_length: gait.name.len() as u16,
-                increment: increment_of(gait),
-                channels: std::array::from_fn(|servo| channel_of(&gait_strides[servo])),
+                increment: compute_increment(gait),
+                channels: std::array::from_fn(|servo| build_channel(&gait_strides[servo])),
             });
-            names.extend(command_of(&gait.name).bytes());
+            names.extend(to_command(&gait.name).bytes());
         }
         Ok(Self {
             waves: waves.collect(),
@@ -110,7 +111,7 @@ impl Tables {
 }
 
 /// Computes a gait's phase increment per frame, in 1/2^24 cycle; negative if the gait is reversed.
-fn increment_of(gait: &Gait) -> i32 {
+fn compute_increment(gait: &Gait) -> i32 {
     let increment = (f64::from(CYCLE) / (FRAMES_PER_SECOND * gait.period)).round() as i32;
     if gait.is_reversed {
         -increment
@@ -119,7 +120,7 @@ fn increment_of(gait: &Gait) -> i32 {
     }
 }
 
-/// A stride as the firmware stores it: a waveform of the bank times an amplitude, with a lead.
+/// A stride in the firmware's form: a waveform of the bank times an amplitude, with a lead.
 struct StoredStride {
     /// Index of the waveform in the bank.
     wave: usize,
@@ -142,7 +143,7 @@ impl WaveformBank {
     fn find_or_add(&mut self, stride: &Stride, forward_sign: f64) -> Option<StoredStride> {
         let (waveform, shift, sign) = canonicalize(&stride.waveform);
         let samples = sample_waveform(&waveform);
-        let peak = peak_of(&samples);
+        let peak = find_peak(&samples);
         let amplitude = stride.amplitude * peak * sign * forward_sign;
         if amplitude == 0.0 || waveform == Waveform::Still {
             return Some(StoredStride {
@@ -182,29 +183,29 @@ impl WaveformBank {
         }))
     }
 
-    /// Computes the largest amplitude with which each waveform is used, deg. A waveform is stored at this amplitude, so
+    /// Finds the largest amplitude with which each waveform is used, deg. A waveform is stored with this amplitude, so
     /// that no gain exceeds 1.
-    fn peak_amplitudes(&self, stored_strides: &[StoredStride]) -> Vec<f64> {
-        let peak_amplitude_of = |wave| {
+    fn find_peak_amplitudes(&self, stored_strides: &[StoredStride]) -> Vec<f64> {
+        let find_peak_amplitude = |wave| {
             stored_strides
                 .iter()
                 .filter(|stride| stride.wave == wave)
                 .fold(0.0f64, |max, stride| max.max(stride.amplitude.abs()))
         };
-        (0..self.samples.len()).map(peak_amplitude_of).collect()
+        (0..self.samples.len()).map(find_peak_amplitude).collect()
     }
 }
 
 /// Samples a waveform so that the straight lines between the samples have zero mean error.
 ///
-/// A line between two points of a curve lies on the concave side of the curve, so samples on the curve would make
-/// every stride too short (the paper's walk by 1 %). Each sample is moved outward by the mean distance between line
-/// and curve, a twelfth of the second difference, but not beyond the waveform's peak, because a servo's travel may
-/// end at the peak.
+/// A line between two points of a curve lies on the curve's concave side, so samples on the curve would make every
+/// stride too short (the paper's walk by 1 %). Each sample is therefore moved outward by the mean distance between line
+/// and curve, which is a twelfth of the second difference. No sample is moved beyond the waveform's peak, because a
+/// servo's travel may end at the peak.
 fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
     let curve: [f64; SAMPLES_PER_WAVE] =
         std::array::from_fn(|i| waveform.value_at(i as f64 / SAMPLES_PER_WAVE as f64));
-    let peak = peak_of(&curve);
+    let peak = find_peak(&curve);
     std::array::from_fn(|i| {
         let (previous, next) = (
             curve[(i + SAMPLES_PER_WAVE - 1) % SAMPLES_PER_WAVE],
@@ -215,8 +216,8 @@ fn sample_waveform(waveform: &Waveform) -> [f64; SAMPLES_PER_WAVE] {
     })
 }
 
-/// The largest magnitude among the samples.
-fn peak_of(samples: &[f64; SAMPLES_PER_WAVE]) -> f64 {
+/// Finds the largest magnitude among the samples.
+fn find_peak(samples: &[f64; SAMPLES_PER_WAVE]) -> f64 {
     let larger_magnitude = |peak: f64, value: &f64| peak.max(value.abs());
     samples.iter().fold(0.0, larger_magnitude)
 }
@@ -286,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn a_gaits_name_in_the_core_has_spaces_instead_of_hyphens() {
+    fn gait_names_in_the_core_have_spaces_instead_of_hyphens() {
         for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let firmware = robot.firmware();
@@ -302,20 +303,20 @@ mod tests {
     }
 
     #[test]
-    fn a_leg_that_starts_later_reads_its_table_with_the_same_delay() {
+    fn a_leg_that_starts_later_lags_by_the_difference_of_the_starts() {
         let robot = robot("paper");
         let walk = robot.gait("walk").expect("the robot has the gait walk");
         for phase in 0..=u16::MAX {
             let [a1, a2, a3, a4] = walk.table_sweeps(phase);
             // LH starts at 0, LF a quarter of a cycle later, RH half a cycle, RF three quarters.
-            let hind_left_at = |delay: u16| walk.table_sweeps(phase.wrapping_sub(delay))[3];
-            assert_eq!([a1, a4], [hind_left_at(0x4000), hind_left_at(0)]);
-            assert_eq!([-a3, -a2], [hind_left_at(0x8000), hind_left_at(0xc000)]);
+            let left_hind_at = |delay: u16| walk.table_sweeps(phase.wrapping_sub(delay))[3];
+            assert_eq!([a1, a4], [left_hind_at(0x4000), left_hind_at(0)]);
+            assert_eq!([-a3, -a2], [left_hind_at(0x8000), left_hind_at(0xc000)]);
         }
     }
 
     #[test]
-    fn the_tables_of_mirrored_gaits_differ_by_at_most_a_step() {
+    fn tables_of_mirrored_gaits_differ_by_at_most_a_step() {
         for (name, a, b) in [
             ("paper", "left", "right"),
             ("paper", "arc-left", "arc-right"),
@@ -393,7 +394,7 @@ mod tests {
     fn a_leg_may_not_sweep_half_a_turn() {
         let gait = "[gait.whirl]\nperiod = 9.0\nwaveform = \"wave\"\nduty = 0.5\namplitude = 90.0\nstart = { LF = 0, RF = 0, RH = 0, LH = 0 }\ngain = { RH = -2.5 }\n[gait.walk]";
         let message = robot_with("unequal", &[("[gait.walk]", gait)])
-            .expect_err("a sweep of half a turn is refused")
+            .expect_err("a sweep of half a turn is rejected")
             .to_string();
         assert!(
             message.starts_with("in \"whirl\" servo A3 would have to turn farther than it can: its sweep is half a turn or more ("),

@@ -1,9 +1,9 @@
-//! The drive of a leg: struts that yield in one direction, and play. The expected figures come from a separate
+//! The drive of a leg: struts that yield in one direction, and play. The expected values come from a separate
 //! implementation of the same model.
 
-use lizard_robot::{Body, Drive, DriveKind, Ground, Report, SpringCost, Walker};
+use lizard_robot::{Body, Drive, DriveEffect, DriveKind, Ground, Report, Walker};
 
-use crate::{REFERENCE_BODY, cycle_movement, gait, paper, paper_with};
+use crate::{REFERENCE_BODY, gait, paper, paper_with, simulate_movement};
 
 /// Returns the paper's ground with this drive and the reference body.
 fn ground_with(drive: Drive) -> Ground {
@@ -17,7 +17,7 @@ fn ground_with(drive: Drive) -> Ground {
 /// Returns the ground of a robot on slotted struts, with springs of this force (N) and the rate of the paper's coil.
 fn ground_with_strut(force: f64) -> Ground {
     ground_with(Drive {
-        kind: DriveKind::Strut(paper().strut_with(force, 0.395)),
+        kind: DriveKind::Strut(paper().strut_with_spring(force, 0.395)),
         play: 0.0,
     })
 }
@@ -31,32 +31,32 @@ fn ground_with_play(play: f64) -> Ground {
 }
 
 #[test]
-fn gaits_on_weak_struts_go_as_far_as_a_separate_solver_predicts() {
+fn gaits_with_weak_struts_match_a_separate_solver() {
     for (force, expected) in [(0.5, [34.8, 24.6, 14.3]), (1.0, [35.7, 26.7, 15.2])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
-            let movement = cycle_movement(gait(paper(), name), &ground_with_strut(force));
+            let movement = simulate_movement(gait(paper(), name), &ground_with_strut(force));
             assert!(
                 (movement - expected).abs() < 0.2,
-                "{force} N {name} {movement}"
+                "{name} at {force} N: {movement}"
             );
         }
     }
 }
 
 #[test]
-fn struts_with_two_newtons_or_more_move_the_robot_as_rigid_links_do() {
+fn struts_with_at_least_two_newtons_act_like_rigid_links() {
     for name in ["walk", "trot", "crawl", "left", "arc-left"] {
         let gait = gait(paper(), name);
-        let rigid_movement = cycle_movement(gait, paper().ground());
+        let rigid_movement = simulate_movement(gait, paper().ground());
         for force in [2.0, 3.0, 5.0] {
-            let movement = cycle_movement(gait, &ground_with_strut(force));
+            let movement = simulate_movement(gait, &ground_with_strut(force));
             assert!(
                 (movement / rigid_movement - 1.0).abs() < 0.005,
-                "{force} N {name} {movement}"
+                "{name} at {force} N: {movement}"
             );
         }
-        // The spring that docs/build.md recommends suffices for a robot of 400 g, and the strongest one for pads
-        // with 1.5 times the friction.
+        // The spring recommended in docs/build.md suffices for a robot of 400 g, and the strongest spring suffices for
+        // pads with 1.5 times the friction.
         for (force, friction) in [(3.0, 0.7), (5.0, 1.05)] {
             let heavy_ground = Ground {
                 friction_coefficient: friction,
@@ -66,24 +66,24 @@ fn struts_with_two_newtons_or_more_move_the_robot_as_rigid_links_do() {
                 },
                 ..ground_with_strut(force)
             };
-            let movement = cycle_movement(gait, &heavy_ground);
+            let movement = simulate_movement(gait, &heavy_ground);
             assert!(
                 (movement / rigid_movement - 1.0).abs() < 0.01,
-                "{force} N {name} {movement}"
+                "{name} at {force} N: {movement}"
             );
         }
     }
 }
 
 #[test]
-fn gaits_with_play_go_as_far_as_a_separate_solver_predicts() {
+fn gaits_with_play_match_a_separate_solver() {
     for (play_deg, expected) in [(1.0, [33.4, 24.4, 14.1]), (2.0, [31.5, 21.2, 12.8])] {
         for (name, expected) in ["walk", "trot", "left"].into_iter().zip(expected) {
             let cycle = gait(paper(), name).simulate_cycle(&ground_with_play(play_deg));
-            let movement = cycle_movement(gait(paper(), name), &ground_with_play(play_deg));
+            let movement = simulate_movement(gait(paper(), name), &ground_with_play(play_deg));
             assert!(
                 (movement - expected).abs() < 0.25,
-                "{play_deg} deg {name} {movement}"
+                "{name} with {play_deg} deg of play: {movement}"
             );
             assert!((cycle.max_lag - play_deg).abs() < 1e-3, "{cycle:?}");
         }
@@ -108,32 +108,32 @@ fn a_leg_lags_only_in_the_direction_that_lengthens_its_strut() {
 #[test]
 fn a_struts_lever_arm_is_the_derivative_of_its_length() {
     let robot = paper();
-    let strut = robot.strut_with(4.0, 0.0);
+    let strut = robot.strut_with_spring(4.0, 0.0);
     for (leg, plan) in robot.legs().iter().enumerate() {
         for sweep in [-20.0, 0.0, 13.0] {
             let forward_sign = lizard_robot::servo::FORWARD_TURN_SIGN[leg];
             let angle = robot.servos()[leg].neutral + forward_sign * sweep;
             let length_at = |lag: f64| {
                 let [servo_anchor, leg_anchor] = plan
-                    .place_at(angle, angle - forward_sign * lag)
+                    .points_at(angle, angle - forward_sign * lag)
                     .strut_anchors;
                 (leg_anchor - servo_anchor).length()
             };
             let slope = (length_at(0.001) - length_at(-0.001)) / 0.002f64.to_radians();
             assert!(
                 (strut.lever_arm(leg, sweep) - slope.abs()).abs() < 1e-4,
-                "{leg} {slope}"
+                "leg {leg}: the slope is {slope} mm"
             );
-            let (lag, torque) = strut.slot_end(leg, sweep);
+            let (lag, torque) = strut.lag_and_torque_at_slot_end(leg, sweep);
             let lag = lag.copysign(slope);
             assert!(
                 (length_at(lag) - length_at(0.0) - strut.slot_length).abs() < 1e-6,
-                "{lag}"
+                "the lag is {lag} deg"
             );
             let slope = (length_at(lag + 0.001) - length_at(lag - 0.001)) / 0.002f64.to_radians();
             assert!(
                 (torque - 4.0 * slope.abs()).abs() < 1e-3,
-                "{torque} {slope}"
+                "torque {torque} N mm, slope {slope} mm"
             );
         }
     }
@@ -152,7 +152,7 @@ fn the_drive_is_read_from_its_table() {
     let strut = *read_drive("kind = \"strut\", force = 4, rate = 0.4")
         .strut()
         .expect("the drive has a strut");
-    assert_eq!(strut, paper().strut_with(4.0, 0.4));
+    assert_eq!(strut, paper().strut_with_spring(4.0, 0.4));
     // Without the keys `force` and `rate`, both follow from the coil spring as it is mounted between its screws.
     let coil_drive = read_drive("kind = \"strut\"");
     assert_eq!(
@@ -176,7 +176,7 @@ fn a_stiffer_drive_reduces_the_lag_of_its_legs() {
 }
 
 #[test]
-fn a_walk_depends_on_the_spring_force_divided_by_mass_and_friction() {
+fn a_walk_depends_only_on_the_spring_force_divided_by_mass_and_friction() {
     let walk_cycle = |mass: f64, friction: f64, force: f64| {
         let ground = Ground {
             body: Body {
@@ -185,7 +185,7 @@ fn a_walk_depends_on_the_spring_force_divided_by_mass_and_friction() {
             },
             friction_coefficient: friction,
             drive: Drive {
-                kind: DriveKind::Strut(paper().strut_with(force, 0.4 * force)),
+                kind: DriveKind::Strut(paper().strut_with_spring(force, 0.4 * force)),
                 play: 0.0,
             },
             ..*paper().ground()
@@ -198,7 +198,7 @@ fn a_walk_depends_on_the_spring_force_divided_by_mass_and_friction() {
 }
 
 #[test]
-fn a_lag_is_constant_while_no_servo_turns_and_falls_with_the_friction() {
+fn a_lag_stays_constant_while_no_servo_turns_and_falls_with_friction() {
     let walk = gait(paper(), "walk");
     let mut walker = Walker::new(ground_with_strut(0.5), walk.sweeps(0.0));
     for i in 1..=90 {
@@ -219,39 +219,40 @@ fn a_lag_is_constant_while_no_servo_turns_and_falls_with_the_friction() {
     });
     walker.move_to(sweeps);
     for lag in walker.lags() {
-        assert!(lag.abs() < 0.5, "{lag}");
+        assert!(lag.abs() < 0.5, "the lag is {lag} deg");
     }
     walker.set_ground(*paper().ground());
     assert_eq!(walker.lags(), [0.0; 4]);
 }
 
 #[test]
-fn a_report_shows_the_share_of_the_movement_with_rigid_legs() {
-    let rigid_cost = SpringCost::of(gait(paper(), "walk"), paper().ground());
-    assert_eq!(rigid_cost, None);
-    let cost_of =
-        |name| SpringCost::of(gait(paper(), name), &ground_with_strut(0.5)).expect("the legs lag");
-    let share_of = |name| cost_of(name).share_of_rigid.expect(name);
-    assert!((share_of("trot") - 24.6 / 26.7).abs() < 0.01);
-    assert!((share_of("left") - 14.3 / 15.3).abs() < 0.01);
-    let shares = ["stand", "look"].map(|name| cost_of(name).share_of_rigid);
-    assert_eq!(shares, [None, None]);
+fn a_report_shows_the_displacement_relative_to_rigid_legs() {
+    let rigid_effect = DriveEffect::compute(gait(paper(), "walk"), paper().ground());
+    assert_eq!(rigid_effect, None);
+    let compute_effect = |name| {
+        DriveEffect::compute(gait(paper(), name), &ground_with_strut(0.5)).expect("the legs lag")
+    };
+    let compute_fraction = |name| compute_effect(name).fraction_of_rigid.expect(name);
+    assert!((compute_fraction("trot") - 24.6 / 26.7).abs() < 0.01);
+    assert!((compute_fraction("left") - 14.3 / 15.3).abs() < 0.01);
+    let fractions = ["stand", "look"].map(|name| compute_effect(name).fraction_of_rigid);
+    assert_eq!(fractions, [None, None]);
 
     let drive = "mount = 0.0\ndrive = { kind = \"strut\", force = 0.5, rate = 0.395 }";
     let robot = paper_with("mount = 0.0", drive).expect("the robot is valid");
-    let report = Report::of(&robot).to_string();
+    let report = Report::compute(&robot).to_string();
     let trot = report.lines().find(|line| line.starts_with("trot"));
-    let cost = SpringCost::of(gait(&robot, "trot"), robot.ground()).expect("the legs lag");
-    let share_text = format!(
+    let effect = DriveEffect::compute(gait(&robot, "trot"), robot.ground()).expect("the legs lag");
+    let percent_text = format!(
         "{:.0}",
-        100.0 * cost.share_of_rigid.expect("trot moves the robot")
+        100.0 * effect.fraction_of_rigid.expect("trot moves the robot")
     );
     assert!(
         trot.expect("the report has the gait trot")
-            .ends_with(&share_text),
+            .ends_with(&percent_text),
         "{report}"
     );
-    assert!(report.contains("lag  of rigid"));
+    assert!(report.contains("lag % of rigid"));
 }
 
 #[test]
@@ -260,7 +261,7 @@ fn mass_and_friction_are_read_from_the_file() {
         |old: &str, new: &str| *paper_with(old, new).expect("the robot is valid").ground();
     let heavy_ground = read_ground("mass = 435.0 ", "mass = 310\ncentre = [5.0, -2.0] ");
     assert_eq!(
-        (heavy_ground.body.mass, heavy_ground.body.mass_centre),
+        (heavy_ground.body.mass, heavy_ground.body.centre_of_mass),
         (310.0, [5.0, -2.0])
     );
     assert!((heavy_ground.mean_pad_friction() - 0.7 * 0.31 * 9.80665 / 4.0).abs() < 1e-12);

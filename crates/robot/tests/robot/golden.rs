@@ -1,4 +1,4 @@
-//! Snapshots of the tables of the paper's robot, so that a change of a gait shows as a diff.
+//! Snapshots of the gait tables of the paper's robot, which show a changed gait as a diff.
 
 use std::fmt::Write;
 
@@ -7,12 +7,12 @@ use lizard_robot::CheckedGait;
 use crate::paper;
 
 /// The folder of the snapshots.
-const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
+const SNAPSHOT_DIR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/golden");
 /// Number of phases in a snapshot.
 const ROW_COUNT: u32 = 64;
 
-/// Makes a CSV table of a gait: the phase in cycles, and the four servo angles that the firmware reads, deg.
-fn snapshot_csv(gait: &CheckedGait) -> String {
+/// Formats a gait as a CSV table: the phase in cycles, and the four servo angles in the firmware's tables, deg.
+fn format_csv(gait: &CheckedGait) -> String {
     let mut text = "phase,A1,A2,A3,A4\n".to_string();
     for row in 0..ROW_COUNT {
         let [a1, a2, a3, a4] = gait.table_angles((row * (65536 / ROW_COUNT)) as u16);
@@ -24,12 +24,12 @@ fn snapshot_csv(gait: &CheckedGait) -> String {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_equals_its_snapshot() {
-    let is_blessing = std::env::var_os("BLESS_GAITS").is_some();
+fn every_gait_matches_its_snapshot() {
+    let must_update = std::env::var_os("BLESS_GAITS").is_some();
     for gait in paper().gaits() {
-        let path = format!("{FOLDER}/{}.csv", gait.name());
-        let current = snapshot_csv(gait);
-        if is_blessing {
+        let path = format!("{SNAPSHOT_DIR}/{}.csv", gait.name());
+        let current = format_csv(gait);
+        if must_update {
             std::fs::write(&path, &current).expect(&path);
         }
         let stored = std::fs::read_to_string(&path).unwrap_or_default();
@@ -52,17 +52,17 @@ fn every_gait_of_the_papers_robot_equals_its_snapshot() {
 }
 
 #[test]
-fn no_snapshot_outlives_its_gait() {
+fn every_snapshot_belongs_to_a_gait() {
     let robot = paper();
-    for entry in std::fs::read_dir(FOLDER).expect(FOLDER) {
-        let name = entry.expect(FOLDER).file_name();
+    for entry in std::fs::read_dir(SNAPSHOT_DIR).expect(SNAPSHOT_DIR) {
+        let name = entry.expect(SNAPSHOT_DIR).file_name();
         let name = name.to_string_lossy();
         let gait_name = name
             .strip_suffix(".csv")
-            .unwrap_or_else(|| panic!("{FOLDER}/{name} is not a snapshot"));
+            .unwrap_or_else(|| panic!("{SNAPSHOT_DIR}/{name} is not a snapshot"));
         assert!(
             robot.gait(gait_name).is_some(),
-            "{FOLDER}/{name} belongs to no gait"
+            "{SNAPSHOT_DIR}/{name} belongs to no gait"
         );
     }
 }

@@ -1,15 +1,15 @@
-//! Input pins of robot.toml, and routine steps that end on an input.
+//! The input pins in robot.toml, and routine steps that end on an input.
 
 use lizard_core::numbers::gaits::{Input, Step};
-use lizard_robot::{Report, Round, WITHOUT_CONTACTS_NOTE};
+use lizard_robot::{OPEN_INPUTS_NOTE, Report, RoutineRow};
 
 use super::{paper, paper_text, paper_with_tables};
 
 /// Both inputs, each with a free pin.
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
-/// Returns the error message for these tables, with its line number counted from their first line.
-fn refusal_of(tables: &str) -> String {
+/// Returns the error message for these tables, whose line number is counted from the tables' first line.
+fn read_error(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let lines_before = paper_text().trim_end().lines().count() + 1;
     let line = error.line.expect("the error has a line");
@@ -18,20 +18,20 @@ fn refusal_of(tables: &str) -> String {
     error.to_string().replacen(&location, &line_in_tables, 1)
 }
 
-/// Returns kind, gait and count of each record of a routine whose only step is this one.
-fn records_of(step: &str) -> Vec<(u8, u8, u16)> {
+/// Reads kind, gait and count of each record of a routine with only this step.
+fn read_records(step: &str) -> Vec<(u8, u8, u16)> {
     let robot =
         paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {
         panic!("the robot has one routine");
     };
     assert_eq!(routine.step_count(), 1);
-    let fields_of = |step: &Step| (step.kind, step.gait, step.count);
-    routine.step_records().iter().map(fields_of).collect()
+    let to_fields = |step: &Step| (step.kind, step.gait, step.count);
+    routine.step_records().iter().map(to_fields).collect()
 }
 
 #[test]
-fn a_step_with_an_input_is_two_records_with_the_input_first() {
+fn a_step_with_an_input_has_two_records_with_the_input_first() {
     let (button, nose) = (Input::button(15), Input::nose(16));
     let until_record = |input: Input| (Step::UNTIL, input.byte(), 0);
     let wait_record = (Step::WAIT, 0, Step::ENDLESS);
@@ -71,14 +71,14 @@ fn a_step_with_an_input_is_two_records_with_the_input_first() {
         ),
         ("rest", vec![(Step::REST, 0, 1)]),
     ] {
-        assert_eq!(records_of(step), expected, "{step}");
+        assert_eq!(read_records(step), expected, "{step}");
     }
     assert_eq!((button.pin(), nose.pin()), (15, 16));
     assert!(nose.is_nose() && !button.is_nose());
 }
 
 #[test]
-fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
+fn unused_inputs_do_not_change_the_section() {
     let robot = paper_with_tables(INPUTS).expect("the inputs are valid");
     assert_eq!(robot.section(), paper().section());
     let named_pins: Vec<_> = robot.inputs().named_pins().collect();
@@ -87,14 +87,14 @@ fn inputs_that_no_step_uses_change_no_byte_of_the_section() {
 }
 
 #[test]
-fn every_free_pin_can_be_an_input_and_a_used_pin_is_refused_with_its_owner() {
+fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
     let rail = "[supply.rail]\npin = \"A3\"\nratio = 2.0\n";
     let unusable =
         "; it must be one of D2 to D12 or A0 to A5 (D0 and D1 are the serial line, D13 is the LED)";
     for (pin, message) in [
-        ("D9", ", which servo.A1 already has"),
-        ("D3", ", which servo.A4 already has"),
-        ("A3", ", which supply.rail already has"),
+        ("D9", ", which servo.A1 already uses"),
+        ("D3", ", which servo.A4 already uses"),
+        ("A3", ", which supply.rail already uses"),
         ("D0", unusable),
         ("D1", unusable),
         ("D13", unusable),
@@ -103,7 +103,7 @@ fn every_free_pin_can_be_an_input_and_a_used_pin_is_refused_with_its_owner() {
         ("a1", unusable),
     ] {
         for name in ["button", "nose"] {
-            let actual = refusal_of(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            let actual = read_error(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
@@ -115,19 +115,19 @@ fn every_free_pin_can_be_an_input_and_a_used_pin_is_refused_with_its_owner() {
             paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
-    let message = refusal_of("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    let message = read_error("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
     assert_eq!(
         message,
-        "4: input.nose.pin is \"A1\", which input.button already has"
+        "4: input.nose.pin is \"A1\", which input.button already uses"
     );
 }
 
 #[test]
-fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
+fn an_error_in_an_input_is_reported_with_its_line_and_step() {
     for (tables, message) in [
         (
             "[input.knob]\npin = \"A1\"",
-            "1: input.knob is not a known key; allowed are button, nose",
+            "1: input.knob is not a known key; allowed: button, nose",
         ),
         (
             "[input.nose]\npim = \"A1\"",
@@ -138,18 +138,21 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
             "1: input.nose.pin is missing; it must be a string",
         ),
     ] {
-        assert_eq!(refusal_of(tables), message);
+        assert_eq!(read_error(tables), message);
     }
     for (step, message) in [
-        ("wait", "must say for what, as \"wait button\""),
-        ("walk until", "must say until what, as \"walk until nose\""),
+        ("wait", "must name an input, for example \"wait button\""),
+        (
+            "walk until",
+            "must name an input after until, for example \"walk until nose\"",
+        ),
         (
             "wait buton",
             "names the input \"buton\", which does not exist; did you mean \"button\"?",
         ),
         (
             "walk until wall",
-            "names the input \"wall\", which does not exist; allowed are button, nose",
+            "names the input \"wall\", which does not exist; allowed: button, nose",
         ),
         (
             "wolk until nose",
@@ -157,7 +160,7 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
         ),
         (
             "walk 0 until nose",
-            "must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"",
+            "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"",
         ),
         (
             "one until nose",
@@ -165,22 +168,21 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
         ),
         (
             "walk 0 s until nose",
-            "has a time that is not within 0.02 to 999 s",
+            "has a time that is not between 0.02 and 999 s",
         ),
         (
             "wait button until nose",
-            "names the gait \"wait-button\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
+            "names the gait \"wait-button\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        let actual = refusal_of(&format!(
+        let actual = read_error(&format!(
             "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
         ));
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
         assert_eq!(actual, expected);
     }
-    let actual = refusal_of("[routine.one]\nsteps = [\"wait nose\"]");
-    let message =
-        "names the input \"nose\", which has no pin; [input.nose] must have one, as pin = \"A1\"";
+    let actual = read_error("[routine.one]\nsteps = [\"wait nose\"]");
+    let message = "names the input \"nose\", which has no pin; set one in [input.nose], for example pin = \"A1\"";
     assert_eq!(
         actual,
         format!("2: routine.one.steps: step 1, \"wait nose\", {message}")
@@ -188,36 +190,36 @@ fn a_mistake_in_an_input_or_its_step_is_reported_with_its_line_and_its_step() {
 }
 
 #[test]
-fn a_round_takes_a_frame_for_a_wait_and_a_cycle_for_a_gait_without_an_end() {
-    let round_of = |steps: &str| {
+fn a_round_counts_a_wait_as_a_frame_and_an_endless_gait_as_a_cycle() {
+    let simulate_round = |steps: &str| {
         let robot = paper_with_tables(&format!(
             "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
         ));
         let robot = robot.expect(steps);
-        Round::of(&robot, &robot.routines()[0])
+        RoutineRow::simulate(&robot, &robot.routines()[0])
     };
-    let report_of =
-        |tables: &str| Report::of(&paper_with_tables(tables).expect(tables)).to_string();
+    let format_report =
+        |tables: &str| Report::compute(&paper_with_tables(tables).expect(tables)).to_string();
     let tables = format!("{INPUTS}[routine.one]\nsteps = [\"wait button\"]");
-    assert!(report_of(&tables).contains(WITHOUT_CONTACTS_NOTE));
-    assert!(!report_of(INPUTS).contains(WITHOUT_CONTACTS_NOTE));
-    let round_with_inputs = round_of(
+    assert!(format_report(&tables).contains(OPEN_INPUTS_NOTE));
+    assert!(!format_report(INPUTS).contains(OPEN_INPUTS_NOTE));
+    let round_with_inputs = simulate_round(
         "\"wait button\", \"walk until nose\", \"left 3 until nose\", \"rest until button\"",
     );
-    let plain_round = round_of("\"walk 1\", \"left 3\", \"rest\"");
+    let plain_round = simulate_round("\"walk 1\", \"left 3\", \"rest\"");
     assert!(round_with_inputs.has_inputs && !plain_round.has_inputs);
     assert_eq!(
         (round_with_inputs.step_count, plain_round.step_count),
         (4, 3)
     );
     let extra_seconds = round_with_inputs.seconds - plain_round.seconds;
-    assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds}");
-    let turn_of = |round: &Round| round.movement.turn.expect("the turn is decided");
-    assert!((turn_of(&round_with_inputs) - turn_of(&plain_round)).abs() < 0.1);
+    assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds} s");
+    let get_turn = |round: &RoutineRow| round.movement.turn.expect("the turn is decided");
+    assert!((get_turn(&round_with_inputs) - get_turn(&plain_round)).abs() < 0.1);
 }
 
 #[test]
-fn the_patrol_of_the_docs_waits_once_and_then_repeats_from_its_second_step() {
+fn the_patrol_in_the_docs_repeats_from_its_second_step() {
     let docs = include_str!("../../../../docs/gaits.md");
     let blocks = docs.split("```toml\n").skip(1);
     let mut blocks = blocks.filter_map(|block| block.split("```").next());

@@ -1,5 +1,5 @@
-//! Integration tests of robot.toml and the gaits through the crate's public functions. Tests that name no robot use
-//! robots/paper.toml.
+//! Integration tests of robot.toml and the gaits through the crate's public functions. Tests use robots/paper.toml
+//! unless they name another robot.
 
 use std::sync::LazyLock;
 
@@ -9,24 +9,24 @@ mod docs;
 mod drives;
 mod golden;
 mod inputs;
+mod mistakes;
 mod predictions;
-mod refusals;
 mod robots;
 mod routines;
 mod standing;
 
 /// The path of the paper's robot.
-const PAPER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
+const PAPER_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
 
 /// Reads the text of robots/paper.toml.
 fn paper_text() -> String {
-    std::fs::read_to_string(PAPER).expect(PAPER)
+    std::fs::read_to_string(PAPER_PATH).expect(PAPER_PATH)
 }
 
 /// The paper's robot, read once.
 fn paper() -> &'static Robot {
     static ROBOT: LazyLock<Robot> =
-        LazyLock::new(|| Robot::load(PAPER).unwrap_or_else(|error| panic!("{error}")));
+        LazyLock::new(|| Robot::load(PAPER_PATH).unwrap_or_else(|error| panic!("{error}")));
     &ROBOT
 }
 
@@ -35,14 +35,14 @@ fn gait<'a>(robot: &'a Robot, name: &str) -> &'a CheckedGait {
     robot.gait(name).expect(name)
 }
 
-/// The body for which a separate implementation of the contact model computed the expected figures.
+/// The body for which a separate implementation of the contact model computed the expected values.
 const REFERENCE_BODY: Body = Body {
     mass: 307.0,
     ..Body::DEFAULT
 };
 
-/// Returns the movement of one cycle: forward in mm, or in deg for a gait that turns on the spot.
-fn cycle_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
+/// Simulates the displacement over one cycle: mm forward, or deg of turn for a gait that turns on the spot.
+fn simulate_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
     let travel = gait.simulate_cycle(ground).travel;
     match gait.name() {
         "left" | "right" => travel.turn,

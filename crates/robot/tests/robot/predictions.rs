@@ -1,4 +1,4 @@
-//! Predicted movements of the paper's gaits: they match the figures by which the gaits were chosen, and have the
+//! Predicted displacements of the paper's gaits, which match the values by which the gaits were chosen, and have the
 //! symmetries of the contact model.
 
 use lizard_robot::{Report, Robot, Travel};
@@ -6,8 +6,8 @@ use proptest::prelude::*;
 
 use crate::{gait, paper, paper_with};
 
-/// Movement of each gait in one cycle: forward mm, turn deg. The figures come from a separate implementation of the
-/// same model, by which the gaits were chosen.
+/// Displacement of each gait over one cycle: forward mm, turn deg. The values come from a separate implementation of
+/// the same model, by which the gaits were chosen.
 const EXPECTED_MOVEMENTS: [(&str, f64, f64); 9] = [
     ("stand", 0.0, 0.0),
     ("walk", 34.16, 0.0),
@@ -20,7 +20,7 @@ const EXPECTED_MOVEMENTS: [(&str, f64, f64); 9] = [
     ("arc-right", 17.71, -5.27),
 ];
 
-/// Returns the predicted movement of one cycle of a gait. Panics if a component of the movement is undecided.
+/// Predicts the displacement over one cycle of a gait. Panics if a component is undecided.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let movement = robot.predict(gait(robot, name));
     let require_decided = |component: Option<f64>| {
@@ -33,7 +33,7 @@ fn predict(robot: &Robot, name: &str) -> Travel {
     }
 }
 
-/// Asserts that a travel equals the expected one within 1 % or 0.3 mm, and 0.2 deg.
+/// Asserts that a displacement equals the expected displacement within 1 % or 0.3 mm, and 0.2 deg.
 fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
     assert!(
         (travel.forward - forward).abs() <= 0.3f64.max(forward.abs() * 0.01),
@@ -43,7 +43,7 @@ fn assert_near(name: &str, travel: Travel, forward: f64, turn: f64) {
 }
 
 #[test]
-fn every_gait_of_the_papers_robot_moves_as_a_separate_solver_predicts() {
+fn every_gait_of_the_papers_robot_matches_a_separate_solver() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
         assert_near(name, predict(robot, name), forward, turn);
@@ -51,7 +51,7 @@ fn every_gait_of_the_papers_robot_moves_as_a_separate_solver_predicts() {
 }
 
 #[test]
-fn the_tables_at_fifty_frames_a_second_move_the_robot_as_far() {
+fn the_tables_at_fifty_frames_per_second_move_the_robot_as_far() {
     let robot = paper();
     for (name, forward, turn) in EXPECTED_MOVEMENTS {
         let gait = gait(robot, name);
@@ -61,10 +61,10 @@ fn the_tables_at_fifty_frames_a_second_move_the_robot_as_far() {
 }
 
 #[test]
-fn a_gesture_of_the_head_sets_two_feet_against_two_and_is_undecided() {
+fn a_head_gesture_is_undecided() {
     let robot = paper();
     assert_eq!(robot.predict(gait(robot, "look")).forward, None);
-    let report = Report::of(robot).to_string();
+    let report = Report::compute(robot).to_string();
     let look = report.lines().find(|line| line.starts_with("look"));
     let cells: Vec<&str> = look
         .expect("the report has the gait look")
@@ -73,7 +73,7 @@ fn a_gesture_of_the_head_sets_two_feet_against_two_and_is_undecided() {
     // The distance with ideal servos, and with the robot's own servos.
     let [ideal_cell, real_cell] = [6, 2].map(|from_end| cells[cells.len() - from_end]);
     assert_eq!((ideal_cell, real_cell), ("-", "-"), "{cells:?}");
-    assert!(report.contains("\n- undecided: two feet against two"));
+    assert!(report.contains("\n- undecided: two feet pull against the other two"));
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn a_sinusoidal_trot_does_not_move_the_robot() {
 }
 
 #[test]
-fn twice_as_many_samples_change_no_prediction_by_0_01_mm_or_deg() {
+fn doubling_the_samples_changes_predictions_by_less_than_0_01() {
     let robot = paper();
     for gait in robot.gaits() {
         let sweeps_at = |i| gait.sweeps(gait.phase_at(gait.period() * f64::from(i) / 1000.0));
@@ -133,14 +133,14 @@ fn twice_as_many_samples_change_no_prediction_by_0_01_mm_or_deg() {
             .hypot(coarse_travel.left - fine_travel.left);
         assert!(
             error < 0.01 && (coarse_travel.turn - fine_travel.turn).abs() < 0.01,
-            "{} {error}",
+            "{}: the error is {error} mm",
             gait.name()
         );
     }
 }
 
-/// Returns the predicted distance of one cycle of a gait, mm.
-fn forward_of(robot: &Robot, name: &str) -> f64 {
+/// Predicts the forward distance over one cycle of a gait, mm.
+fn predict_forward(robot: &Robot, name: &str) -> f64 {
     let forward = robot.predict(gait(robot, name)).forward;
     forward.unwrap_or_else(|| panic!("{name} is undecided"))
 }
@@ -150,38 +150,38 @@ fn legs_mounted_outward_shorten_walk_far_more_than_crawl() {
     for mount in ["41.0", "49.0"] {
         let robot =
             paper_with("mount = 0.0", &format!("mount = {mount}")).expect("the robot is valid");
-        assert!((4.0..=6.5).contains(&forward_of(&robot, "walk")));
-        assert!((21.0..=25.0).contains(&forward_of(&robot, "crawl")));
+        assert!((4.0..=6.5).contains(&predict_forward(&robot, "walk")));
+        assert!((21.0..=25.0).contains(&predict_forward(&robot, "crawl")));
     }
 }
 
 #[test]
-fn pads_that_grip_backward_lengthen_walk_and_shorten_back_until_it_goes_forward() {
+fn pads_that_grip_backward_lengthen_walk_and_shorten_back() {
     let paper_robot = paper();
     let robot_with_ratio = |ratio: &str| {
         paper_with("_forward = 1.0", &format!("_forward = {ratio}")).expect("the robot is valid")
     };
     for ratio in ["1.1", "1.25", "1.5"] {
         let robot = robot_with_ratio(ratio);
-        assert!(forward_of(&robot, "walk") > forward_of(paper_robot, "walk"));
+        assert!(predict_forward(&robot, "walk") > predict_forward(paper_robot, "walk"));
         assert!(
-            forward_of(&robot, "back") > forward_of(paper_robot, "back"),
+            predict_forward(&robot, "back") > predict_forward(paper_robot, "back"),
             "the grip shortens the distance backward"
         );
         assert!(
-            forward_of(&robot, "back") < -30.0,
+            predict_forward(&robot, "back") < -30.0,
             "the robot still walks backward"
         );
     }
     assert!(
-        forward_of(&robot_with_ratio("2.0"), "back") > 0.0,
-        "with too much grip, back walks forward"
+        predict_forward(&robot_with_ratio("2.0"), "back") > 0.0,
+        "with too much grip, back moves forward"
     );
 }
 
 proptest! {
     #[test]
-    fn a_path_that_is_retraced_ends_where_it_started(
+    fn a_retraced_path_ends_at_its_start(
         path in prop::collection::vec(prop::array::uniform4(-20.0f64..20.0), 2..6),
     ) {
         let robot = paper();

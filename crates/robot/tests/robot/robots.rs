@@ -1,4 +1,4 @@
-//! Properties of every robot in robots/ and of the builder's own robot, robot.toml.
+//! Properties of every robot in robots/, and of the builder's own robot, robot.toml.
 
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -42,7 +42,7 @@ fn for_each_gait(test: impl Fn(&str, &Robot, &CheckedGait)) {
 }
 
 #[test]
-fn every_table_is_within_half_a_degree_at_every_phase() {
+fn table_errors_are_at_most_half_a_degree() {
     for_each_gait(|file, _, gait| {
         let error = gait.table_error();
         assert!(error.max <= 0.50, "{file} {}: {error:?}", gait.name());
@@ -70,7 +70,7 @@ fn every_gait_is_also_safe_between_its_samples() {
 }
 
 #[test]
-fn an_audit_has_the_least_margins_of_all_phases() {
+fn an_audit_contains_the_least_margins_of_all_phases() {
     for_each_gait(|file, robot, gait| {
         let audit = gait.audit();
         let mut least_margins = [f64::INFINITY; 3];
@@ -124,7 +124,7 @@ fn the_peak_speed_is_the_highest_in_either_direction() {
         let peak = gait.audit().peak_speed;
         assert!(
             (peak.speed - largest_speed).abs() <= 0.005 * largest_speed,
-            "{file} {}: {peak:?}, but {largest_speed}",
+            "{file} {}: {peak:?}, expected {largest_speed} deg/s",
             gait.name()
         );
         assert!(peak.speed <= robot.speed_limits().gait_slew);
@@ -132,7 +132,7 @@ fn the_peak_speed_is_the_highest_in_either_direction() {
 }
 
 #[test]
-fn stand_is_the_neutral_pose_to_the_last_step() {
+fn stand_is_exactly_the_neutral_pose() {
     for_each_robot(|file, robot| {
         let stand = &robot.gaits()[0];
         assert_eq!(
@@ -148,7 +148,7 @@ fn stand_is_the_neutral_pose_to_the_last_step() {
 }
 
 #[test]
-fn every_gait_has_its_index_and_name_and_stays_within_the_servos_pulses() {
+fn gaits_are_found_by_name_and_stay_within_the_servos_pulse_range() {
     for_each_robot(|file, robot| {
         for (index, gait) in robot.gaits().iter().enumerate() {
             assert_eq!(gait.index(), index);
@@ -175,7 +175,7 @@ fn sweeps_are_zero_at_neutral_and_positive_if_the_feet_are_forward() {
     for_each_robot(|file, robot| {
         let neutral_angles: [f64; 4] = robot.neutral_pose().into();
         assert_eq!(robot.sweeps(neutral_angles), [0.0; 4], "{file}");
-        // As the feet go forward, theta1 and theta5 decrease, theta4 and theta8 increase.
+        // If the feet move forward, theta1 and theta5 decrease, and theta4 and theta8 increase.
         let forward_change_deg = [-3.0, 3.0, 3.0, -3.0];
         let angles = std::array::from_fn(|i| neutral_angles[i] + forward_change_deg[i]);
         for sweep in robot.sweeps(angles) {

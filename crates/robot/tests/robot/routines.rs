@@ -1,18 +1,18 @@
-//! Routines of robot.toml: valid and invalid steps, the routines' records in the section, and the predicted movement
-//! of a round.
+//! Routines of robot.toml: valid and invalid steps, the routines' records in the section, and the predicted
+//! displacement of a round.
 
 use lizard_core::numbers::gaits::Step;
-use lizard_robot::Round;
+use lizard_robot::RoutineRow;
 
 use super::{gait, paper, paper_text, paper_with_tables};
 
 /// Returns the error message for a routine `patrol` with these lines.
-fn refusal_of(lines: &str) -> String {
+fn read_error(lines: &str) -> String {
     let result = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
     result.map(|_| ()).expect_err(lines).to_string()
 }
 
-/// A routine with steps of a given time, of a number of cycles, and without either.
+/// A routine with a step for a time, steps for numbers of cycles, and a step without either.
 const PATROL: &str = r#"
 [routine.patrol]
 steps = ["stand 1 s", "walk 4", "left 6", "look 1", "rest"]
@@ -20,29 +20,29 @@ repeat = 3
 "#;
 
 #[test]
-fn the_steps_and_the_repeats_of_a_routine_are_read() {
+fn steps_and_rounds_are_read() {
     let robot = paper_with_tables(PATROL).expect("the routine is valid");
     let routine = robot
         .routine("patrol")
         .expect("the file defines the routine");
-    let gait_index_of = |name: &str| robot.gait(name).expect(name).index() as u8;
+    let gait_index = |name: &str| robot.gait(name).expect(name).index() as u8;
     let steps = [
-        (Step::FRAMES, gait_index_of("stand"), 50),
-        (Step::CYCLES, gait_index_of("walk"), 4),
-        (Step::CYCLES, gait_index_of("left"), 6),
-        (Step::CYCLES, gait_index_of("look"), 1),
+        (Step::FRAMES, gait_index("stand"), 50),
+        (Step::CYCLES, gait_index("walk"), 4),
+        (Step::CYCLES, gait_index("left"), 6),
+        (Step::CYCLES, gait_index("look"), 1),
         (Step::REST, 0, 1),
     ]
     .map(|(kind, gait, count)| Step { kind, gait, count });
     assert_eq!(routine.step_records(), steps);
     assert_eq!(routine.rounds(), Some(3));
-    let rounds_of = |repeat: &str| {
+    let read_rounds = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
         paper_with_tables(&text).expect(repeat).routines()[0].rounds()
     };
-    assert_eq!(rounds_of(""), Some(1));
-    assert_eq!(rounds_of("repeat = 999"), Some(999));
-    assert_eq!(rounds_of("repeat = \"for ever\""), None);
+    assert_eq!(read_rounds(""), Some(1));
+    assert_eq!(read_rounds("repeat = 999"), Some(999));
+    assert_eq!(read_rounds("repeat = \"for ever\""), None);
 }
 
 #[test]
@@ -55,8 +55,8 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
     let steps = routine
         .expect("the file defines the routine")
         .step_records();
-    let fields_of = |step: &Step| (step.kind, step.gait, step.count);
-    let step_fields: Vec<_> = steps.iter().map(fields_of).collect();
+    let to_fields = |step: &Step| (step.kind, step.gait, step.count);
+    let step_fields: Vec<_> = steps.iter().map(to_fields).collect();
     let expected = [
         (Step::CYCLES, arc_index, 2),
         (Step::FRAMES, arc_index, 125),
@@ -68,7 +68,7 @@ steps = ["arc left 2", "arc-left 2.5 s", "  arc  left   999 ", "rest 0.02 s", "s
 }
 
 #[test]
-fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
+fn the_core_finds_the_routines_after_the_unchanged_gaits() {
     let robot = paper_with_tables(&format!("{PATROL}[routine.other]\nsteps = [\"right 2\"]\n"))
         .expect("both routines are valid");
     let core = robot.core();
@@ -97,7 +97,7 @@ fn the_core_finds_the_routines_of_the_file_after_the_unchanged_gaits() {
 }
 
 #[test]
-fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() {
+fn eight_routines_of_sixteen_steps_fit_next_to_the_papers_gaits_and_maps() {
     let steps = "\"walk 999\", \"arc-left 3\", \"look 1\", \"stand 2 s\", ".repeat(4);
     let tables: String = (0..8)
         .map(|n| format!("[routine.a-long-routine-{n}]\nsteps = [{steps}]\n"))
@@ -109,16 +109,16 @@ fn eight_routines_of_sixteen_steps_fit_beside_the_papers_gaits_and_their_maps() 
 }
 
 #[test]
-fn a_mistake_is_reported_with_its_line_and_its_step() {
-    let no_length = "must say how long: cycles, as \"walk 3\", a whole number of 1 to 999, or a time, as \"walk 2 s\"";
-    let no_time = "has a time that is not within 0.02 to 999 s";
+fn an_error_is_reported_with_its_line_and_step() {
+    let no_length = "needs a length: 1 to 999 cycles, for example \"walk 3\", or a time, for example \"walk 2 s\"";
+    let no_time = "has a time that is not between 0.02 and 999 s";
     for (step, problem) in [
         (
             "wolk 4",
             "names the gait \"wolk\", which does not exist; did you mean \"walk\"?",
         ),
         ("patrol 1", "is the routine itself, which would never end"),
-        ("round 1", "is a routine; a step is a gait"),
+        ("round 1", "is a routine; a step must be a gait"),
         ("walk", no_length),
         ("walk 0", no_length),
         ("walk 1000", no_length),
@@ -127,7 +127,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         ("rest nan s", no_time),
         (
             "",
-            "names the gait \"\", which does not exist; allowed are stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
+            "names the gait \"\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
         // The paper's file is followed by a blank line, the header of the routine's table, and then its first key.
@@ -137,13 +137,13 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         for (number, earlier_steps) in [(1, ""), (2, "\"walk 1\", ")] {
             let lines = format!("steps = [{earlier_steps}\"{step}\"]\n{round}");
             let expected = format!("{location} step {number}, \"{step}\", {problem}");
-            assert_eq!(refusal_of(&lines), expected);
+            assert_eq!(read_error(&lines), expected);
         }
     }
     for (lines, message) in [
         (
             "steps = []",
-            "routine.patrol.steps has 0 steps; it must have 1 to 99",
+            "routine.patrol.steps has 0 steps; it must have between 1 and 99",
         ),
         (
             "steps = \"walk 1\"",
@@ -155,7 +155,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         ),
         (
             "steps = [\"walk 1\"]\nrepeat = 0",
-            "routine.patrol.repeat is 0; it must be within 1 to 999 or \"for ever\"",
+            "routine.patrol.repeat is 0; it must be between 1 and 999 or \"for ever\"",
         ),
         (
             "steps = [\"walk 1\"]\nrepeat = 1.5",
@@ -167,7 +167,7 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         ),
         (
             "steps = [\"walk 1\"]\nrepeat_from = 2",
-            "routine.patrol.repeat_from is 2; it must be within 1 to 1 (a step)",
+            "routine.patrol.repeat_from is 2; it must be between 1 and 1 (a step)",
         ),
         (
             "steps = [\"walk 1\", \"left 1\"]\nrepeat_from = 1.5",
@@ -175,39 +175,39 @@ fn a_mistake_is_reported_with_its_line_and_its_step() {
         ),
         (
             "steps = [\"walk 1\"]\nspeed = 5",
-            "routine.patrol.speed is not a known key; allowed are steps, repeat, repeat_from",
+            "routine.patrol.speed is not a known key; allowed: steps, repeat, repeat_from",
         ),
     ] {
-        let actual = refusal_of(lines);
+        let actual = read_error(lines);
         assert!(actual.ends_with(message), "{actual}");
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many_steps = "\"walk 1\", ".repeat(100);
-    let actual = refusal_of(&format!("steps = [{many_steps}]"));
+    let actual = read_error(&format!("steps = [{many_steps}]"));
     assert!(
-        actual.ends_with("has 100 steps; it must have 1 to 99"),
+        actual.ends_with("has 100 steps; it must have between 1 and 99"),
         "{actual}"
     );
 }
 
 #[test]
-fn the_name_of_a_gait_or_an_invalid_name_is_refused() {
+fn names_of_gaits_and_invalid_names_are_rejected() {
     for (name, message) in [
         (
             "walk",
-            "routine.walk has the name of a gait; give it another one",
+            "routine.walk has the name of a gait; choose another name",
         ),
         (
             "stop",
-            "routine.stop is not a routine name: \"stop\" is a command of the console",
+            "routine.stop is not a routine name: \"stop\" is a console command",
         ),
         (
             "rest-now",
-            "routine.rest-now is not a routine name: \"rest\" is a command of the console",
+            "routine.rest-now is not a routine name: \"rest\" is a console command",
         ),
         (
             "Patrol",
-            "routine.Patrol is not a routine name: it must be lower-case letters, digits and dashes, a letter first",
+            "routine.Patrol is not a routine name: it must consist of lower-case letters, digits and dashes, and begin with a letter",
         ),
     ] {
         let actual = paper_with_tables(&format!("[routine.{name}]\nsteps = [\"walk 1\"]"));
@@ -217,7 +217,7 @@ fn the_name_of_a_gait_or_an_invalid_name_is_refused() {
 }
 
 #[test]
-fn a_round_takes_as_long_and_goes_as_far_as_its_gaits_and_the_changes_between_them() {
+fn a_round_includes_the_changes_between_its_gaits() {
     let robot = paper_with_tables(
         "[routine.ahead]\nsteps = [\"walk 10\"]\n[routine.about]\nsteps = [\"left 5\", \"stand 2 s\"]\nrepeat = \"for ever\"\n[routine.gaze]\nsteps = [\"look 1\"]",
     )
@@ -225,8 +225,8 @@ fn a_round_takes_as_long_and_goes_as_far_as_its_gaits_and_the_changes_between_th
     let rounds = robot
         .routines()
         .iter()
-        .map(|routine| Round::of(&robot, routine));
-    let [ahead_round, about_round, gaze_round]: [Round; 3] = rounds
+        .map(|routine| RoutineRow::simulate(&robot, routine));
+    let [ahead_round, about_round, gaze_round]: [RoutineRow; 3] = rounds
         .collect::<Vec<_>>()
         .try_into()
         .expect("there are three routines");
@@ -241,16 +241,19 @@ fn a_round_takes_as_long_and_goes_as_far_as_its_gaits_and_the_changes_between_th
         ahead_round.seconds
     );
     let forward = ahead_round.movement.forward;
-    let share = forward.expect("the movement is decided") / (10.0 * walk_forward);
-    assert!((0.95..1.05).contains(&share), "{share}");
+    let ratio = forward.expect("the movement is decided") / (10.0 * walk_forward);
+    assert!(
+        (0.95..1.05).contains(&ratio),
+        "the distance ratio is {ratio}"
+    );
     assert!(
         (7.0..8.0).contains(&about_round.seconds),
         "{}",
         about_round.seconds
     );
-    let share = about_round.movement.turn.expect("the movement is decided") / (5.0 * left_turn);
-    assert!((0.9..1.1).contains(&share), "{share}");
+    let ratio = about_round.movement.turn.expect("the movement is decided") / (5.0 * left_turn);
+    assert!((0.9..1.1).contains(&ratio), "the turn ratio is {ratio}");
     assert_eq!((about_round.round_count, about_round.step_count), (None, 2));
-    // Two feet pull against two: differences between the pads that cannot be measured decide whether the robot moves.
+    // Two feet pull against the other two, so differences between the pads that cannot be measured decide the result.
     assert_eq!(gaze_round.movement.forward, None);
 }

@@ -1,11 +1,11 @@
-//! The loads of the four feet, which statics alone does not determine, and the loss of distance if a foot is too long.
+//! The loads of the four feet, which statics alone does not determine, and the loss of distance with a foot too long.
 
 use lizard_robot::{Body, Ground, Stance, Walker};
 
-use crate::{REFERENCE_BODY, cycle_movement, gait, paper, paper_with};
+use crate::{REFERENCE_BODY, gait, paper, paper_with, simulate_movement};
 
-/// The gaits of the paper's robot that move it.
-const GAITS: [&str; 8] = [
+/// The gaits that move the paper's robot.
+const MOVING_GAITS: [&str; 8] = [
     "walk",
     "trot",
     "crawl",
@@ -16,7 +16,7 @@ const GAITS: [&str; 8] = [
     "arc-right",
 ];
 
-/// Returns the paper's ground with feet of this stiffness (N/mm), the front left foot too long by `twist` (mm).
+/// Returns the paper's ground with feet of this stiffness (N/mm), and the front left foot too long by `twist` (mm).
 fn ground_with(stiffness: f64, twist: f64) -> Ground {
     Ground {
         stance: Stance {
@@ -30,9 +30,9 @@ fn ground_with(stiffness: f64, twist: f64) -> Ground {
 }
 
 #[test]
-fn a_diagonal_with_four_tenths_more_load_costs_as_much_as_a_separate_solver_predicts() {
-    // The expected figures come from a separate implementation, in which the feet of one diagonal always carry
-    // four tenths more load, and the other two feet four tenths less.
+fn the_loss_with_an_overloaded_diagonal_matches_a_separate_solver() {
+    // The expected values come from a separate implementation, in which the feet of one diagonal always carry four
+    // tenths more load, and the other two feet carry four tenths less.
     for (name, expected) in [
         ("walk", 24.8),
         ("crawl", 17.4),
@@ -51,43 +51,50 @@ fn a_diagonal_with_four_tenths_more_load_costs_as_much_as_a_separate_solver_pred
             "left" => place.travel().turn,
             _ => place.travel().forward,
         };
-        assert!((movement - expected).abs() < 0.45, "{name} {movement}");
+        assert!((movement - expected).abs() < 0.45, "{name}: {movement}");
     }
 }
 
 #[test]
-fn on_soft_feet_a_foot_a_millimetre_too_long_costs_every_gait_less_than_three_percent() {
+fn with_soft_feet_a_foot_1_mm_too_long_costs_less_than_three_percent() {
     let Stance {
         stiffness, twist, ..
     } = paper().ground().stance;
     assert_eq!((stiffness, twist), (0.5, 0.0));
-    for name in GAITS {
+    for name in MOVING_GAITS {
         let gait = gait(paper(), name);
-        let level_movement = cycle_movement(gait, paper().ground());
+        let level_movement = simulate_movement(gait, paper().ground());
         for twist in [1.0, -1.0] {
-            let share = cycle_movement(gait, &ground_with(stiffness, twist)) / level_movement;
-            assert!((0.97..1.03).contains(&share), "{name} {twist} {share}");
+            let ratio = simulate_movement(gait, &ground_with(stiffness, twist)) / level_movement;
+            assert!(
+                (0.97..1.03).contains(&ratio),
+                "{name}, twist {twist} mm: the ratio is {ratio}"
+            );
         }
     }
 }
 
 #[test]
-fn on_stiff_feet_a_foot_0_6_mm_too_long_costs_three_quarters_of_the_movement() {
-    let share_of = |name: &str| {
+fn with_stiff_feet_a_foot_0_6_mm_too_long_costs_three_quarters() {
+    let compute_ratio = |name: &str| {
         let gait = gait(paper(), name);
-        cycle_movement(gait, &ground_with(3.3, 0.6)) / cycle_movement(gait, paper().ground())
+        simulate_movement(gait, &ground_with(3.3, 0.6)) / simulate_movement(gait, paper().ground())
     };
-    assert!(share_of("walk") < 0.25 && share_of("crawl") < 0.15 && share_of("left") < 0.25);
-    // Feet can be adjusted to a fifth of a millimetre; an error of this size does not matter.
+    assert!(
+        compute_ratio("walk") < 0.25
+            && compute_ratio("crawl") < 0.15
+            && compute_ratio("left") < 0.25
+    );
+    // Feet can be adjusted to a fifth of a millimetre; an error of this size is negligible.
     let gait = gait(paper(), "walk");
-    assert!(cycle_movement(gait, &ground_with(3.3, 0.2)) > 33.5);
+    assert!(simulate_movement(gait, &ground_with(3.3, 0.2)) > 33.5);
 }
 
 #[test]
-fn the_cost_depends_on_stiffness_times_excess_length_divided_by_weight() {
+fn the_loss_depends_only_on_stiffness_times_excess_length_divided_by_weight() {
     let gait = gait(paper(), "walk");
-    let movement = cycle_movement(gait, &ground_with(2.0, 0.6));
-    assert!((cycle_movement(gait, &ground_with(0.5, 2.4)) - movement).abs() < 1e-6);
+    let movement = simulate_movement(gait, &ground_with(2.0, 0.6));
+    assert!((simulate_movement(gait, &ground_with(0.5, 2.4)) - movement).abs() < 1e-6);
     let heavy_ground = Ground {
         body: Body {
             mass: 614.0,
@@ -95,11 +102,11 @@ fn the_cost_depends_on_stiffness_times_excess_length_divided_by_weight() {
         },
         ..ground_with(2.0, 1.2)
     };
-    assert!((cycle_movement(gait, &heavy_ground) - movement).abs() < 1e-6);
+    assert!((simulate_movement(gait, &heavy_ground) - movement).abs() < 1e-6);
     // If all feet are level and equally stiff, their stiffness does not matter.
     assert_eq!(
-        cycle_movement(gait, &ground_with(50.0, 0.0)),
-        cycle_movement(gait, paper().ground())
+        simulate_movement(gait, &ground_with(50.0, 0.0)),
+        simulate_movement(gait, paper().ground())
     );
 }
 

@@ -1,7 +1,7 @@
 //! `simulated-uno program.hex`: runs a program without a board.
 //!
-//! Prints the lines of the serial port as they arrive, each with its time, and then the pulses that an oscilloscope
-//! would have shown on each pin.
+//! Prints the lines from the serial port as they arrive, each with its time, and then the pulses that an oscilloscope
+//! would show on each pin.
 
 mod report;
 
@@ -12,34 +12,33 @@ use std::process::ExitCode;
 use clap::Parser;
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, LoadError, State, Uno};
 
-/// Run a program for the Arduino UNO on a simulated one: print its serial text and its
-/// pulses.
+/// Run a program on a simulated Arduino UNO, and print its serial text and its pulses.
 #[derive(Parser)]
 #[command(
     version,
-    after_help = "Ends with 1 if the program cannot be loaded or crashes."
+    after_help = "The exit status is 1 if the program cannot be loaded or crashes."
 )]
 struct Arguments {
     /// The program, as Intel HEX (.hex) or ELF (.elf).
     program: PathBuf,
-    /// Length of the run, in milliseconds of the chip's time.
+    /// Duration of the run, in milliseconds of the chip's time.
     #[arg(long, default_value_t = 1000, value_parser = clap::value_parser!(u64).range(1..=3_600_000))]
     ms: u64,
     /// Send a line after this many milliseconds: --say 500:walk. May be given repeatedly.
     #[arg(long, value_name = "MS:LINE", value_parser = parse_line)]
     say: Vec<ScheduledLine>,
-    /// The rate at which lines are sent, in baud; that of answers is the program's.
+    /// The baud rate at which lines are sent; the program determines the rate of its answers.
     #[arg(long, default_value_t = 115_200, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
     baud: u32,
-    /// Print every pulse and not only a summary of each pin.
+    /// Print every pulse instead of a summary for each pin.
     #[arg(long)]
     pulses: bool,
-    /// Use stock simavr, without the corrections by the data sheet.
+    /// Use stock simavr, without the corrections according to the data sheet.
     #[arg(long)]
     stock: bool,
 }
 
-/// A line to be sent to the serial port, and the time at which it is sent.
+/// A line for the serial port, and the time at which it is sent.
 #[derive(Clone)]
 struct ScheduledLine {
     ms: u64,
@@ -48,7 +47,7 @@ struct ScheduledLine {
 
 /// Parses a value of --say, such as `500:walk`.
 fn parse_line(argument: &str) -> Result<ScheduledLine, String> {
-    let message = "a line has its time in ms before it, as in 500:walk";
+    let message = "expected a time in ms and a line, such as 500:walk";
     let (ms, text) = argument.split_once(':').ok_or(message)?;
     let ms = ms.parse().map_err(|_| message)?;
     let text = text.to_owned();
@@ -91,12 +90,12 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
     lines.retain(|line| line.ms < arguments.ms);
     if lines.len() < arguments.say.len() {
         eprintln!(
-            "simulated-uno: a line later than --ms {} is not sent",
+            "simulated-uno: lines after --ms {} are not sent",
             arguments.ms
         );
     }
     let mut edges = Vec::new();
-    let mut text = report::SerialText::default();
+    let mut serial_text = report::SerialText::default();
     let mut lines = lines.into_iter().peekable();
     let end_cycle = arguments.ms * CYCLES_PER_MS;
     while *uno.state() == State::Alive && uno.cycle() < end_cycle {
@@ -112,9 +111,9 @@ fn run(arguments: &Arguments, image: Image, out: &mut impl Write) -> io::Result<
         }
         uno.run_until_cycle(end_cycle.min(uno.cycle() + CYCLES_PER_MS));
         edges.append(&mut uno.take_edges());
-        text.print(&uno.take_transmitted(), out)?;
+        serial_text.print(&uno.take_transmitted(), out)?;
     }
-    text.print_unfinished_line(out)?;
+    serial_text.print_unfinished_line(out)?;
     report::print_pulses(&edges, arguments.pulses, out)?;
     report::print_summary(&uno, flash_bytes, out)?;
     out.flush()?;

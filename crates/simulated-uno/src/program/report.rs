@@ -1,18 +1,18 @@
-//! Printed results of a run: serial text, pulses, final state and resources.
+//! Prints the results of a run: serial text, pulses, final state and resources.
 
 use std::io::{self, Write};
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Edge, Pin, SerialByte, State, Uno, pulses};
 
-/// The longest line that is printed without a break, bytes. Longer lines are printed in pieces.
+/// The longest line that is printed in one piece, bytes.
 const MAX_LINE_BYTES: usize = 200;
 
 /// The UNO's serial text, printed line by line.
 #[derive(Default)]
 pub struct SerialText {
-    /// The bytes of the line that is not complete yet.
+    /// The bytes of the partial line.
     unfinished_line: Vec<u8>,
-    /// The cycle at which the UNO had sent the last byte.
+    /// The cycle at which the UNO has sent the last byte.
     last_cycle: u64,
 }
 
@@ -64,12 +64,12 @@ pub fn escape(text: &str) -> String {
     escaped
 }
 
-/// Prints the pulses of all pins that have changed: one line for each pulse if `shows_all`, otherwise one for each pin.
+/// Prints the pulses of all pins that have changed: one line per pulse if `shows_all`, otherwise one line per pin.
 pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io::Result<()> {
-    let us_of = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
+    let to_us = |cycles: u64| cycles as f64 / CYCLES_PER_US as f64;
     writeln!(out)?;
     if edges.is_empty() {
-        return writeln!(out, "No pin from D2 to A5 has moved.");
+        return writeln!(out, "No pin from D2 to A5 has changed.");
     }
     match shows_all {
         true => writeln!(out, "pin      start ms      width us")?,
@@ -81,7 +81,7 @@ pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io
         let (Some(shortest_width), Some(longest_width)) = (widths.clone().min(), widths.max())
         else {
             if edges.iter().any(|edge| edge.pin == pin) {
-                writeln!(out, "{pin:<4} no pulse has begun and ended")?;
+                writeln!(out, "{pin:<4} no complete pulse")?;
             }
             continue;
         };
@@ -89,7 +89,7 @@ pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io
         if shows_all {
             for pulse in &pulses {
                 let start = pulse.start as f64 / CYCLES_PER_MS as f64;
-                writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", us_of(pulse.width))?;
+                writeln!(out, "{pin:<4} {start:>12.4} {:>13.4}", to_us(pulse.width))?;
             }
             continue;
         }
@@ -97,34 +97,36 @@ pub fn print_pulses(edges: &[Edge], shows_all: bool, out: &mut impl Write) -> io
             1 => "-".to_owned(),
             count => format!(
                 "{:.4}",
-                us_of(last_start - first_start) / (count - 1) as f64
+                to_us(last_start - first_start) / (count - 1) as f64
             ),
         };
         writeln!(
             out,
             "{pin:<4} {:>8} {:>12.4} {:>12.4} {period:>12}",
             pulses.len(),
-            us_of(shortest_width),
-            us_of(longest_width)
+            to_us(shortest_width),
+            to_us(longest_width)
         )?;
     }
     Ok(())
 }
 
-/// Prints the UNO's final state and the resources used: time, flash, SRAM, CPU time.
+/// Prints the UNO's final state and the used resources: time, flash, SRAM, CPU time.
 pub fn print_summary(uno: &Uno, flash_bytes: u32, out: &mut impl Write) -> io::Result<()> {
     let state = match uno.state() {
-        State::Alive => "It runs on.".to_owned(),
-        State::Halted => "It sleeps with interrupts off: nothing but a reset ends this.".to_owned(),
-        State::Crashed { pc, message } => format!("It has crashed at {pc:#06x}: {message}."),
+        State::Alive => "The program is still running.".to_owned(),
+        State::Halted => {
+            "The program sleeps with interrupts disabled: only a reset can wake it.".to_owned()
+        }
+        State::Crashed { pc, message } => format!("The program crashed at {pc:#06x}: {message}."),
         State::Off => "The power is off.".to_owned(),
     };
     let awake_percent = 100.0 * uno.awake_cycles() as f64 / uno.cycle().max(1) as f64;
-    // Intel HEX has no symbols, so the end of the static data, and thus the stack's use, is unknown.
+    // Intel HEX has no symbols, so the end of the static data and the size of the stack are unknown.
     let memory_text = match uno.image().symbols() {
         [] => String::new(),
         _ => format!(
-            " data {} bytes, stack {} bytes at most,",
+            " data {} bytes, stack at most {} bytes,",
             uno.image().static_ram(),
             uno.stack_used()
         ),

@@ -4,7 +4,7 @@ use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin, ResetCause, Uno};
 
 use super::{compile_with_headers, intervals, mark_cycles, mark_values, new_uno, reset_causes};
 
-/// The CPU cycles of an ADC clock with prescaler 128, 125 kHz.
+/// CPU cycles of an ADC clock at prescaler 128, which is 125 kHz.
 const CYCLES_PER_CLOCK: u64 = 128;
 
 /// Compiles a program that can use these macros: `start()` starts a conversion, `wait()` waits for its end, `show()`
@@ -43,8 +43,8 @@ fn conversion_results(uno: &Uno) -> Vec<u16> {
         .collect()
 }
 
-/// Returns the conversion results of statements that the main program runs once.
-fn results_of(body: &str, pin_mv: &[u16]) -> Vec<u16> {
+/// Runs these statements once in the main program, and returns their conversion results.
+fn run_for_results(body: &str, pin_mv: &[u16]) -> Vec<u16> {
     let mut uno = uno_with_statements(body, pin_mv);
     uno.run_ms(3);
     conversion_results(&uno)
@@ -56,7 +56,7 @@ const BANDGAP_PROGRAM: &str = "int main(void) {
     for (;;) convert(); }";
 
 #[test]
-fn the_result_for_the_bandgap_is_its_ratio_to_the_supply() {
+fn the_bandgap_result_is_the_ratio_of_the_bandgap_to_the_supply() {
     // "ADC = VIN * 1024 / VREF" (24.7), rounded down.
     for (supply_mv, bandgap_mv) in [
         (5000.0, 1100.0),
@@ -76,8 +76,8 @@ fn the_result_for_the_bandgap_is_its_ratio_to_the_supply() {
 }
 
 #[test]
-#[should_panic(expected = "a bandgap reference has 1000 to 1200 mV")]
-fn a_bandgap_outside_the_range_of_the_data_sheet_panics() {
+#[should_panic(expected = "the bandgap reference must be between 1000 and 1200 mV")]
+fn setting_a_bandgap_outside_the_data_sheet_range_panics() {
     uno_with_program(BANDGAP_PROGRAM).set_bandgap_mv(1201.0);
 }
 
@@ -88,7 +88,7 @@ fn setting_the_voltage_of_a_digital_pin_panics() {
 }
 
 #[test]
-fn conversions_have_the_results_of_the_data_sheet() {
+fn conversion_results_match_the_data_sheet() {
     for (message, body, pin_mv, expected) in [
         (
             "each analogue pin is measured on its own channel, and a voltage above the reference reads 1023",
@@ -117,12 +117,12 @@ fn conversions_have_the_results_of_the_data_sheet() {
             &[512],
         ),
     ] {
-        assert_eq!(results_of(body, pin_mv), expected, "{message}");
+        assert_eq!(run_for_results(body, pin_mv), expected, "{message}");
     }
 }
 
 #[test]
-fn registers_read_as_in_the_data_sheet() {
+fn register_values_match_the_data_sheet() {
     for (message, body, pin_mv, expected) in [
         (
             // "ADSC will read as one as long as a conversion is in progress. When the
@@ -180,7 +180,7 @@ fn registers_read_as_in_the_data_sheet() {
 }
 
 #[test]
-fn the_first_conversion_takes_25_clocks_and_every_other_13() {
+fn the_first_conversion_takes_25_clocks_and_later_conversions_take_13() {
     // Table 24-1: "First conversion 25", "Normal conversions, single ended 13".
     // A conversion "starts at the following rising edge of the ADC clock", so it may take up to one clock more.
     let mut uno = uno_with_statements(
@@ -194,7 +194,10 @@ fn the_first_conversion_takes_25_clocks_and_every_other_13() {
     let lengths = intervals(&mark_cycles(&uno));
     for (length, clocks) in lengths.into_iter().step_by(2).zip([25, 13, 13, 25]) {
         let range = clocks * CYCLES_PER_CLOCK - 4..(clocks + 1) * CYCLES_PER_CLOCK + 12;
-        assert!(range.contains(&length), "{length}, not {clocks} clocks");
+        assert!(
+            range.contains(&length),
+            "{length} cycles, expected {clocks} clocks"
+        );
     }
 }
 
@@ -219,7 +222,7 @@ fn the_prescaler_divides_as_in_table_24_5() {
             8.. => (last_cycle - first_cycle).abs_diff(count * 13 * divisor) < 40,
             _ => count > 500,
         };
-        assert!(is_expected, "{divisor}");
+        assert!(is_expected, "divisor {divisor}: {cycles:?}");
     }
 }
 
@@ -236,7 +239,7 @@ fn the_two_lowest_prescaler_settings_divide_by_two() {
             &[],
         );
         uno.run_ms(1);
-        assert_eq!(mark_values(&uno), [0x40, 0], "{select}");
+        assert_eq!(mark_values(&uno), [0x40, 0], "ADPS {select}");
     }
 }
 
@@ -247,14 +250,14 @@ fn the_adc_interrupt_wakes_the_cpu_and_clears_its_flag() {
     uno.set_analog_mv(Pin::a(0), 2500);
     uno.run_ms(1);
     assert_eq!(mark_values(&uno), [0x8f, 0x00, 0x02]);
-    assert!(uno.asleep_cycles() > 15_000);
+    assert!(uno.sleep_cycles() > 15_000);
 }
 
 #[test]
-fn a_voltage_is_sampled_at_the_time_of_table_24_1() {
+fn a_voltage_is_sampled_at_the_clock_in_table_24_1() {
     // "Sample & Hold (Cycles from Start of Conversion)": 1.5 clocks, in the first conversion 13.5. A conversion
     // starts at the next clock edge, at most one clock after ADSC is set.
-    for (body, sampled_clock, too_late_clock) in [
+    for (body, last_sampled_clock, first_ignored_clock) in [
         (
             "start(); wait(); GPIOR0 = 0; start(); wait(); show();",
             1,
@@ -271,7 +274,7 @@ fn a_voltage_is_sampled_at_the_time_of_table_24_1() {
             uno.run_ms(1);
             conversion_results(&uno)[0]
         };
-        let results = [sampled_clock, too_late_clock].map(result_after);
+        let results = [last_sampled_clock, first_ignored_clock].map(result_after);
         assert_eq!(results, [512, 0], "{body}");
     }
 }
@@ -311,7 +314,7 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
             ADMUX = 0x4e; _delay_us({wait_us});
             start(); wait(); show(); start(); wait(); show();"
         );
-        results_of(&body, &[previous_mv])
+        run_for_results(&body, &[previous_mv])
     };
     assert_eq!(results_after(72, 0), [225, 225]);
     let early_results = results_after(30, 0);
@@ -324,14 +327,14 @@ fn the_bandgap_needs_70_us_after_the_channel_is_selected() {
 }
 
 #[test]
-fn the_bandgap_has_settled_after_70_us_and_not_before() {
+fn the_bandgap_has_settled_after_70_us_but_not_earlier() {
     // With an ADC clock of 1 MHz, the start of a conversion is known to a microsecond.
     let first_result_after = |wait_us: u32| {
         let body = format!(
             "ADMUX = 0x40; ADCSRA = 0xc4; wait();
             ADMUX = 0x4e; _delay_us({wait_us}); ADCSRA = 0xc4; wait(); show();"
         );
-        results_of(&body, &[5000])[0]
+        run_for_results(&body, &[5000])[0]
     };
     assert!((226..250).contains(&first_result_after(68)));
     assert_eq!(first_result_after(71), 225);
@@ -346,7 +349,7 @@ fn the_bandgap_needs_70_us_after_the_adc_is_switched_on() {
             "ADMUX = 0x4e; _delay_ms(1); ADCSRA = 0x87; _delay_us({wait_us});
             start(); wait(); show();"
         );
-        results_of(&body, &[])[0]
+        run_for_results(&body, &[])[0]
     };
     assert_eq!(first_result_after(72), 225);
     assert_ne!(first_result_after(20), 225);
@@ -367,7 +370,7 @@ fn a_reset_switches_the_adc_off() {
 }
 
 #[test]
-fn a_ramp_is_a_straight_line_that_the_adc_follows() {
+fn a_supply_ramp_is_linear_and_the_adc_follows_it() {
     let mut uno = uno_with_program(BANDGAP_PROGRAM);
     uno.run_ms(2);
     uno.ramp_supply_mv(3000.0, 100 * CYCLES_PER_MS);
@@ -379,12 +382,12 @@ fn a_ramp_is_a_straight_line_that_the_adc_follows() {
     assert!(results.is_sorted());
     assert_eq!((results[0], results[results.len() - 1]), (225, 375));
     for code in 226..375 {
-        assert!(results.contains(&code), "{code}");
+        assert!(results.contains(&code), "code {code}: {results:?}");
     }
 }
 
 #[test]
-fn stock_simavr_measures_the_supply_but_is_never_reset_by_it() {
+fn stock_simavr_measures_a_low_supply_but_does_not_reset() {
     let mut uno = Uno::with_image(program(BANDGAP_PROGRAM), Fidelity::Stock);
     uno.set_supply_mv(2500.0);
     uno.run_ms(3);

@@ -1,4 +1,4 @@
-//! Tests of the chip on a supply that falls and rises, against the data sheet, chapters 11.4 and 11.5.
+//! Tests of the simulated chip on a falling and rising supply, against the data sheet, chapters 11.4 and 11.5.
 
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US, Pin, PowerCut, ResetCause, State, Uno};
 
@@ -28,7 +28,7 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
     assert_eq!(*uno.run_ms(1), State::Alive);
     assert!(uno.is_held_in_reset() && uno.marks().is_empty());
     assert_eq!(uno.cycle(), 3 * CYCLES_PER_MS, "time passes in reset");
-    assert_eq!(uno.asleep_cycles(), 0, "a chip in reset is not asleep");
+    assert_eq!(uno.sleep_cycles(), 0, "a chip in reset is not asleep");
     set_supply_and_run(&mut uno, 2726.0);
     assert!(!uno.is_held_in_reset());
     assert_eq!(mark_values(&uno)[0], 0x05);
@@ -39,8 +39,8 @@ fn a_supply_below_the_brown_out_level_holds_the_chip_in_reset() {
 }
 
 #[test]
-fn a_ramp_resets_and_restarts_the_chip_when_it_crosses_the_level() {
-    // 5000 mV to 2000 mV and back, at 1 mV in 1000 cycles.
+fn a_ramp_resets_and_restarts_the_chip_at_the_brown_out_levels() {
+    // From 5000 mV to 2000 mV and back, 1 mV in 1000 cycles.
     let mut uno = uno_with_program("int main(void) { for (;;) {} }");
     uno.run_cycles(1000);
     uno.ramp_supply_mv(2000.0, 3_000_000);
@@ -50,12 +50,12 @@ fn a_ramp_resets_and_restarts_the_chip_when_it_crosses_the_level() {
     assert!(uno.is_held_in_reset());
     uno.run_cycles(700_000);
     uno.ramp_supply_mv(5000.0, 3_000_000);
-    let start = uno.cycle();
+    let ramp_start = uno.cycle();
     uno.run_cycles(3_000_000);
     let restart = uno.reset_events()[1];
     assert_eq!(restart.cause, ResetCause::BrownOut);
     assert!(
-        (restart.cycle - start).abs_diff(725_000) < 100,
+        (restart.cycle - ramp_start).abs_diff(725_000) < 100,
         "{restart:?}"
     );
 }
@@ -64,12 +64,12 @@ fn a_ramp_resets_and_restarts_the_chip_when_it_crosses_the_level() {
 fn the_sram_survives_a_brown_out_but_not_a_loss_of_power() {
     let body = "static volatile unsigned char kept __attribute__((section(\".noinit\")));
         int main(void) { GPIOR0 = kept == 0x5a; GPIOR0 = MCUSR; kept = 0x5a; for (;;) {} }";
-    for (lowest_mv, kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
+    for (lowest_mv, is_kept, flags) in [(1400.0, 1, 0x05), (1200.0, 0, 0x01)] {
         let mut uno = uno_with_program(body);
         uno.run_ms(1);
         set_supply_and_run(&mut uno, lowest_mv);
         set_supply_and_run(&mut uno, 5000.0);
-        assert_eq!(mark_values(&uno)[2..], [kept, flags]);
+        assert_eq!(mark_values(&uno)[2..], [is_kept, flags], "{lowest_mv} mV");
         set_supply_and_run(&mut uno, 2000.0);
         set_supply_and_run(&mut uno, 5000.0);
         assert_eq!(
@@ -81,7 +81,7 @@ fn the_sram_survives_a_brown_out_but_not_a_loss_of_power() {
 }
 
 #[test]
-fn a_ramp_continues_while_it_holds_the_chip_in_reset() {
+fn a_ramp_continues_while_the_chip_is_in_reset() {
     let mut uno = uno_with_program("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.ramp_supply_mv(1000.0, 10 * CYCLES_PER_MS);
     uno.run_ms(11);
@@ -121,12 +121,12 @@ fn an_eeprom_write_survives_a_brown_out_but_is_torn_below_1_8_v() {
         set_supply_and_run(&mut uno, lowest_mv);
         uno.set_supply_mv(5000.0);
         uno.run_ms(2);
-        assert_eq!(uno.eeprom()[0], expected);
+        assert_eq!(uno.eeprom()[0], expected, "{lowest_mv} mV");
     }
 }
 
 #[test]
-fn the_watchdog_is_stopped_while_the_supply_holds_the_chip_in_reset() {
+fn the_watchdog_is_stopped_during_a_brown_out() {
     let body = "#include <avr/wdt.h>
         int main(void) { GPIOR0 = MCUSR; MCUSR = 0; wdt_enable(WDTO_15MS); for (;;) {} }";
     let mut uno = uno_with_program(body);
@@ -139,7 +139,7 @@ fn the_watchdog_is_stopped_while_the_supply_holds_the_chip_in_reset() {
     uno.run_ms(10);
     assert_eq!(mark_values(&uno), [1, 8, 4, 8]);
 
-    // The watchdog is also stopped if WDRF is still set, which switches the watchdog on at each reset.
+    // A WDRF that is still set switches the watchdog on at each reset, but not during a brown-out.
     let mut uno = uno_with_program(
         "#include <avr/wdt.h>
         int main(void) { if (!(MCUSR & 8)) wdt_enable(WDTO_15MS); for (;;) {} }",
@@ -151,7 +151,7 @@ fn the_watchdog_is_stopped_while_the_supply_holds_the_chip_in_reset() {
 }
 
 #[test]
-fn after_power_on_the_chip_waits_until_the_supply_is_high_enough() {
+fn after_power_on_the_chip_starts_only_when_the_supply_is_high_enough() {
     let mut uno = uno_with_program("int main(void) { for (;;) GPIOR0 = MCUSR; }");
     uno.set_supply_mv(2000.0);
     uno.power_cycle();
@@ -171,7 +171,7 @@ fn after_power_on_the_chip_waits_until_the_supply_is_high_enough() {
 }
 
 #[test]
-fn a_ramp_and_a_power_cut_reach_a_firmware_that_sleeps_forever() {
+fn ramps_and_power_cuts_affect_a_firmware_that_sleeps_forever() {
     let mut uno = uno_with_program(
         "int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }",
     );

@@ -1,4 +1,4 @@
-//! Contacts between pins and ground (data sheet, 14.2.1 and 14.2.4).
+//! Tests of contacts between pins and ground, against the data sheet, chapters 14.2.1 and 14.2.4.
 
 use simulated_uno::{Pin, Uno, avr_gcc};
 
@@ -20,7 +20,7 @@ int main(void) {
 }";
 
 #[test]
-fn a_closed_contact_pulls_its_pin_low_and_the_pull_up_raises_it_again() {
+fn a_pin_is_low_while_its_contact_is_closed_and_high_otherwise() {
     let image = avr_gcc::compile_c(LEVELS_PROGRAM);
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
     for fidelity in FIDELITIES {

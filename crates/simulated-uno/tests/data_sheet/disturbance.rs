@@ -38,7 +38,7 @@ const COUNTING_PROGRAM: &str = "#include <avr/io.h>
     }";
 
 #[test]
-fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
+fn a_foreign_interrupt_waits_until_interrupts_are_enabled_and_takes_its_cycles() {
     let image = assemble(PULSES_PROGRAM);
     for fidelity in FIDELITIES {
         for cycle in 300..600 {
@@ -47,17 +47,24 @@ fn a_foreign_interrupt_waits_until_interrupts_are_on_and_takes_its_cycles() {
             uno.block_interrupts(5000);
             uno.run_until_cycle(10_000);
             let widths = pulse_widths(&uno);
-            assert!(widths.iter().all(|width| *width == widths[0]), "at {cycle}");
+            assert!(
+                widths.iter().all(|width| *width == widths[0]),
+                "blocked at cycle {cycle}: {widths:?}"
+            );
             let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
             let periods = intervals(&starts);
             let longer_periods: Vec<&u64> = periods.iter().filter(|p| **p != periods[0]).collect();
-            assert_eq!(longer_periods, [&(periods[0] + 5000)], "at {cycle}");
+            assert_eq!(
+                longer_periods,
+                [&(periods[0] + 5000)],
+                "blocked at cycle {cycle}"
+            );
         }
     }
 }
 
 #[test]
-fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
+fn a_foreign_interrupt_ends_a_sleep_and_precedes_interrupts_of_the_chip() {
     let image = compile_with_headers(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1 >> 4; }
         int main(void) {
@@ -70,7 +77,7 @@ fn a_foreign_interrupt_ends_a_sleep_and_is_served_before_the_chips_own() {
         uno.block_interrupts(3_000);
         uno.run_until_cycle(35_000);
         let marks = mark_values(&uno);
-        // The first interrupt of Timer1 is about 2000 cycles late, the following ones are on time.
+        // The first interrupt of Timer1 is about 2000 cycles late; the following interrupts are on time.
         assert!((120..135).contains(&marks[0]), "{marks:?}");
         assert!(marks[1..].iter().all(|mark| *mark < 4), "{marks:?}");
         assert_eq!(marks.len(), 3);
@@ -90,7 +97,8 @@ fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
     let mut uno = new_uno(image);
     uno.run_until_cycle(1000);
     uno.send(b"abcdefgh");
-    // Three bytes have arrived. During the next five, the receive buffer keeps two and the shift register the last.
+    // Three bytes have arrived. Of the next five bytes, the receive buffer keeps the first two and the shift register
+    // the last.
     uno.run_until_cycle(1000 + 3 * 1389 + 100);
     uno.block_interrupts(5 * 1389);
     uno.run_until_cycle(30_000);
@@ -99,14 +107,14 @@ fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
 }
 
 #[test]
-fn a_stalled_main_does_not_run_while_interrupts_are_served() {
+fn interrupts_are_served_while_main_is_stalled() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(compile_c(COUNTING_PROGRAM), fidelity);
         uno.run_until_cycle(25_000);
         uno.take_edges();
         uno.stall_main(100_000);
         uno.run_until_cycle(124_000);
-        assert_eq!(uno.edges().len(), 0, "main toggles no pin");
+        assert_eq!(uno.edges().len(), 0, "a stalled main toggles no pin");
         let cycles = mark_cycles(&uno);
         assert_eq!(cycles.len(), 12, "twelve interrupts are served");
         let mut intervals = intervals(&cycles).into_iter();
@@ -117,7 +125,7 @@ fn a_stalled_main_does_not_run_while_interrupts_are_served() {
 }
 
 #[test]
-fn a_poke_has_the_effect_of_a_store() {
+fn a_poke_has_the_same_effect_as_a_store() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(assemble("sbi DDRB, 5\nend: rjmp end"), fidelity);
         uno.run_until_cycle(1000);
@@ -126,7 +134,7 @@ fn a_poke_has_the_effect_of_a_store() {
         uno.poke(0x25, 0);
         assert!(!uno.is_high(LED));
         assert_eq!(pulse_widths(&uno).len(), 1);
-        // Timer1 begins to count.
+        // This poke starts Timer1.
         uno.poke(0x81, 1);
         uno.run_until_cycle(2000);
         uno.poke(0x8ff, 0x5a);

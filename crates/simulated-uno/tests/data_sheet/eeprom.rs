@@ -8,10 +8,11 @@ use super::{
     mark_values, new_uno, pulse_widths, uno_after, uno_after_ms,
 };
 
-/// Cycles of an operation that erases and writes. Table 8-1: "Erase and Write in one operation (Atomic Operation)",
-/// 3.4 ms.
+/// Cycles of an operation that erases and writes, according to table 8-1: "Erase and Write in one operation (Atomic
+/// Operation)", 3.4 ms.
 pub const ATOMIC_CYCLES: u64 = 3400 * CYCLES_PER_US;
-/// Cycles of an operation that only erases or only writes. Table 8-1: "Erase Only" and "Write Only", 1.8 ms.
+/// Cycles of an operation that only erases or only writes, according to table 8-1: "Erase Only" and "Write Only",
+/// 1.8 ms.
 const SINGLE_CYCLES: u64 = 1800 * CYCLES_PER_US;
 
 /// Returns a UNO that has run for a number of cycles: first these instructions, then an endless loop.
@@ -19,19 +20,19 @@ fn run(source: &str, cycles: u64) -> Uno {
     uno_after(cycles, assemble(&format!("{source}\nend: rjmp end")))
 }
 
-/// Compiles `body` together with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the
-/// data sheet's examples, and `busy()`.
+/// Compiles `body` with functions for the EEPROM: `set(address, byte, mode)` and `get(address)`, as in the examples of
+/// the data sheet, and `busy()`.
 pub fn program(body: &str) -> Image {
     compile_with_headers(&format!(
         "#define busy() (EECR & 2)
-        static __attribute__((unused)) void set(unsigned at, unsigned char byte, unsigned char mode) {{
+        static __attribute__((unused)) void set(unsigned address, unsigned char byte, unsigned char mode) {{
             while (busy()) {{}}
-            EECR = mode << 4; EEAR = at; EEDR = byte;
+            EECR = mode << 4; EEAR = address; EEDR = byte;
             cli(); EECR |= 4; EECR |= 2;
         }}
-        static __attribute__((unused)) unsigned char get(unsigned at) {{
+        static __attribute__((unused)) unsigned char get(unsigned address) {{
             while (busy()) {{}}
-            EEAR = at; EECR |= 1; return EEDR;
+            EEAR = address; EECR |= 1; return EEDR;
         }}
         {body}"
     ))
@@ -60,7 +61,7 @@ fn a_new_eeprom_is_erased_and_its_1024_bytes_can_be_set() {
 }
 
 #[test]
-fn registers_read_as_in_the_data_sheet() {
+fn register_values_match_the_data_sheet() {
     for (message, body, expected) in [
         (
             // "EEAR9:0": the other bits always read as zero (8.6.1).
@@ -139,12 +140,12 @@ fn hardware_clears_eempe_after_four_cycles() {
 }
 
 #[test]
-fn nothing_is_written_without_the_timed_sequence() {
+fn the_eeprom_is_not_written_without_the_timed_sequence() {
     for (message, source) in [
         ("EEPE alone has no effect", "sbi EECR, EEPE"),
         (
             // "Write a logical one to the EEMPE bit while writing a zero to EEPE" (8.6.3).
-            "setting both bits at once arms nothing",
+            "setting both bits at once has no effect",
             "ldi r16, 6 $ out EECR, r16 $ out EECR, r16",
         ),
         (
@@ -159,7 +160,7 @@ fn nothing_is_written_without_the_timed_sequence() {
 }
 
 #[test]
-fn eepe_reads_one_for_as_long_as_table_8_1_says() {
+fn eepe_is_one_for_the_duration_in_table_8_1() {
     // EEPM1:0 is 00 for erase and write (3.4 ms), 01 for erase only (1.8 ms), 10 for write only (1.8 ms).
     for (mode, duration, expected_mode) in [
         (0, ATOMIC_CYCLES, EepromMode::EraseAndWrite),
@@ -176,7 +177,7 @@ fn eepe_reads_one_for_as_long_as_table_8_1_says() {
 }
 
 #[test]
-fn erasing_sets_all_bits_and_writing_alone_clears_some() {
+fn erase_only_sets_all_bits_and_write_only_clears_bits() {
     let body = "set(0, 0x0f, 2); set(0, 0xf5, 2);
         set(1, 0x0f, 0); set(1, 0x55, 1);
         set(2, 0x0f, 0); set(2, 0xf0, 0);";
@@ -224,8 +225,8 @@ fn the_cpu_halts_four_cycles_to_read_and_two_to_write() {
 }
 
 #[test]
-fn a_timer_is_on_time_although_the_eeprom_halts_the_cpu() {
-    // Timer1 counts while the CPU is halted, so halts do not add up to a delay of its interrupt.
+fn halts_by_the_eeprom_do_not_delay_a_timer() {
+    // Timer1 counts while the CPU is halted, so the delays of its interrupt do not add up.
     let image = program(
         "ISR(TIMER1_COMPA_vect) { GPIOR0 = TCNT1L; }
         int main(void) {
@@ -241,7 +242,7 @@ fn a_timer_is_on_time_although_the_eeprom_halts_the_cpu() {
 }
 
 #[test]
-fn the_ready_interrupt_is_requested_as_long_as_eepe_is_zero() {
+fn the_ready_interrupt_is_requested_while_eepe_is_zero() {
     // "The EEPROM Ready interrupt generates a constant interrupt when EEPE is
     // cleared" (8.6.3). The handler writes three bytes, then disables its interrupt.
     let image = program(
@@ -257,9 +258,9 @@ fn the_ready_interrupt_is_requested_as_long_as_eepe_is_zero() {
     let uno = uno_after_ms(15, image);
     assert_eq!(mark_values(&uno), [0, 1, 2, 3]);
     assert_eq!(uno.eeprom()[..4], [1, 2, 3, 0xff]);
-    let asleep_share = uno.asleep_cycles() as f64 / uno.cycle() as f64;
+    let sleep_fraction = uno.sleep_cycles() as f64 / uno.cycle() as f64;
     assert!(
-        asleep_share > 0.6,
+        sleep_fraction > 0.6,
         "the CPU sleeps while a byte is programmed"
     );
     let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
@@ -284,16 +285,16 @@ fn the_ready_interrupt_fires_at_once_and_again_after_one_instruction() {
          nop",
         400,
     );
-    // From mark to mark: reti 4, one instruction (nop 1, then rjmp 2), entry 4, sbi 2.
     let cycles = mark_cycles(&uno);
-    // The first mark: jmp 3, (ldi, out, ldi, out) 4, sei 1, nop 1, sbi 2, then entry 4, sbi 2.
+    // To the first mark: jmp 3, (ldi, out, ldi, out) 4, sei 1, nop 1, sbi 2, entry 4, sbi 2.
     assert_eq!(cycles[0], 17);
+    // From mark to mark: reti 4, one instruction (nop 1, then rjmp 2), entry 4, sbi 2.
     assert_eq!(cycles[1] - cycles[0], 4 + 1 + 4 + 2);
     assert_eq!(cycles[2] - cycles[1], 4 + 2 + 4 + 2);
 }
 
 #[test]
-fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
+fn a_reset_does_not_end_a_write_or_change_its_mode() {
     // "If a reset occurs while a write operation is in progress, the write
     // operation will be completed provided that the power supply voltage is
     // sufficient" (8.4.2); "During reset, the EEPMn bits will be reset to 0b00
@@ -320,7 +321,7 @@ fn a_reset_lets_a_running_write_finish_and_keeps_its_mode() {
 
 #[test]
 fn a_reset_disarms_eempe() {
-    // Runs up to and including the sbi to EEMPE.
+    // The run of five cycles ends with the `sbi` to EEMPE.
     let mut uno = run("in r16, GPIOR1 $ sbi EECR, EEPE $ sbi EECR, EEMPE", 5);
     uno.reset();
     uno.run_cycles(100);

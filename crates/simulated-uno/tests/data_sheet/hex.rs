@@ -1,4 +1,4 @@
-//! Tests of images as Intel HEX, against the same program as ELF and against lines written by hand.
+//! Tests of Intel HEX images, compared with the ELF of the same program and with handwritten lines.
 
 use simulated_uno::Image;
 use simulated_uno::avr_gcc::compile_c;
@@ -21,7 +21,7 @@ fn format_line(address: u16, record_type: u8, bytes: &[u8]) -> String {
 const END_LINE: &str = ":00000001FF\n";
 
 #[test]
-fn a_program_behaves_the_same_as_hex_and_as_elf() {
+fn hex_and_elf_images_of_a_program_give_the_same_edges() {
     let elf = compile_c(
         "#include <avr/io.h>
         #include <util/delay.h>
@@ -37,12 +37,12 @@ fn a_program_behaves_the_same_as_hex_and_as_elf() {
     let hex = Image::parse_hex(&text).expect("the text is Intel HEX");
     assert_eq!(hex.flash(), flash);
     assert_eq!((hex.static_ram(), hex.symbols().len()), (0, 0));
-    let edges_of = |image| {
+    let run_for_edges = |image| {
         let uno = uno_after_ms(10, image);
         assert!(uno.pulses(LED).len() > 20);
         uno.edges()
     };
-    assert_eq!(edges_of(hex), edges_of(elf));
+    assert_eq!(run_for_edges(hex), run_for_edges(elf));
 }
 
 #[test]
@@ -75,7 +75,7 @@ fn addresses_of_more_than_16_bits_and_gaps_are_supported() {
 #[test]
 fn each_error_in_a_hex_file_is_reported() {
     let good_line = format_line(0, 0, &[0xff, 0xcf]);
-    for (text, error) in [
+    for (text, expected) in [
         (
             good_line.replace("FFCF", "FFCE") + END_LINE,
             "line 1 is not Intel HEX: ",
@@ -83,9 +83,9 @@ fn each_error_in_a_hex_file_is_reported() {
         (good_line.clone() + "blink\n", "line 2 is not Intel HEX: "),
         (
             good_line,
-            "the HEX file has no end record: only a part of it is there",
+            "the HEX file has no end record, so it is incomplete",
         ),
-        (END_LINE.to_owned(), "the file holds no code"),
+        (END_LINE.to_owned(), "the file contains no code"),
         (
             format_line(0x7fff, 0, &[1, 2]) + END_LINE,
             "2 bytes at 0x7fff do not fit an ATmega328P",
@@ -95,7 +95,7 @@ fn each_error_in_a_hex_file_is_reported() {
             "1 bytes at 0xffffffff do not fit an ATmega328P",
         ),
     ] {
-        let refusal = Image::parse_hex(&text).expect_err("the text is not an image");
-        assert!(refusal.to_string().starts_with(error), "{refusal}: {text}");
+        let error = Image::parse_hex(&text).expect_err("the text is not an image");
+        assert!(error.to_string().starts_with(expected), "{error}: {text}");
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of the simulated UNO with programs whose cycles can be counted by hand with the data sheet.
+//! Tests of the simulated pins, memory and call timing against cycles counted with the data sheet.
 
 use simulated_uno::avr_gcc::{assemble, compile_c};
 use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
@@ -9,7 +9,7 @@ use super::{
 };
 
 #[test]
-fn a_pulse_of_counted_instructions_has_its_counted_width() {
+fn the_width_of_a_pulse_is_the_sum_of_its_instruction_cycles() {
     // High at the end of the first `out`; then 3 nops and the second `out`: 4 cycles.
     let image = assemble(
         "sbi DDRB, 5
@@ -29,7 +29,7 @@ fn a_pulse_of_counted_instructions_has_its_counted_width() {
 }
 
 #[test]
-fn an_edge_is_stamped_with_the_last_cycle_of_any_store_instruction() {
+fn an_edge_is_stamped_with_the_last_cycle_of_its_instruction() {
     // First pulse: `out` (1 cycle) high, then 2 nops and `cbi` (2 cycles) low: 4 cycles. Second pulse: `sts` (2
     // cycles) high, then 1 nop and `out` (1 cycle) low: 2 cycles.
     let image = assemble(
@@ -51,7 +51,7 @@ fn an_edge_is_stamped_with_the_last_cycle_of_any_store_instruction() {
 }
 
 #[test]
-fn pins_are_named_as_on_the_board_and_counted_when_high_together() {
+fn edges_have_arduino_numbers_and_pins_that_are_high_together_are_counted() {
     let image = assemble(
         "ldi r16, 0xff
          out DDRB, r16
@@ -92,11 +92,11 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
     for uno in unos_after(200, &image) {
         for (pin, start, width) in &expected {
             let pulses = uno.pulses(*pin);
-            let found_pulses: Vec<_> = pulses
+            let measured_pulses: Vec<_> = pulses
                 .iter()
                 .map(|pulse| (pulse.start, pulse.width))
                 .collect();
-            assert_eq!(found_pulses, [(*start, *width)], "{pin}");
+            assert_eq!(measured_pulses, [(*start, *width)], "{pin}");
         }
         assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
         assert_eq!(most_pins_high(&uno.edges()), 1);
@@ -113,7 +113,7 @@ fn an_analogue_pin_has_an_arduino_number_and_a_name() {
 }
 
 #[test]
-fn the_level_of_an_analogue_pin_can_be_read_and_toggled_alone() {
+fn a_single_analogue_pin_can_be_read_and_toggled() {
     let image = assemble(
         "ldi r16, 0xff $ out DDRC, r16
          sbi PORTC, 0
@@ -173,7 +173,7 @@ fn resets_by_the_watchdog_are_counted() {
 }
 
 #[test]
-fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
+fn the_depth_of_the_stack_is_measured() {
     // A call pushes its return address of two bytes; the function pushes two more.
     let image = assemble(
         "ldi r16, 0x08 $ out SPH, r16
@@ -190,7 +190,7 @@ fn the_noise_in_the_sram_shows_the_depth_of_the_stack() {
 }
 
 #[test]
-fn the_sizes_of_memory_and_symbols_come_from_the_elf() {
+fn sizes_of_memory_and_symbols_are_read_from_the_elf() {
     let image = compile_c(
         "static volatile unsigned char zeroed[100];
         static volatile unsigned char given[20] = {1};
@@ -202,8 +202,8 @@ fn the_sizes_of_memory_and_symbols_come_from_the_elf() {
     assert_eq!(image.symbol("given").map(|symbol| symbol.size), Some(20));
 }
 
-/// Returns the calls of the function `work` within a number of cycles.
-fn calls_of_work(image: Image, cycles: u64) -> Vec<Call> {
+/// Runs a program for a number of cycles, and returns the calls of its function `work`.
+fn time_work(image: Image, cycles: u64) -> Vec<Call> {
     let entry = image
         .symbol("work")
         .expect("the symbol `work` is global")
@@ -226,7 +226,7 @@ fn a_call_without_interrupts_takes_its_counted_cycles() {
          loop: nop $ dec r20 $ brne loop
          ret",
     );
-    let calls = calls_of_work(image, 10_000);
+    let calls = time_work(image, 10_000);
     assert_eq!(calls.len(), 1);
     // ldi 1; 200 * (nop 1, dec 1, brne 2), the last brne 1; ret 4
     assert_eq!(calls[0].cycles(), 1 + 200 * 4 - 1 + 4);
@@ -269,7 +269,7 @@ fn the_cycles_of_interrupts_in_a_timed_call_are_counted_separately() {
             for (;;) {}
         }",
     );
-    let calls = calls_of_work(image, 20 * CYCLES_PER_MS);
+    let calls = time_work(image, 20 * CYCLES_PER_MS);
     assert_eq!(calls.len(), 2);
     assert_eq!(calls[0].interrupt_cycles, 0);
     // Each interrupt takes entry 4, jmp 3, nop 1, nop 1, reti 4: 13 cycles.
@@ -286,6 +286,6 @@ fn a_file_that_is_not_an_avr_elf_is_rejected() {
     let endless_error = Image::read("/dev/zero").expect_err("the file never ends");
     assert_eq!(
         endless_error.to_string(),
-        "not an ELF file of an AVR: it is longer than 4 MiB"
+        "not an AVR ELF file: it is longer than 4 MiB"
     );
 }

@@ -1,4 +1,4 @@
-//! Tests of the simulated UNO's interrupts and Timer1, with programs whose cycles are counted by hand.
+//! Tests of the simulated interrupts and Timer1 against cycles counted with the data sheet.
 
 use simulated_uno::avr_gcc::assemble;
 use simulated_uno::{Fidelity, Uno};
@@ -38,10 +38,10 @@ const TICK_PROGRAM: &str = "
 ";
 
 #[test]
-fn a_compare_interrupt_from_sleep_takes_the_cycles_of_the_data_sheet() {
-    // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; simavr starts it with the first
-    // cycle. The counter matches 10 000 cycles later. Then follow 4 + 4 cycles of interrupt entry from sleep, 3 of the
-    // vector's jmp, 1 of out.
+fn the_entry_of_a_compare_interrupt_from_sleep_takes_the_cycles_in_the_data_sheet() {
+    // On the chip, the counter starts with the last cycle of the `sts` to TCCR1B; in simavr it starts with the first
+    // cycle. The counter matches 10 000 cycles later. Then follow interrupt entry from sleep 4 + 4, jmp of the vector
+    // 3, out 1.
     let mut uno = uno_after(100_000, assemble(TICK_PROGRAM));
     let starts: Vec<u64> = uno.pulses(LED).iter().map(|pulse| pulse.start).collect();
     assert!(starts.len() >= 9);
@@ -59,7 +59,7 @@ fn a_compare_interrupt_from_sleep_takes_the_cycles_of_the_data_sheet() {
 }
 
 #[test]
-fn stock_simavr_enters_an_interrupt_in_no_time() {
+fn stock_simavr_enters_an_interrupt_in_zero_cycles() {
     let mut uno = Uno::with_image(assemble(TICK_PROGRAM), Fidelity::Stock);
     uno.run_cycles(100_000);
     let first_cycle = uno.pulses(LED)[0].start;
@@ -81,7 +81,7 @@ fn interrupts_are_counted_with_their_cycles() {
 
 #[test]
 fn one_instruction_runs_between_sei_and_a_pending_interrupt() {
-    let source_of = |nop_count: usize| {
+    let source_with_nops = |nop_count: usize| {
         format!(
             "jmp start
              .org 0x2c
@@ -105,15 +105,15 @@ fn one_instruction_runs_between_sei_and_a_pending_interrupt() {
     // The handler makes the pin an input. Only one instruction after `sei` runs before the handler, so the LED is
     // switched on only if that instruction is `sbi PORTB, 5`.
     for (nops, has_edge) in [(0, true), (1, false)] {
-        let mut uno = Uno::with_image(assemble(&source_of(nops)), Fidelity::DataSheet);
+        let mut uno = Uno::with_image(assemble(&source_with_nops(nops)), Fidelity::DataSheet);
         uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
         assert_eq!(!uno.edges().is_empty(), has_edge, "{nops} nops");
     }
 }
 
 #[test]
-fn an_interrupt_enabled_after_its_flag_fires_and_clearing_a_flag_leaves_the_others() {
-    for (message, program, expected, expected_of_stock) in [
+fn interrupts_enabled_after_their_flag_fire_and_flags_are_cleared_separately() {
+    for (message, program, expected, stock_expected) in [
         (
             "an interrupt that is enabled fires if its flag is set",
             "ISR(TIMER1_OVF_vect) { GPIOR0 = 1; }
@@ -128,7 +128,7 @@ fn an_interrupt_enabled_after_its_flag_fires_and_clearing_a_flag_leaves_the_othe
             &[][..],
         ),
         (
-            "writing one timer flag leaves the others",
+            "clearing a timer flag does not change the other flags",
             "int main(void) {
                 OCR1A = 100; OCR1B = 200;
                 TCCR1B = 1;
@@ -145,12 +145,12 @@ fn an_interrupt_enabled_after_its_flag_fires_and_clearing_a_flag_leaves_the_othe
         let [simavr_marks, data_sheet_marks] =
             unos_after(100_000, &image).map(|uno| mark_values(&uno));
         assert_eq!(data_sheet_marks, expected, "{message}");
-        assert_eq!(simavr_marks, expected_of_stock, "{CORRECTION_IS_OBSOLETE}");
+        assert_eq!(simavr_marks, stock_expected, "{CORRECTION_IS_OBSOLETE}");
     }
 }
 
 #[test]
-fn an_interrupt_enabled_while_its_flag_is_set_is_served_after_that_instruction() {
+fn an_interrupt_enabled_while_its_flag_is_set_is_served_at_once() {
     // From the first `out` to the handler's: sts 2, entry 4, jmp 3, out 1.
     let image = assemble(
         "jmp start
@@ -174,9 +174,9 @@ fn an_interrupt_enabled_while_its_flag_is_set_is_served_after_that_instruction()
 }
 
 #[test]
-fn the_high_byte_of_a_16_bit_register_goes_through_the_shared_temp_byte() {
+fn high_bytes_of_16_bit_registers_are_written_through_the_shared_temp_byte() {
     // The program writes the high byte of OCR1A, then both bytes of OCR1B, then the low byte of OCR1A. A write to a
-    // high byte only fills TEMP, so both registers get the high byte that was written for OCR1B.
+    // high byte only changes TEMP, so both registers take the high byte that was written to OCR1B.
     let image = compile_with_headers(
         "int main(void) {
             OCR1AH = 0x12;
@@ -202,16 +202,16 @@ fn several_short_runs_give_the_same_edges_as_one_long_run() {
             step_cycles = step_cycles % 997 + 13;
         }
         assert_eq!(stepped_uno.edges(), unbroken_uno.edges());
-        assert_eq!(stepped_uno.asleep_cycles(), unbroken_uno.asleep_cycles());
+        assert_eq!(stepped_uno.sleep_cycles(), unbroken_uno.sleep_cycles());
     }
 }
 
 #[test]
-fn boards_on_several_threads_do_not_disturb_each_other() {
+fn boards_on_several_threads_do_not_affect_each_other() {
     let run = |fidelity| {
         let mut uno = Uno::with_image(assemble(TICK_PROGRAM), fidelity);
         uno.run_cycles(3_000_000);
-        (uno.edges(), uno.asleep_cycles())
+        (uno.edges(), uno.sleep_cycles())
     };
     let expected = FIDELITIES.map(run);
     let threads: Vec<_> = (0..6)

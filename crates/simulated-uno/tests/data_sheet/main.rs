@@ -1,5 +1,5 @@
-//! Tests of the simulated UNO against the data sheet, one module for each part of the chip, with programs whose
-//! cycles can be counted by hand.
+//! Tests of the simulated UNO against the data sheet, with programs whose cycles can be counted by hand. Each module
+//! tests a part of the chip.
 
 mod adc;
 mod brown_out;
@@ -31,7 +31,7 @@ fn unos_after(cycles: u64, image: &Image) -> [Uno; 2] {
     })
 }
 
-/// Failure message of an assertion that stock simavr has an error. The assertion fails if simavr no longer needs the
+/// Failure message of an assertion that stock simavr has an error. The assertion fails when simavr no longer needs the
 /// correction.
 const CORRECTION_IS_OBSOLETE: &str =
     "stock simavr now follows the data sheet here: drop the correction";
@@ -68,7 +68,7 @@ fn intervals(cycles: &[u64]) -> Vec<u64> {
     cycles.windows(2).map(|pair| pair[1] - pair[0]).collect()
 }
 
-/// Returns the widths of the pulses on the LED's pin, cycles.
+/// Returns the widths of the pulses on the LED's pin, in cycles.
 fn pulse_widths(uno: &Uno) -> Vec<u64> {
     uno.pulses(LED).iter().map(|pulse| pulse.width).collect()
 }
@@ -92,7 +92,7 @@ fn reset_causes(uno: &Uno) -> Vec<ResetCause> {
     uno.reset_events().iter().map(|reset| reset.cause).collect()
 }
 
-/// Compiles C after the headers of registers, interrupts, the watchdog and delays.
+/// Compiles C source with the headers of registers, interrupts, the watchdog and delays.
 fn compile_with_headers(source: &str) -> Image {
     let names = ["avr/io.h", "avr/interrupt.h", "avr/wdt.h", "util/delay.h"];
     let headers = names.map(|name| format!("#include <{name}>\n"));
@@ -101,5 +101,8 @@ fn compile_with_headers(source: &str) -> Image {
 
 #[track_caller]
 fn assert_within(range: std::ops::Range<u64>, cycles: u64) {
-    assert!(range.contains(&cycles), "{cycles}, not {range:?}");
+    assert!(
+        range.contains(&cycles),
+        "{cycles} cycles, expected {range:?}"
+    );
 }

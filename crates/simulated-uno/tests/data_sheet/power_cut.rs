@@ -1,4 +1,4 @@
-//! Tests of the EEPROM when the power fails in the middle of a write.
+//! Tests of power cuts during an EEPROM write.
 
 use simulated_uno::{EEPROM_SIZE, PowerCut, ResetCause, State, Uno};
 
@@ -58,7 +58,7 @@ fn a_power_cut_in_the_write_phase_leaves_the_new_byte_with_the_chosen_bits_set()
 }
 
 #[test]
-fn a_power_cut_at_a_cycle_tears_the_byte_by_its_phase_at_that_cycle() {
+fn a_power_cut_at_a_cycle_tears_the_byte_according_to_its_phase() {
     let mut unbroken_uno = uno_with_two_bytes();
     unbroken_uno.run_ms(20);
     let start = unbroken_uno.eeprom_operations()[1].cycle;
@@ -73,13 +73,17 @@ fn a_power_cut_at_a_cycle_tears_the_byte_by_its_phase_at_that_cycle() {
         uno.cut_power(PowerCut::AtCycle(start + delay_cycles), 0x02);
         assert_eq!(*uno.run_ms(20), State::Off);
         assert!(uno.cycle() - (start + delay_cycles) < 5);
-        assert_eq!(uno.eeprom()[..2], [0x35, expected], "{delay_cycles}");
+        assert_eq!(
+            uno.eeprom()[..2],
+            [0x35, expected],
+            "after {delay_cycles} cycles"
+        );
     }
 }
 
 #[test]
-fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
-    let torn_byte_of = |mode: u8, cut: PowerCut, ones: u8| {
+fn erase_only_operations_set_torn_bits_and_write_only_operations_keep_them() {
+    let tear_byte = |mode: u8, cut: PowerCut, ones: u8| {
         let body = format!("int main(void) {{ set(0, 0x35, {mode}); for (;;) {{}} }}");
         let mut uno = new_uno(program(&body));
         uno.set_eeprom(&[0xa6; EEPROM_SIZE]);
@@ -88,19 +92,23 @@ fn operations_that_only_erase_or_only_write_are_torn_in_their_own_way() {
         uno.eeprom()[0]
     };
     for cut in [PowerCut::InErase(0), PowerCut::InWrite(0)] {
-        assert_eq!(torn_byte_of(1, cut, 0x11), 0xa6 | 0x11);
-        assert_eq!(torn_byte_of(2, cut, 0x82), 0xa6 & (0x35 | 0x82));
-        assert_eq!(torn_byte_of(2, cut, 0x00), 0xa6 & 0x35);
+        assert_eq!(tear_byte(1, cut, 0x11), 0xa6 | 0x11);
+        assert_eq!(tear_byte(2, cut, 0x82), 0xa6 & (0x35 | 0x82));
+        assert_eq!(tear_byte(2, cut, 0x00), 0xa6 & 0x35);
     }
 }
 
 #[test]
-fn after_a_power_cut_the_board_starts_again_with_the_same_eeprom() {
+fn a_board_restarts_after_a_power_cut_with_the_same_eeprom() {
     let mut uno = uno_with_two_bytes();
     uno.cut_power(PowerCut::InWrite(0), 0x08);
     uno.run_ms(20);
     let cut_cycle = uno.cycle();
-    assert_eq!(*uno.run_ms(20), State::Off, "nothing runs without power");
+    assert_eq!(
+        *uno.run_ms(20),
+        State::Off,
+        "the chip does not run without power"
+    );
     assert_eq!(uno.cycle(), cut_cycle);
     uno.power_cycle();
     assert_eq!(*uno.run_ms(20), State::Alive);

@@ -11,13 +11,13 @@ use super::{
 };
 
 /// Compiles a program whose main function runs these statements once.
-fn program_once(body: &str) -> Image {
+fn compile_statements(body: &str) -> Image {
     compile_with_headers(&format!("int main(void) {{ {body} for (;;) {{}} }}"))
 }
 
 /// Compiles a program that marks the value of MCUSR at each start and does not change MCUSR.
-fn program_that_marks_mcusr() -> Image {
-    program_once("GPIOR0 = MCUSR;")
+fn compile_mcusr_program() -> Image {
+    compile_statements("GPIOR0 = MCUSR;")
 }
 
 /// Pulls the RESET pin low for an instant, then runs for a millisecond.
@@ -28,9 +28,9 @@ fn reset_and_run(uno: &mut Uno) {
 
 #[test]
 fn mcusr_accumulates_the_causes_until_power_on() {
-    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1, of each of the bits
-    // EXTRF, BORF and WDRF).
-    let mut uno = uno_after_ms(1, program_that_marks_mcusr());
+    // "The bit is reset by a Power-on Reset, or by writing a logic zero to the flag" (11.9.1, for EXTRF, BORF and
+    // WDRF).
+    let mut uno = uno_after_ms(1, compile_mcusr_program());
     reset_and_run(&mut uno);
     uno.set_supply_mv(2500.0);
     uno.run_ms(1);
@@ -51,8 +51,8 @@ fn mcusr_accumulates_the_causes_until_power_on() {
 }
 
 #[test]
-fn software_clears_flags_of_mcusr_and_cannot_set_them() {
-    let image = program_once(
+fn software_can_clear_but_not_set_mcusr_flags() {
+    let image = compile_statements(
         "GPIOR0 = MCUSR; MCUSR = 0x0e; GPIOR0 = MCUSR;
         MCUSR = 0x0f; GPIOR0 = MCUSR;",
     );
@@ -62,8 +62,8 @@ fn software_clears_flags_of_mcusr_and_cannot_set_them() {
 }
 
 #[test]
-fn stock_simavr_keeps_only_the_last_cause() {
-    let mut uno = Uno::with_image(program_that_marks_mcusr(), Fidelity::Stock);
+fn mcusr_of_stock_simavr_holds_only_the_last_cause() {
+    let mut uno = Uno::with_image(compile_mcusr_program(), Fidelity::Stock);
     uno.run_ms(1);
     reset_and_run(&mut uno);
     uno.power_cycle();
@@ -72,7 +72,7 @@ fn stock_simavr_keeps_only_the_last_cause() {
 }
 
 #[test]
-fn sram_and_registers_survive_every_reset_but_power_on() {
+fn sram_and_registers_survive_every_reset_except_power_on() {
     // "During reset, all I/O Registers are set to their initial values" (11.1): SRAM and r0 to r31 are not I/O
     // registers.
     let image = assemble(
@@ -124,7 +124,7 @@ fn power_on_fills_the_sram_with_noise_that_depends_on_the_seed() {
 }
 
 #[test]
-fn each_power_on_leaves_different_noise_and_restarts_the_stack_measurement() {
+fn each_power_on_changes_the_noise_and_restarts_the_stack_measurement() {
     let image = assemble(
         "ldi r16, 0x08 $ out SPH, r16 $ ldi r16, 0xff $ out SPL, r16
          push r16 $ push r16 $ push r16
@@ -151,7 +151,7 @@ fn each_power_on_leaves_different_noise_and_restarts_the_stack_measurement() {
 fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
     // "the I/O ports of the AVR are immediately reset to their initial state when a
     // reset source goes active" (11.1).
-    let image = program_once("DDRB = 2; PORTB = 2;");
+    let image = compile_statements("DDRB = 2; PORTB = 2;");
     for mut uno in unos_after(CYCLES_PER_MS, &image) {
         assert!(uno.is_high(Pin::d(9)));
         uno.reset();
@@ -173,7 +173,7 @@ fn a_reset_makes_every_pin_an_input_and_ends_its_pulse() {
 fn a_timer_is_stopped_after_a_reset() {
     // Timer1 has a compare match every 1000 cycles. After the reset the program does not start Timer1, and only
     // reads its registers.
-    let image = program_once(
+    let image = compile_statements(
         "if (MCUSR & 2) {
             OCR1A = 77; GPIOR0 = TCNT1L;
             __builtin_avr_delay_cycles(5000);
@@ -201,7 +201,7 @@ fn temp_is_cleared_by_a_reset() {
 }
 
 #[test]
-fn a_reset_restarts_a_firmware_that_has_halted_or_crashed() {
+fn a_reset_restarts_a_halted_or_crashed_firmware() {
     for (source, is_halt) in [
         ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
         ("ldi r16, 1 $ sts 0x0fff, r16", false),
@@ -224,9 +224,9 @@ fn a_sleeping_board_is_reset_at_the_current_cycle() {
     end: sleep $ rjmp end",
     );
     let mut uno = uno_after(12_345, image);
-    let asleep_cycles = uno.asleep_cycles();
+    let sleep_cycles = uno.sleep_cycles();
     uno.reset();
-    assert_eq!((uno.cycle(), uno.asleep_cycles()), (12_345, asleep_cycles));
+    assert_eq!((uno.cycle(), uno.sleep_cycles()), (12_345, sleep_cycles));
     uno.run_cycles(100);
     assert_eq!(uno.marks()[1].cycle, 12_345 + 1);
 }
@@ -283,8 +283,8 @@ fn after_a_boot_loader_mcusr_is_zero_and_the_watchdog_is_off() {
 }
 
 #[test]
-fn a_boot_loader_set_before_the_first_cycle_may_be_removed_again() {
-    let mut uno = new_uno(program_that_marks_mcusr());
+fn a_boot_loader_can_be_removed_before_the_first_cycle() {
+    let mut uno = new_uno(compile_mcusr_program());
     uno.set_boot_loader(true);
     uno.set_boot_loader(false);
     uno.run_ms(1);
@@ -293,7 +293,7 @@ fn a_boot_loader_set_before_the_first_cycle_may_be_removed_again() {
 }
 
 #[test]
-fn after_a_reset_a_board_with_a_boot_loader_starts_in_it() {
+fn a_board_starts_in_its_boot_loader_after_every_reset() {
     let loader = assemble_at(0x7e00, "ldi r16, 7\n out GPIOR0, r16\n loop: rjmp loop");
     let mut uno = Uno::with_boot_loader(loader, Fidelity::DataSheet);
     uno.run_ms(1);

@@ -24,7 +24,7 @@ const CAPITALS_PROGRAM: &str = r"
     }";
 
 #[test]
-fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
+fn an_answer_is_the_next_line_without_its_line_end() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(compile_c(CAPITALS_PROGRAM), fidelity);
         uno.run_ms(2);
@@ -38,7 +38,7 @@ fn an_answer_is_the_next_line_from_the_uno_without_its_end() {
 }
 
 #[test]
-fn a_second_of_silence_in_the_chips_time_counts_as_no_answer() {
+fn say_gives_up_after_a_simulated_second_of_silence() {
     // The program never reads the serial line, so it does not answer.
     let mut uno = new_uno(compile_c("int main(void) { for (;;) {} }"));
     assert_eq!(uno.say("anybody"), None);

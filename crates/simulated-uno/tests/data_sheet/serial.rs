@@ -27,7 +27,7 @@ fn program(body: &str) -> Image {
 }
 
 #[test]
-fn an_echo_returns_what_was_sent() {
+fn an_echo_returns_the_sent_bytes() {
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(program("put(get());"), fidelity);
         uno.run_ms(1);
@@ -63,7 +63,7 @@ fn bytes_are_sent_back_to_back_in_frames_of_ten_bits() {
 }
 
 #[test]
-fn the_sender_keeps_the_baud_rate_in_the_long_run() {
+fn a_flood_has_the_baud_rate_over_a_second() {
     let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
     uno.flood(b"0123456789");
     uno.run_ms(1000);
@@ -101,7 +101,7 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
 }
 
 #[test]
-fn an_overrun_is_flagged_until_the_next_read() {
+fn an_overrun_flag_is_cleared_by_the_next_read() {
     let body = "_delay_ms(2); unsigned char before = UCSR0A, byte = UDR0, after = UCSR0A;
                 (void)byte; GPIOR0 = before; GPIOR0 = after;";
     let mut uno = uno_after(3200, program(body));
@@ -112,7 +112,7 @@ fn an_overrun_is_flagged_until_the_next_read() {
 }
 
 #[test]
-fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
+fn a_fast_receive_interrupt_loses_no_byte() {
     let image = compile_with_headers(
         "static volatile unsigned char sum;
         ISR(USART_RX_vect) { sum += UDR0; GPIOR0 = sum; }
@@ -137,8 +137,9 @@ fn a_receive_interrupt_that_keeps_up_loses_nothing_in_a_flood() {
 }
 
 #[test]
-fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
-    let image = compile_with_headers("ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
+fn the_data_register_interrupt_sends_without_gaps() {
+    let image = compile_with_headers(
+        "ISR(USART_UDRE_vect) { static unsigned char n; UDR0 = n++; if (n == 100) UCSR0B &= ~0x20; }
         int main(void) { UCSR0A = 2; UBRR0 = 16; UCSR0B = 0x28; sei(); for (;;) {} }",
     );
     let uno = uno_after_ms(20, image);
@@ -149,7 +150,7 @@ fn the_data_register_interrupt_feeds_the_line_without_a_gap() {
 
 #[test]
 fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
-    // One byte is in the shift register and one waits; there is no room for a third.
+    // One byte is in the shift register and one in the buffer; a third does not fit.
     let body = "UDR0 = 'a'; UDR0 = 'b'; UDR0 = 'c'; _delay_ms(1); put('d'); for (;;) {}";
     let uno = uno_after_ms(3, program(body));
     assert_eq!(transmitted_bytes(&uno), b"abd");
@@ -157,7 +158,7 @@ fn a_byte_written_while_the_transmitter_is_full_is_ignored() {
 
 /// Sends a byte at this baud rate to a program that runs `body` in a loop, and returns the first byte that the
 /// program writes to GPIOR0.
-fn first_mark_at(baud: f64, byte: u8, body: &str) -> u8 {
+fn send_for_first_mark(baud: f64, byte: u8, body: &str) -> u8 {
     let mut uno = new_uno(program(body));
     uno.set_baud(baud);
     uno.run_ms(1);
@@ -167,16 +168,16 @@ fn first_mark_at(baud: f64, byte: u8, body: &str) -> u8 {
 }
 
 #[test]
-fn a_wrong_baud_rate_is_a_framing_error() {
+fn a_wrong_baud_rate_causes_a_framing_error() {
     let body = "while (!(UCSR0A & 0x80)) {} GPIOR0 = UCSR0A & 0x10; (void)UDR0;";
-    let fast_mark = first_mark_at(115_200.0, b'x', body);
+    let fast_mark = send_for_first_mark(115_200.0, b'x', body);
     assert_eq!(fast_mark, 0, "UBRR 16 is 2.1 % fast, within the tolerance");
-    assert_eq!(first_mark_at(57_600.0, b'x', body), 0x10);
+    assert_eq!(send_for_first_mark(57_600.0, b'x', body), 0x10);
 }
 
 #[test]
-fn at_a_wrong_baud_rate_different_bytes_are_read() {
-    let byte_read_at = |baud| first_mark_at(baud, b'0', "GPIOR0 = get();");
+fn a_wrong_baud_rate_changes_the_bytes_that_are_read() {
+    let byte_read_at = |baud| send_for_first_mark(baud, b'0', "GPIOR0 = get();");
     assert_eq!(byte_read_at(115_200.0), b'0');
     // '0' is 0b0011_0000. The UNO takes its eight samples while a sender with half its baud rate sends its start bit
     // and four data bits, all 0: the samples are at 0.73, 1.22, ... 4.16 bits of the sender.
@@ -187,7 +188,7 @@ fn at_a_wrong_baud_rate_different_bytes_are_read() {
 }
 
 #[test]
-fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
+fn a_low_stop_bit_is_a_framing_error_of_its_byte_only() {
     // FE0 is valid until UDR0 is read, so the program reads UCSR0A first (data sheet 20.7.4).
     let body = "unsigned char status; while (!((status = UCSR0A) & 0x80)) {}
                 GPIOR0 = status & 0x10; GPIOR0 = UDR0;";
@@ -203,22 +204,22 @@ fn a_low_stop_bit_is_a_framing_error_of_that_byte_alone() {
         assert_eq!(
             uno.received_by_uno().len(),
             4,
-            "the record has the bytes with a framing error, too"
+            "the record includes the bytes with a framing error"
         );
     }
 }
 
 #[test]
-fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_to_be_read() {
+fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_byte() {
     // The program reads nothing for 2 ms; then it marks the status before it reads each byte, and after the last
     // byte.
     let body = "_delay_ms(2);
                 for (unsigned char i = 0; i < 3; i++) { GPIOR0 = UCSR0A & 0x90; (void)UDR0; }
                 GPIOR0 = UCSR0A & 0x90;";
-    let statuses_with = |broken_index: usize| {
+    let receive_statuses = |faulty_index: usize| {
         let mut uno = uno_after(3200, program(body));
         for (index, byte) in b"abc".iter().enumerate() {
-            match index == broken_index {
+            match index == faulty_index {
                 true => uno.send_with_framing_error(&[*byte]),
                 false => uno.send(&[*byte]),
             }
@@ -227,18 +228,18 @@ fn a_framing_error_is_flagged_only_while_its_byte_is_the_next_to_be_read() {
         mark_values(&uno)
     };
     // Two bytes wait in the buffer, the third in the shift register.
-    assert_eq!(statuses_with(0), [0x90, 0x80, 0x80, 0]);
-    assert_eq!(statuses_with(1), [0x80, 0x90, 0x80, 0]);
-    assert_eq!(statuses_with(2), [0x80, 0x80, 0x90, 0]);
+    assert_eq!(receive_statuses(0), [0x90, 0x80, 0x80, 0]);
+    assert_eq!(receive_statuses(1), [0x80, 0x90, 0x80, 0]);
+    assert_eq!(receive_statuses(2), [0x80, 0x80, 0x90, 0]);
     assert_eq!(
-        statuses_with(3),
+        receive_statuses(3),
         [0x80, 0x80, 0x80, 0],
         "no byte has a framing error"
     );
 }
 
 #[test]
-fn a_run_until_a_line_ends_with_the_line_or_at_the_limit() {
+fn run_until_line_ends_after_the_line_or_at_the_limit() {
     let mut uno = new_uno(program("put('o'); put('k'); put('\\n'); _delay_ms(50);"));
     assert!(uno.run_until_line(20 * CYCLES_PER_MS));
     assert_eq!(transmitted_bytes(&uno), b"ok\n");
@@ -248,7 +249,7 @@ fn a_run_until_a_line_ends_with_the_line_or_at_the_limit() {
 }
 
 #[test]
-fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_divided() {
+fn the_division_of_a_run_does_not_change_when_bytes_reach_a_sleeping_board() {
     let image = compile_with_headers(
         "ISR(USART_RX_vect) { GPIOR0 = UDR0; }
         int main(void) {
@@ -256,19 +257,19 @@ fn bytes_sent_to_a_sleeping_board_arrive_on_time_however_the_run_is_divided() {
             for (;;) asm volatile (\"sleep\");
         }",
     );
-    let run = |pieces: u64| {
+    let run_divided = |run_count: u64| {
         let mut uno = new_uno(image.clone());
         uno.run_until_cycle(12_345);
         uno.send(b"hello");
-        for n in 1..=pieces {
-            uno.run_until_cycle(12_345 + 100_000 * n / pieces);
+        for n in 1..=run_count {
+            uno.run_until_cycle(12_345 + 100_000 * n / run_count);
         }
         uno.marks()
     };
-    let undivided_marks = run(1);
+    let undivided_marks = run_divided(1);
     assert_eq!(undivided_marks.len(), 5);
     let arrival_cycle = 12_345 + (0.95 * FRAME_CYCLES).ceil() as u64;
     // From arrival to mark: entry from sleep 8, jmp 3, a few pushes and the read of UDR0.
     assert_within(arrival_cycle..arrival_cycle + 40, undivided_marks[0].cycle);
-    assert_eq!(run(1000), undivided_marks);
+    assert_eq!(run_divided(1000), undivided_marks);
 }

@@ -49,7 +49,7 @@ fn cycles_to_reset(uno: &Uno, mark_index: usize) -> u64 {
 }
 
 #[test]
-fn every_prescaler_gives_the_time_out_of_table_11_2() {
+fn time_outs_of_all_prescalers_match_table_11_2() {
     // "WDP3:0 0 to 9: 2K to 1024K cycles, 16 ms to 8.0 s" at 128 kHz.
     for wdp in 0..10u8 {
         let value = 0x08 | (wdp & 7) | (wdp & 8) << 2;
@@ -68,8 +68,8 @@ fn every_prescaler_gives_the_time_out_of_table_11_2() {
 }
 
 #[test]
-fn the_time_out_is_counted_from_the_last_wdr_or_from_the_moment_of_switching_on() {
-    for (message, body, ms, mark, expected) in [
+fn the_time_out_starts_at_the_last_wdr_or_when_the_watchdog_is_switched_on() {
+    for (message, body, ms, mark_index, expected) in [
         (
             "wdr restarts the time-out",
             "set(8); for (unsigned char i = 0; i < 10; i++) { _delay_ms(15); GPIOR0 = i; wdr(); }",
@@ -95,7 +95,7 @@ fn the_time_out_is_counted_from_the_last_wdr_or_from_the_moment_of_switching_on(
             0..20,
         ),
     ] {
-        let elapsed_cycles = cycles_to_reset(&run_once(body, ms), mark);
+        let elapsed_cycles = cycles_to_reset(&run_once(body, ms), mark_index);
         assert!(
             expected.contains(&elapsed_cycles),
             "{message}: {elapsed_cycles}"
@@ -130,7 +130,7 @@ fn wde_is_cleared_only_within_four_cycles_after_wdce() {
 }
 
 #[test]
-fn wdtcsr_reads_as_in_the_data_sheet() {
+fn wdtcsr_values_match_the_data_sheet() {
     for (message, body, ms, expected) in [
         (
             "without the timed sequence, WDE is not cleared and the prescaler is not changed",
@@ -157,7 +157,7 @@ fn wdtcsr_reads_as_in_the_data_sheet() {
             // "This bit is set when a time-out occurs in the Watchdog Timer and the Watchdog
             // Timer is configured for interrupt... WDIF is cleared by writing a logic one to
             // the flag" (11.9.2).
-            "in interrupt mode, an interrupt that is not served stays a flag and never resets",
+            "in interrupt mode, an interrupt that is not served keeps its flag and causes no reset",
             "set(0x40); _delay_ms(40); GPIOR0 = WDTCSR;
             WDTCSR = 0x40; GPIOR0 = WDTCSR;
             WDTCSR = 0xc0; GPIOR0 = WDTCSR;",
@@ -183,7 +183,7 @@ fn hardware_clears_wdce_after_four_cycles() {
 }
 
 #[test]
-fn the_interrupt_mode_never_resets_and_stays_on() {
+fn interrupt_mode_stays_on_and_does_not_reset() {
     // Table 11-1: WDE 0, WDIE 1: "Interrupt Mode", action on time-out "Interrupt".
     let body = "ISR(WDT_vect) { GPIOR0 = WDTCSR; }
         int main(void) { SMCR = 1; MCUSR = 0; set(0x40); sei(); for (;;) asm volatile (\"sleep\"); }";
@@ -194,7 +194,7 @@ fn the_interrupt_mode_never_resets_and_stays_on() {
 }
 
 #[test]
-fn interrupt_and_reset_mode_warns_first_and_then_resets() {
+fn interrupt_and_reset_mode_interrupts_first_and_then_resets() {
     // "The first time-out in the Watchdog Timer will set WDIF. Executing the
     // corresponding interrupt vector will clear WDIE and WDIF automatically by
     // hardware (the Watchdog goes to System Reset Mode)" (11.9.2).
@@ -209,7 +209,7 @@ fn interrupt_and_reset_mode_warns_first_and_then_resets() {
 }
 
 #[test]
-fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() {
+fn an_interrupt_that_is_not_served_before_the_next_time_out_causes_a_reset() {
     // "If the interrupt is not executed before the next time-out, a System Reset
     // will be applied" (11.9.2).
     let body = "int main(void) {
@@ -221,7 +221,7 @@ fn an_interrupt_that_is_not_executed_before_the_next_time_out_ends_in_a_reset() 
 }
 
 #[test]
-fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
+fn after_its_reset_the_watchdog_runs_at_16_ms_until_wdrf_is_cleared() {
     // "WDE is overridden by WDRF in MCUSR. This means that WDE is always set when
     // WDRF is set. To clear WDE, WDRF must be cleared first" (11.9.2).
     let body = "int main(void) {
@@ -247,7 +247,7 @@ fn after_its_reset_the_watchdog_stays_on_at_16_ms_until_wdrf_is_cleared() {
 }
 
 #[test]
-fn the_watchdog_ends_a_sleep_with_interrupts_off() {
+fn the_watchdog_resets_a_chip_that_sleeps_with_interrupts_disabled() {
     let image = program(
         "int main(void) { SMCR = 1; MCUSR = 0; set(8); asm volatile (\"sleep\"); GPIOR0 = 1; for (;;) {} }",
     );
@@ -260,7 +260,7 @@ fn the_watchdog_ends_a_sleep_with_interrupts_off() {
 }
 
 #[test]
-fn an_enabled_interrupt_does_not_end_a_sleep_with_interrupts_off() {
+fn a_timer_interrupt_does_not_end_a_sleep_with_interrupts_disabled() {
     let uno = run_once(
         "SMCR = 1; OCR1A = 999; TIMSK1 = 2; TCCR1B = 9; set(8);
         asm volatile (\"sleep\"); GPIOR0 = 1;",
@@ -289,7 +289,7 @@ fn an_interrupt_in_the_cycle_of_the_sleep_instruction_does_not_end_the_sleep() {
 }
 
 #[test]
-fn a_watchdog_reset_occurs_at_the_same_cycle_however_the_run_is_divided() {
+fn the_division_of_a_run_does_not_change_the_cycle_of_a_watchdog_reset() {
     let image = program("int main(void) { set(8); for (;;) GPIOR0++; }");
     let mut unbroken_uno = new_uno(image.clone());
     unbroken_uno.run_until_cycle(50 * CYCLES_PER_MS);
@@ -303,13 +303,13 @@ fn a_watchdog_reset_occurs_at_the_same_cycle_however_the_run_is_divided() {
     assert_eq!(
         exact_uno.watchdog_resets(),
         1,
-        "a reset in the last cycle of a run belongs to the run"
+        "a reset in the last cycle of a run is part of the run"
     );
     assert_eq!(stepped_uno.marks(), unbroken_uno.marks());
 }
 
 #[test]
-fn stock_simavr_never_resets_while_the_interrupt_is_enabled() {
+fn stock_simavr_does_not_reset_in_interrupt_and_reset_mode() {
     let image = program("int main(void) { set(0x48); for (;;) {} }");
     let mut uno = Uno::with_image(image, Fidelity::Stock);
     uno.run_ms(100);

@@ -4,13 +4,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use lizard_core::numbers::mark::ADDRESS;
-
 use lizard_robot::Robot;
 use pollster::block_on;
 
 use super::*;
 use crate::board::BoardError;
-use crate::contents::robot_in;
+use crate::contents::find_robot;
 use crate::target::Model;
 use double::BoardDouble;
 
@@ -18,29 +17,29 @@ mod alone;
 mod double;
 mod nano;
 
-/// The code of the firmware, in Intel HEX.
+/// The firmware's code, in Intel HEX.
 pub(crate) const CODE: &str = include_str!("../../../../firmware/code.hex");
 
-/// An image of five pages, the last one partly filled.
-fn image() -> Image {
+/// Creates an image of five pages, of which the last is partly filled.
+fn test_image() -> Image {
     Image::new(pattern_bytes(600, 3)).expect("the image fits")
 }
 
-/// The addresses of the pages of [`image`].
+/// The page addresses of [`test_image`].
 const PAGE_ADDRESSES: [usize; 5] = [0, 0x80, 0x100, 0x180, 0x200];
 
-/// Bytes that differ from their neighbours.
+/// Creates bytes that differ from their neighbours.
 fn pattern_bytes(count: usize, factor: usize) -> Vec<u8> {
     (0..count).map(|index| (index * factor + 1) as u8).collect()
 }
 
-/// A board whose flash holds [`image`].
+/// Creates a board whose flash holds [`test_image`].
 fn board_with_image() -> BoardDouble {
-    BoardDouble::with(image().bytes())
+    BoardDouble::with_program(test_image().bytes())
 }
 
-/// The result of an upload, the events that it reported, and the board afterwards.
-struct Run {
+/// The result of an upload, its reported events, and the board afterwards.
+struct UploadRun {
     result: Result<PageCounts, UploadError>,
     /// The descriptions of the board's contents.
     reported_contents: Vec<String>,
@@ -48,18 +47,18 @@ struct Run {
     board: BoardDouble,
 }
 
-/// Uploads [`image`] to a board.
-fn run(board: BoardDouble) -> Run {
-    run_with(board, &image())
+/// Uploads [`test_image`] to a board.
+fn run(board: BoardDouble) -> UploadRun {
+    run_with_image(board, &test_image())
 }
 
-/// Uploads an image to a board about which nothing is known.
-fn run_with(board: BoardDouble, image: &Image) -> Run {
+/// Uploads an image to a board of unknown model.
+fn run_with_image(board: BoardDouble, image: &Image) -> UploadRun {
     run_with_target(board, image, Target::default())
 }
 
-/// Uploads an image to a board; `target` holds the facts that are known before the boot loader answers.
-fn run_with_target(board: BoardDouble, image: &Image, target: Target) -> Run {
+/// Uploads an image to a board about which `target` is known.
+fn run_with_target(board: BoardDouble, image: &Image, target: Target) -> UploadRun {
     let mut loader = Loader::new(board);
     let (mut reported_contents, mut retry_count) = (Vec::new(), 0);
     let mut report = |event: Event<'_>| match event {
@@ -71,7 +70,7 @@ fn run_with_target(board: BoardDouble, image: &Image, target: Target) -> Run {
     };
     let result = block_on(upload(&mut loader, image, target, &mut report));
     let board = loader.into_board();
-    Run {
+    UploadRun {
         result,
         reported_contents,
         retry_count,
@@ -79,8 +78,8 @@ fn run_with_target(board: BoardDouble, image: &Image, target: Target) -> Run {
     }
 }
 
-impl Run {
-    /// Checks that the board has [`image`], has started it, and still has its boot loader; returns the page counts.
+impl UploadRun {
+    /// Checks that the board has started [`test_image`] and still has its boot loader; returns the page counts.
     fn assert_written(&self) -> PageCounts {
         let counts = *self.result.as_ref().expect("the image is written");
         let (flash, blank) = (&self.board.flash, BoardDouble::blank().flash);
@@ -106,40 +105,41 @@ impl Run {
         error.to_string()
     }
 
-    /// True if the program is an endless loop: `rjmp .-2`.
-    fn starts_in_a_loop(&self) -> bool {
-        self.board.flash[..2] == [0xff, 0xcf]
+    /// True if the program starts with the idle loop.
+    fn starts_with_idle_loop(&self) -> bool {
+        self.board.flash[..2] == IDLE_JUMP
     }
 }
 
-/// The robot of the robot file with this name.
-pub(crate) fn robot(name: &str) -> Robot {
+/// Loads the robot file with the given name.
+pub(crate) fn load_robot(name: &str) -> Robot {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots"));
     Robot::load(folder.join(format!("{name}.toml"))).expect("the robot file is valid")
 }
 
-/// A board with the firmware and the robot of this name.
+/// Creates a board with the firmware and the named robot.
 fn board_with_robot(name: &str) -> BoardDouble {
-    BoardDouble::with(firmware_image(name).bytes())
+    BoardDouble::with_program(firmware_image(name).bytes())
 }
 
-/// The image of a robot alone, that of the robot file with this name.
+/// Creates the image of the named robot alone.
 fn robot_image(name: &str) -> Image {
-    Image::robot_alone(robot(name).section()).expect("the image fits")
+    Image::robot_alone(load_robot(name).section()).expect("the image fits")
 }
 
-/// The name of the robot that the firmware would load.
-fn robot_name(board: &BoardDouble) -> Option<String> {
-    robot_in(&board.flash[..BOOT_ADDRESS]).map(|robot| robot.robot_name().map(char::from).collect())
+/// Reads the name of the robot that the firmware would load.
+fn read_robot_name(board: &BoardDouble) -> Option<String> {
+    let robot = find_robot(&board.flash[..BOOT_ADDRESS])?;
+    Some(robot.robot_name().map(char::from).collect())
 }
 
-/// The firmware's image with the robot of the robot file with this name.
+/// Creates the image of the firmware with the named robot.
 fn firmware_image(name: &str) -> Image {
-    Image::firmware(CODE, &robot(name).section()).expect("the image fits")
+    Image::firmware(CODE, &load_robot(name).section()).expect("the image fits")
 }
 
 #[test]
-fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
+fn an_upload_to_a_blank_board_writes_exactly_the_pages_of_the_image() {
     let run = run(BoardDouble::blank());
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (5, 0));
@@ -149,8 +149,8 @@ fn a_blank_board_gets_every_page_of_the_image_and_no_other() {
 }
 
 #[test]
-fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
-    let run = run(BoardDouble::with(&[9; 5000]));
+fn the_first_page_is_the_idle_loop_until_all_other_pages_are_written() {
+    let run = run(BoardDouble::with_program(&[9; 5000]));
     run.assert_written();
     assert_eq!(
         run.reported_contents,
@@ -163,7 +163,7 @@ fn the_first_page_is_a_loop_that_does_nothing_until_all_others_are_written() {
 }
 
 #[test]
-fn a_board_that_has_the_image_is_only_started() {
+fn an_upload_only_starts_a_board_that_has_the_image() {
     let run = run(board_with_image());
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (0, 5));
@@ -185,7 +185,7 @@ fn only_pages_that_differ_are_written() {
 }
 
 #[test]
-fn a_loader_that_answers_only_the_third_call_needs_no_second_reset() {
+fn a_loader_that_ignores_two_calls_needs_no_second_reset() {
     let mut board = BoardDouble::blank();
     board.ignored_calls_per_reset = 2;
     let run = run(board);
@@ -195,15 +195,15 @@ fn a_loader_that_answers_only_the_third_call_needs_no_second_reset() {
 
 #[test]
 fn output_of_the_old_program_before_the_answer_is_skipped() {
-    let mut board = BoardDouble::with(&[9; 500]);
-    // The output contains both bytes of an answer, but not next to each other.
+    let mut board = BoardDouble::with_program(&[9; 500]);
+    // The output contains both bytes of an answer, but never adjacent.
     board.old_program_output = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
     run(board).assert_written();
 }
 
 #[test]
-fn a_board_that_never_answers_is_reset_four_times_and_not_written() {
-    let mut board = BoardDouble::with(&[9; 500]);
+fn a_board_that_never_answers_is_reset_four_times_and_stays_unchanged() {
+    let mut board = BoardDouble::with_program(&[9; 500]);
     board.is_mute = true;
     let run = run(board);
     assert!(matches!(run.result, Err(UploadError::NoLoader)));
@@ -214,10 +214,10 @@ fn a_board_that_never_answers_is_reset_four_times_and_not_written() {
 }
 
 #[test]
-fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
+fn a_board_that_sends_without_end_is_not_mistaken_for_a_boot_loader() {
     /// A board that sends `x` without end.
-    struct Talker;
-    impl Board for Talker {
+    struct EndlessSender;
+    impl Board for EndlessSender {
         async fn reset(&mut self, _baud: u32) -> Result<(), BoardError> {
             Ok(())
         }
@@ -232,8 +232,8 @@ fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
             Ok(())
         }
     }
-    let mut loader = Loader::new(Talker);
-    let (image, target) = (image(), Target::default());
+    let mut loader = Loader::new(EndlessSender);
+    let (image, target) = (test_image(), Target::default());
     let result = block_on(upload(&mut loader, &image, target, &mut |_| {}));
     assert!(matches!(result, Err(UploadError::NoLoader)));
     let result = block_on(identify(&mut loader));
@@ -241,7 +241,7 @@ fn a_board_that_never_stops_sending_is_not_taken_for_a_boot_loader() {
 }
 
 #[test]
-fn a_board_is_identified_by_its_boot_loader_and_restarted() {
+fn identify_returns_the_kind_of_boot_loader_and_starts_the_program() {
     let identify_board = |board: BoardDouble| {
         let mut loader = Loader::new(board);
         let kind = block_on(identify(&mut loader));
@@ -258,24 +258,19 @@ fn a_board_is_identified_by_its_boot_loader_and_restarted() {
     }
     let mut board_with_other_chip = BoardDouble::blank();
     board_with_other_chip.signature = [0x1e, 0x95, 0x14];
-    let (refusal, has_started) = identify_board(board_with_other_chip);
-    assert!(
-        has_started
-            && refusal.is_err_and(
-                |message| message.starts_with("the chip is an ATmega328, not an ATmega328P")
-            )
-    );
+    let (kind, has_started) = identify_board(board_with_other_chip);
+    let message = kind.expect_err("the chip is not an ATmega328P");
+    assert!(message.starts_with("the chip is an ATmega328, not an ATmega328P"));
+    assert!(has_started);
     let mut unplugged_board = BoardDouble::blank();
     unplugged_board.unplugged_after_pages = Some(0);
-    assert!(
-        identify_board(unplugged_board)
-            .0
-            .is_err_and(|message| message.starts_with("the port is gone"))
-    );
+    let (kind, _) = identify_board(unplugged_board);
+    let message = kind.expect_err("the board is unplugged");
+    assert!(message.starts_with("the port is gone"));
 }
 
 #[test]
-fn another_chip_is_named_and_not_written() {
+fn a_board_with_another_chip_is_rejected_with_the_name_of_the_chip() {
     let error_for_signature = |signature| {
         let mut board = BoardDouble::blank();
         board.signature = signature;
@@ -288,20 +283,21 @@ fn another_chip_is_named_and_not_written() {
         "the chip is an ATmega328, not an ATmega328P (signature 1E 95 14); the firmware is for an \
          ATmega328P (signature 1E 95 0F). Nothing was written"
     );
-    assert!(error_for_signature([1, 2, 3]).starts_with("the chip is unknown (signature 01 02 03)"));
+    let message = error_for_signature([1, 2, 3]);
+    assert!(message.starts_with("the chip is of an unknown type (signature 01 02 03)"));
 }
 
 #[test]
 fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
     let old_contents = [9; 500];
-    let undisturbed_board = run(BoardDouble::with(&old_contents)).board;
+    let undisturbed_board = run(BoardDouble::with_program(&old_contents)).board;
     assert!(
         undisturbed_board.received_count > 2000,
         "{} bytes",
         undisturbed_board.received_count
     );
     for lost_byte in 0..undisturbed_board.received_count {
-        let mut board = BoardDouble::with(&old_contents);
+        let mut board = BoardDouble::with_program(&old_contents);
         board.lost_byte_to_board = Some(lost_byte);
         let run = run(board);
         run.assert_recovered(lost_byte);
@@ -318,16 +314,16 @@ fn an_upload_recovers_from_the_loss_of_any_byte_to_the_board() {
 #[test]
 fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
     let old_contents = [9; 500];
-    let undisturbed_board = run(BoardDouble::with(&old_contents)).board;
+    let undisturbed_board = run(BoardDouble::with_program(&old_contents)).board;
     assert!(
         undisturbed_board.sent_count > 30_000,
         "{} bytes",
         undisturbed_board.sent_count
     );
-    // Loses each byte of the call and of the first pages; then, in steps of 101 bytes, each byte of a page's answer for
-    // some page.
+    // Loses every byte of the call and of the first pages. Later, steps of 101 bytes lose every byte of a page's answer
+    // on some page.
     for lost_byte in (0..300).chain((300..undisturbed_board.sent_count).step_by(101)) {
-        let mut board = BoardDouble::with(&old_contents);
+        let mut board = BoardDouble::with_program(&old_contents);
         board.lost_byte_from_board = Some(lost_byte);
         let run = run(board);
         run.assert_recovered(lost_byte);
@@ -336,31 +332,34 @@ fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
 }
 
 #[test]
-fn a_byte_that_the_flash_does_not_keep_is_named_and_the_board_does_nothing() {
-    let mut board = BoardDouble::with(&[9; 500]);
-    let expected_byte = image().bytes()[0x85];
+fn a_byte_that_flash_does_not_keep_is_reported_and_the_board_stays_idle() {
+    let mut board = BoardDouble::with_program(&[9; 500]);
+    let expected_byte = test_image().bytes()[0x85];
     board.stuck_bits = Some((0x85, expected_byte & expected_byte.wrapping_neg()));
     let run = run(board);
     let message = run.error_message();
     assert!(message.contains("the byte at address 0x0085"), "{message}");
-    assert!(message.ends_with("write it again"), "{message}");
-    assert!(run.starts_in_a_loop());
+    assert!(message.ends_with("write the program again"), "{message}");
+    assert!(run.starts_with_idle_loop());
     assert_eq!(run.retry_count, 0, "another reset does not repair flash");
 }
 
 #[test]
-fn a_board_unplugged_during_an_upload_does_nothing_until_the_next_upload() {
-    for pages in 1..=5 {
-        let mut board = BoardDouble::with(&[9; 500]);
-        board.unplugged_after_pages = Some(pages);
+fn a_board_unplugged_during_an_upload_stays_idle_until_the_next_upload() {
+    for page_count in 1..=5 {
+        let mut board = BoardDouble::with_program(&[9; 500]);
+        board.unplugged_after_pages = Some(page_count);
         let interrupted_run = run(board);
         let message = interrupted_run.error_message();
         assert!(message.starts_with("the port is gone"), "{message}");
         assert!(
-            message.contains("half a program now, and does nothing"),
+            message.contains("an incomplete program, which does nothing"),
             "{message}"
         );
-        assert!(interrupted_run.starts_in_a_loop(), "after {pages} pages");
+        assert!(
+            interrupted_run.starts_with_idle_loop(),
+            "after {page_count} pages"
+        );
         let mut board = interrupted_run.board;
         board.unplugged_after_pages = None;
         run(board).assert_written();
@@ -368,8 +367,8 @@ fn a_board_unplugged_during_an_upload_does_nothing_until_the_next_upload() {
 }
 
 #[test]
-fn a_board_unplugged_before_the_first_page_is_unchanged() {
-    let mut board = BoardDouble::with(&[9; 500]);
+fn a_board_unplugged_before_the_first_page_stays_unchanged() {
+    let mut board = BoardDouble::with_program(&[9; 500]);
     board.unplugged_after_pages = Some(0);
     let run = run(board);
     let message = run.error_message();

@@ -1,13 +1,13 @@
-//! Deliberate mistakes, and the reader of their list `mutants.txt`, whose first lines describe its format.
+//! Deliberate mistakes, and the reader of their list, `mutants.txt`. The first lines of the list describe its format.
 
-/// A mistake that the tests should notice: a replacement of text in one file.
+/// A mistake that the tests should notice: a text replacement in one file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Mutant {
-    /// The file's path from the root of the tree.
+    /// The file's path, relative to the root of the tree.
     pub file: String,
     /// The description of the mistake.
     pub description: String,
-    /// A part of the names of the tests that run before all others; `None` if all tests run at once.
+    /// A part of the names of the tests that run before all others; `None` if all tests run together.
     pub test_filter: Option<String>,
     /// The package whose own tests must notice the mistake, if the code also runs on the host; `None` if the code runs
     /// only in the firmware.
@@ -24,10 +24,10 @@ pub struct Mutant {
 
 impl Mutant {
     /// Returns a mistake that changes nothing in a file of the core. `text` is the file's text.
-    pub fn unchanged(file: &str, text: String) -> Self {
+    pub fn without_change(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
-            description: "nothing".into(),
+            description: "no change".into(),
             package: Some("lizard-core".into()),
             is_generated: true,
             new: text.clone(),
@@ -36,7 +36,7 @@ impl Mutant {
         }
     }
 
-    /// Returns the file's text with the mistake in it.
+    /// Returns the file's text with the mistake.
     ///
     /// # Errors
     /// Fails if the old text does not occur exactly once in the file.
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_entry_replaces_its_old_text_which_must_occur_exactly_once() {
+    fn an_entry_replaces_its_old_text_only_if_it_occurs_exactly_once() {
         let list =
             "# a list\n\nfile a.rs\nwrong it is two\ntest one\n-let a = 1;\n-\n+let a = 2;\n";
         let mutants = read(list).expect("the list is valid");
@@ -139,12 +139,12 @@ mod tests {
     }
 
     #[test]
-    fn an_invalid_list_is_refused_with_the_number_of_the_line() {
+    fn the_error_for_an_invalid_list_names_the_line() {
         for (list, line) in [
             ("file a.rs\n-x\n+y\n", "line 1"),
             ("\nfile a\nwhat b\n", "line 3"),
         ] {
-            let error = read(list).expect_err("an invalid list must be refused");
+            let error = read(list).expect_err("the list is invalid");
             assert!(error.starts_with(line), "{error}");
         }
     }

@@ -1,20 +1,20 @@
 //! `make mutants`: mutation tests of the firmware. The program makes the mistakes of `host-tests/mutants.txt` in a copy
-//! of the tree, one at a time, and reports those that no test notices.
+//! of the tree, one at a time, and reports mistakes that no test notices.
 //!
-//! Most of the listed mistakes are in the board's code, which runs only in the firmware, so no mutation testing tool
-//! for host crates reaches it. The tests of the running firmware must notice a mistake or, if its entry names a
-//! package, the package's own tests. The tests of the firmware are built once, from the unchanged tree; the environment
-//! variable LIZARD_ELF names the firmware that they test.
+//! Most of the listed mistakes are in the board's code. That code runs only in the firmware, so no mutation testing
+//! tool for host crates reaches it. If a mistake's entry names a package, the package's own tests must notice the
+//! mistake, otherwise the tests of the running firmware. The firmware's tests are built once, from the unchanged tree;
+//! the environment variable LIZARD_ELF names the firmware under test.
 //!
 //! Run the program from the folder `crates`. Each argument is a part of a file's name or of a mistake's description.
 //! The program tries the entries that match at least one argument, or all entries if there is no argument.
 //!
-//! With SAMPLE=60 the program instead tries a random sample of 60 generated mistakes ([`fresh`]) from all code of the
-//! firmware, and prints the rate at which tests notice them, with its confidence interval. SEED selects the sample. For
-//! a mistake in the core, the core's own tests run first, then those of the model checker, then those of the running
-//! firmware.
+//! With SAMPLE=60 the program instead tries a random sample of 60 generated mistakes ([`generated`]) from all of the
+//! firmware's code, and prints the rate at which tests notice them, with its confidence interval. SEED selects the
+//! sample. For a mistake in the core, the core's own tests run first, then the model checker's tests, then the tests of
+//! the running firmware.
 
-mod fresh;
+mod generated;
 mod list;
 
 use std::ffi::OsStr;
@@ -35,7 +35,7 @@ const CPU_TIMEOUT_S: u32 = 240;
 
 /// The outcome of the tests with a mistake in the code.
 enum Outcome {
-    /// At least one test noticed the mistake. The text names the tests that failed.
+    /// At least one test noticed the mistake. The text names the failed tests.
     Caught(String),
     /// No test noticed the mistake.
     Missed,
@@ -64,26 +64,33 @@ fn main() -> ExitCode {
 fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = ScratchTree::copy()?;
     let mut mutants = Vec::new();
-    for file in scratch.files.iter().filter(|file| fresh::is_firmware(file)) {
+    for file in scratch
+        .files
+        .iter()
+        .filter(|file| generated::is_firmware(file))
+    {
         if filters.is_empty() || filters.iter().any(|part| file.contains(part)) {
-            mutants.extend(fresh::mutants_in(file, &read_text(&root().join(file))?));
+            mutants.extend(generated::generate_mutants(
+                file,
+                &read_text(&root().join(file))?,
+            ));
         }
     }
     let generated_count = mutants.len();
     println!("seed {seed}: {count} of {generated_count} generated mistakes");
     let file = "crates/core/src/lib.rs";
-    let unchanged = Mutant::unchanged(file, read_text(&root().join(file))?);
-    if !matches!(scratch.judge(&unchanged)?, Outcome::Missed) {
-        return Err("a test fails or hangs without any mistake".into());
+    let unchanged = Mutant::without_change(file, read_text(&root().join(file))?);
+    if !matches!(scratch.try_mutant(&unchanged)?, Outcome::Missed) {
+        return Err("a test fails or hangs in the unchanged tree".into());
     }
     // The numbers of caught and of tried mistakes, first for code that affects a servo or a saved value, then for
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
-    for mutant in fresh::shuffle(mutants, seed) {
+    for mutant in generated::shuffle(mutants, seed) {
         if tally.iter().map(|[_, tried]| tried).sum::<usize>() == count {
             break;
         }
-        let outcome = match scratch.judge(&mutant)? {
+        let outcome = match scratch.try_mutant(&mutant)? {
             Outcome::DoesNotCompile => continue,
             // Up to a hundred tests may notice a mistake; the first is enough.
             Outcome::Caught(test) => {
@@ -92,13 +99,13 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
             Outcome::Missed => "MISSED".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
-        let [caught, tried] = &mut tally[usize::from(!fresh::affects_motion(&mutant.file))];
+        let [caught, tried] = &mut tally[usize::from(!generated::affects_motion(&mutant.file))];
         *caught += usize::from(outcome != "MISSED");
         *tried += 1;
     }
     let code_kinds = ["that move a servo or a saved value", "in text"];
     for ([caught, tried], code_kind) in tally.into_iter().zip(code_kinds) {
-        let (min, max) = fresh::wilson_interval(caught, tried);
+        let (min, max) = generated::wilson_interval(caught, tried);
         let interval = format!("{:.1} to {:.1} % (Wilson, 95 %)", 100.0 * min, 100.0 * max);
         println!("mistakes {code_kind}: {caught} of {tried} caught, {interval}");
     }
@@ -120,9 +127,9 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
         && let elf = scratch
             .build_firmware()?
             .ok_or("the firmware does not build")?
-        && run_tests(&elf, "")?.is_none_or(|failed| !failed.is_empty())
+        && run_firmware_tests(&elf, "")?.is_none_or(|failed| !failed.is_empty())
     {
-        return Err("a test fails or hangs without any mistake".into());
+        return Err("a test fails or hangs in the unchanged tree".into());
     }
     let mut missed_mutants = Vec::new();
     for mutant in &list {
@@ -130,7 +137,7 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
         let Mutant {
             file, description, ..
         } = mutant;
-        let outcome = match scratch.judge(mutant)? {
+        let outcome = match scratch.try_mutant(mutant)? {
             Outcome::Caught(test) => format!("caught by {test}"),
             Outcome::Missed => {
                 missed_mutants.push(mutant);
@@ -155,8 +162,8 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     Ok(missed_count)
 }
 
-/// Reads the list of mistakes and checks the old texts of all entries, so that a list that is out of date is an error
-/// even if only some of its mistakes are tried.
+/// Reads the list of mistakes and checks the old texts of all entries, so that an outdated list is an error even if
+/// only some of its mistakes are tried.
 fn read_list() -> Result<Vec<Mutant>, String> {
     let path = root().join("host-tests/mutants.txt");
     let list = list::read(&read_text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
@@ -174,7 +181,7 @@ fn read_text(path: &Path) -> Result<String, String> {
 /// A copy of the tree in which mistakes are made, with its own build folders.
 struct ScratchTree {
     folder: PathBuf,
-    /// The paths of the copied files from the root of the tree.
+    /// The paths of the copied files, relative to the root of the tree.
     files: Vec<String>,
 }
 
@@ -199,8 +206,8 @@ impl ScratchTree {
         Ok(scratch)
     }
 
-    /// Writes a file of the copy, unless the file already has these bytes: cargo would rebuild a file with a new
-    /// modification time.
+    /// Writes a file of the copy, unless the file already has these bytes, because a new modification time would make
+    /// cargo rebuild.
     fn write(&self, name: &str, bytes: &[u8]) -> Result<(), String> {
         let path = self.folder.join("tree").join(name);
         if fs::read(&path).is_ok_and(|old_bytes| old_bytes == bytes) {
@@ -211,7 +218,7 @@ impl ScratchTree {
         result.map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Builds the firmware of the copy. Returns `None` if it does not compile.
+    /// Builds the copy's firmware and returns the path of its ELF file; `None` if the firmware does not compile.
     fn build_firmware(&self) -> Result<Option<PathBuf>, String> {
         let build = self.folder.join("build");
         let status = Command::new("cargo")
@@ -227,27 +234,27 @@ impl ScratchTree {
     }
 
     /// Makes a mistake, runs the tests and undoes the mistake.
-    fn judge(&self, mutant: &Mutant) -> Result<Outcome, String> {
-        // Reads the text from the copy, since the original tree may be edited during the run.
+    fn try_mutant(&self, mutant: &Mutant) -> Result<Outcome, String> {
+        // Reads the text from the copy, because the original tree may be edited during the run.
         let correct_text = read_text(&self.folder.join("tree").join(&mutant.file))?;
         self.write(&mutant.file, mutant.apply(&correct_text)?.as_bytes())?;
         let outcome = match &mutant.package {
-            Some(package) => self.judge_in_package(package, mutant),
-            None => self.judge_in_firmware(mutant),
+            Some(package) => self.test_in_package(package, mutant),
+            None => self.test_in_firmware(mutant),
         };
         self.write(&mutant.file, correct_text.as_bytes())?;
         outcome.map_err(|error| format!("{}: {}: {error}", mutant.file, mutant.description))
     }
 
-    /// Builds the firmware of the copy and runs the tests of the running firmware.
-    fn judge_in_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
+    /// Builds the copy's firmware and runs the tests of the running firmware.
+    fn test_in_firmware(&self, mutant: &Mutant) -> Result<Outcome, String> {
         let Some(elf) = self.build_firmware()? else {
             return Ok(Outcome::DoesNotCompile);
         };
-        // The likely tests run first, since all of them together take a minute.
+        // The tests that are likely to fail run first, because all tests together take a minute.
         for filter in mutant.test_filter.as_deref().into_iter().chain([""]) {
-            match run_tests(&elf, filter)? {
-                None => return Ok(Outcome::Caught("tests that hang".into())),
+            match run_firmware_tests(&elf, filter)? {
+                None => return Ok(Outcome::Caught("a time-out".into())),
                 Some(failed_tests) if !failed_tests.is_empty() => {
                     return Ok(Outcome::Caught(failed_tests.join(", ")));
                 }
@@ -257,22 +264,25 @@ impl ScratchTree {
         Ok(Outcome::Missed)
     }
 
-    /// Runs the tests of a package of the copy: first those that should notice the mistake, then all. For a generated
-    /// mistake, also runs the tests of the model checker and of the running firmware.
-    fn judge_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
-        if !matches!(self.cargo_test(package, &["--no-run"])?, Some((true, _))) {
+    /// Runs the tests of a package in the copy: first the tests that should notice the mistake, then all. For a
+    /// generated mistake, also runs the tests of the model checker and of the running firmware.
+    fn test_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
+        if !matches!(
+            self.run_package_tests(package, &["--no-run"])?,
+            Some((true, _))
+        ) {
             return Ok(Outcome::DoesNotCompile);
         }
         let is_generated = mutant.is_generated;
         let filters = mutant.test_filter.as_deref().into_iter().chain([""]);
         let runs = filters.map(|filter| (package, filter));
         for (package, filter) in runs.chain(is_generated.then_some(("lizard-explore", ""))) {
-            match self.cargo_test(package, &["--no-fail-fast", "--", filter])? {
-                None => return Ok(Outcome::Caught("tests that hang".into())),
+            match self.run_package_tests(package, &["--no-fail-fast", "--", filter])? {
+                None => return Ok(Outcome::Caught("a time-out".into())),
                 Some((false, output_text)) => {
-                    let failed_tests = failed_tests_in(&output_text);
+                    let failed_tests = find_failed_tests(&output_text);
                     return Ok(Outcome::Caught(match failed_tests.is_empty() {
-                        true => format!("{package}, which crashes"),
+                        true => format!("a crash of {package}"),
                         false => failed_tests.join(", "),
                     }));
                 }
@@ -285,19 +295,19 @@ impl ScratchTree {
             }
         }
         match is_generated {
-            true => self.judge_in_firmware(mutant),
+            true => self.test_in_firmware(mutant),
             false => Ok(Outcome::Missed),
         }
     }
 
-    /// Runs `cargo test` on a package of the copy. Returns true if the tests passed, and their output; `None` if the
+    /// Runs `cargo test` on a package in the copy. Returns true if the tests passed, and their output; `None` if the
     /// tests hang.
-    fn cargo_test(
+    fn run_package_tests(
         &self,
         package: &str,
         arguments: &[&str],
     ) -> Result<Option<(bool, String)>, String> {
-        run_limited(
+        run_cargo_test(
             &self.folder.join("tree/crates"),
             &[&["-p", package], arguments].concat(),
             &[("CARGO_TARGET_DIR", self.folder.join("host").as_os_str())],
@@ -305,9 +315,9 @@ impl ScratchTree {
     }
 }
 
-/// Runs the firmware's tests whose names contain `filter`. Returns the names of the tests that failed; `None` if the
-/// tests hang.
-fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
+/// Runs the firmware's tests whose names contain `filter`. Returns the names of the failed tests; `None` if the tests
+/// hang.
+fn run_firmware_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
     let arguments = [
         "-p",
         "lizard-host-tests",
@@ -316,7 +326,7 @@ fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         "--test",
         "trouble",
     ];
-    let result = run_limited(
+    let result = run_cargo_test(
         &root().join("crates"),
         &[&arguments[..], &["--", filter]].concat(),
         // Five times the default number of random inputs.
@@ -329,23 +339,23 @@ fn run_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
         return Ok(None);
     };
     if !output_text.contains("test result:") {
-        // A test that had started reached the limit of processor time.
+        // A test had started and reached the limit of processor time.
         if output_text.contains("running ") {
             return Ok(None);
         }
-        return Err("the tests of the firmware do not run; try make test".into());
+        return Err("the tests of the firmware did not run; run make test to see the error".into());
     }
-    Ok(Some(failed_tests_in(&output_text)))
+    Ok(Some(find_failed_tests(&output_text)))
 }
 
 /// Runs `cargo test` in a folder. Returns true if the tests passed, and their output; `None` if the tests do not end
 /// within [`TIMEOUT_S`].
-fn run_limited(
+fn run_cargo_test(
     folder: &Path,
     arguments: &[&str],
     variables: &[(&str, &OsStr)],
 ) -> Result<Option<(bool, String)>, String> {
-    /// The exit code of `timeout` after a time-out. `timeout` also ends the tests that cargo has started.
+    /// The exit code of `timeout` after a time-out, when it also ends the tests that cargo has started.
     const TIMEOUT_CODE: i32 = 124;
     let output = Command::new("prlimit")
         .arg(format!("--cpu={CPU_TIMEOUT_S}"))
@@ -364,20 +374,20 @@ fn run_limited(
     Ok(has_ended.then_some((output.status.success(), output_text)))
 }
 
-/// Returns the names of the tests that failed, from the output of the test harness.
-fn failed_tests_in(output_text: &str) -> Vec<String> {
-    let failed_name_of = |line: &str| {
+/// Finds the names of the failed tests in the output of the test harness.
+fn find_failed_tests(output_text: &str) -> Vec<String> {
+    let failed_name = |line: &str| {
         let name = line.strip_prefix("test ")?.strip_suffix(" ... FAILED")?;
         Some(name.to_owned())
     };
-    output_text.lines().filter_map(failed_name_of).collect()
+    output_text.lines().filter_map(failed_name).collect()
 }
 
 #[cfg(test)]
 mod tests {
     #[test]
-    fn every_listed_mistake_can_be_made_in_the_code() {
+    fn the_old_texts_of_all_listed_mistakes_are_current() {
         let list = super::read_list().expect("the list is current");
-        assert!(list.len() > 50, "{} mistakes", list.len());
+        assert!(list.len() > 50, "only {} mistakes are listed", list.len());
     }
 }

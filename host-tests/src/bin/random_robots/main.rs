@@ -1,8 +1,8 @@
-//! Generator of random robots for `make other-robots`. The program writes files like robot.toml. The tests of the
+//! Generator of random robots for `make other-robots`. The program writes files like robot.toml, and the tests of the
 //! running firmware are repeated with each of these robots.
 //!
 //! The arguments are a folder, a seed and a count. The same seed gives the same robots. If the count is ten or more,
-//! each feature that is rare in the files of `robots/` must occur in one of the robots; otherwise the program fails and
+//! each feature that is rare in the files of `robots/` must occur in one of the robots. Otherwise the program fails and
 //! writes no file.
 
 use std::path::Path;
@@ -29,15 +29,15 @@ fn main() -> ExitCode {
 /// Generates the robots and writes their files.
 fn run(arguments: &[String]) -> Result<(), String> {
     let [folder, seed, count] = arguments else {
-        return Err("the arguments are a folder, a seed and a count".into());
+        return Err("expected three arguments: a folder, a seed and a count".into());
     };
     let parse_number = |text: &String, name: &str| {
         let number = text.parse::<u64>();
-        number.map_err(|_| format!("{name} must be a whole number, not {text:?}"))
+        number.map_err(|_| format!("{name} must be a whole number, but is {text:?}"))
     };
     let (seed, count) = (parse_number(seed, "SEED")?, parse_number(count, "COUNT")?);
     if count == 0 {
-        return Err("COUNT must be at least 1".into());
+        return Err("COUNT must be at least 1, but is 0".into());
     }
     let robots: Vec<(String, Robot)> = (0..count)
         .map(|n| random_robot(&mut Rng::with_seed(seed.wrapping_mul(1_000_003) + 1000 + n)))
@@ -47,10 +47,10 @@ fn run(arguments: &[String]) -> Result<(), String> {
         check_features(&robots)?;
     }
     let folder = Path::new(folder);
-    let message_of = |error: std::io::Error| format!("{}: {error}", folder.display());
-    std::fs::create_dir_all(folder).map_err(message_of)?;
+    let to_message = |error: std::io::Error| format!("{}: {error}", folder.display());
+    std::fs::create_dir_all(folder).map_err(to_message)?;
     for (number, (text, _)) in robots.iter().enumerate() {
-        std::fs::write(folder.join(format!("{number}.toml")), text).map_err(message_of)?;
+        std::fs::write(folder.join(format!("{number}.toml")), text).map_err(to_message)?;
     }
     Ok(())
 }
@@ -74,11 +74,13 @@ fn check_features(robots: &[(String, Robot)]) -> Result<(), String> {
             robot.supplies().rail.is_some()
         }),
         ("without a rail", |robot| robot.supplies().rail.is_none()),
-        ("with a gait besides stand", |robot| robot.gaits().len() > 1),
+        ("with a gait other than stand", |robot| {
+            robot.gaits().len() > 1
+        }),
     ];
     for (feature, has_feature) in rare_features {
         if !robots.iter().any(|(_, robot)| has_feature(robot)) {
-            return Err(format!("there is no robot {feature}; choose another seed"));
+            return Err(format!("no random robot {feature}; choose another seed"));
         }
     }
     Ok(())

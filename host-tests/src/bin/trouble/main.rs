@@ -1,27 +1,27 @@
 //! `make trouble`: runs many random fault-injection scenarios on the simulated UNO. The program prints its progress,
-//! the steps of the first scenarios that fail, and a summary by activity.
+//! the steps of the first failing scenarios, and a summary by activity.
 //!
-//! The environment variables SEED and COUNT select the scenarios. With ONLY, the program plays only the scenario with
-//! this number. `make` runs the program in the folder `crates`.
+//! The environment variables SEED and COUNT select the scenarios. With ONLY, the program runs only the scenario with
+//! this number. `make` runs this program in the `crates` folder.
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 use std::thread;
 use std::time::Instant;
 
-use lizard_host_tests::trouble::{Scenario, events, judge, run_campaign};
+use lizard_host_tests::trouble::{Scenario, collect_events, run_and_check, run_campaign};
 use lizard_host_tests::{FirmwareBench, patrolling_robot, read_number};
 use lizard_rules::{Event, MS, Time};
 use simulated_uno::{FREQUENCY, Image};
 
-/// Maximum number of failing scenarios that are printed in full.
+/// Number of failing scenarios to print in full.
 const MAX_PRINTED_FAILURES: usize = 5;
 
 fn main() -> ExitCode {
     let image = FirmwareBench::image_with(patrolling_robot());
     let seed = read_number("SEED").unwrap_or(1);
     if let Some(scenario_number) = read_number("ONLY") {
-        return replay_verbosely(&image, seed, scenario_number);
+        return run_verbosely(&image, seed, scenario_number);
     }
     let count = read_number("COUNT").unwrap_or(10_000);
     let thread_count = thread::available_parallelism().map_or(1, |n| n.get());
@@ -35,8 +35,8 @@ fn main() -> ExitCode {
         |done_count, failure| {
             if let Some(failure) = failure {
                 let number = failure.scenario.number;
-                let (activity, broken_rule) = (failure.scenario.activity, &failure.broken_rules[0]);
-                println!("scenario {number} ({activity}): broken: {broken_rule}");
+                let (activity, violation) = (failure.scenario.activity, &failure.violations[0]);
+                println!("scenario {number} ({activity}) violates: {violation}");
             } else if done_count.is_multiple_of(100) && std::io::stdout().is_terminal() {
                 print!("{done_count} of {count}\r");
                 _ = std::io::stdout().flush();
@@ -45,14 +45,14 @@ fn main() -> ExitCode {
     );
     for failure in summary.failures.iter().take(MAX_PRINTED_FAILURES) {
         println!(
-            "\n{failure}  to run it alone: make trouble SEED={seed} ONLY={}",
+            "\n{failure}  to run only this scenario: make trouble SEED={seed} ONLY={}",
             failure.scenario.number
         );
     }
     println!("\n{summary}");
-    let seconds = summary.cycles / FREQUENCY;
-    let elapsed = start.elapsed().as_secs_f64();
-    println!("seed {seed}: {count} scenarios, {seconds} s simulated in {elapsed:.0} s");
+    let simulated_s = summary.cycle_count / FREQUENCY;
+    let elapsed_s = start.elapsed().as_secs_f64();
+    println!("seed {seed}: {count} scenarios, {simulated_s} s simulated in {elapsed_s:.0} s");
     if summary.failures.is_empty() {
         ExitCode::SUCCESS
     } else {
@@ -60,16 +60,16 @@ fn main() -> ExitCode {
     }
 }
 
-/// Plays one scenario, and prints its steps, its events and the broken rules.
-fn replay_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
+/// Runs one scenario, and prints its steps, its events and its violations.
+fn run_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
     let scenario = Scenario::generate(seed, number, patrolling_robot());
     print!("{scenario}");
-    let record = lizard_host_tests::trouble::play(image, patrolling_robot(), &scenario);
+    let record = lizard_host_tests::trouble::run_scenario(image, patrolling_robot(), &scenario);
     let mut last_pulse_times = [Time::MIN / 2; 4];
-    for (time, event) in events(&record) {
+    for (time, event) in collect_events(&record) {
         let is_reported = match event {
             Event::ByteReceived | Event::TimePasses => false,
-            // Prints only the first pulse of a servo after more than 30 ms without a pulse.
+            // Prints a servo's pulse only after more than 30 ms without a pulse.
             Event::Pulse(pulse) => {
                 let previous_time = std::mem::replace(&mut last_pulse_times[pulse.servo], time);
                 time - previous_time > 30 * MS
@@ -80,7 +80,7 @@ fn replay_verbosely(image: &Image, seed: u64, number: u64) -> ExitCode {
             println!("{:10.3} ms  {event:?}", time as f64 / MS as f64);
         }
     }
-    match judge(image, patrolling_robot(), &scenario).1 {
+    match run_and_check(image, patrolling_robot(), &scenario).1 {
         None => {
             println!("every rule holds");
             ExitCode::SUCCESS

@@ -1,4 +1,5 @@
-//! Checks of rules about the robot's internal state or its future. A clone of the robot computes the future.
+//! Checks of the rules about the robot's internal state and its future behaviour. A clone of the robot simulates the
+//! future.
 
 use lizard_core::console::command::effect;
 use lizard_core::console::word::Effect;
@@ -8,25 +9,25 @@ use lizard_core::motion::Activity;
 use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::{Eeprom, RunningRobot};
+use lizard_core::virtual_board::Eeprom;
 use lizard_rules::{Event, Limits, Rule, Time};
 
-use super::{FRAME, Verdict, World, broken_rule};
-use crate::fingerprint;
+use super::{FRAME, Verdict, World, report_violation};
+use crate::fingerprint::coarse_fingerprint;
 
-/// Allowance for the rounding of a pulse that changes within a frame, cycles.
+/// Tolerance for rounding a pulse that changes within a frame, cycles.
 const ROUNDING_CYCLES: u16 = 2;
 
 /// Number of frames within which any motion of this robot ends.
 const MOTION_FRAMES: u32 = 160;
 
-/// Lines that start a gait or a routine with a count; even at half pace, the motion ends within [`MOTION_FRAMES`].
+/// Lines that start a gait or a routine with a count. Even at half pace, the motion ends within [`MOTION_FRAMES`].
 const COUNTED_MOTIONS: [&str; 3] = ["walk 1", "trot 2", "round 1"];
 
 /// Number of frames after which a contact is certainly debounced.
 const DEBOUNCE_FRAMES: u8 = 5;
 
-/// Time after which the robot has measured a new supply voltage often enough to react.
+/// Time in which the robot measures a new supply voltage often enough to react.
 const SUPPLY_SETTLING_TIME: Time = 14 * FRAME;
 
 /// Returns the observer's limits for a robot.
@@ -35,23 +36,18 @@ pub(super) fn observer_limits(robot: &Robot) -> Limits {
     Limits {
         levels_mv: [board.slow_mv, board.stop_mv, board.rest_mv].map(u32::from),
         // The console reports at once that `boot` begins.
-        may_boot_to_rest: true,
+        can_boot_to_rest: true,
         ..Limits::default()
     }
 }
 
-/// Returns a fingerprint of main: a number that is the same for equal states.
-fn main_fingerprint(robot: &RunningRobot) -> u64 {
-    fingerprint::coarse_fingerprint(&robot.main)
-}
-
 impl World {
-    /// Judges an answer to a line.
-    pub(super) fn judge_answer(&mut self, line: &str, answer: &str) -> Verdict {
+    /// Checks an answer to a line.
+    pub(super) fn check_answer(&mut self, line: &str, answer: &str) -> Verdict {
         let effect = effect(line, &self.robot());
         let is_accepted = answer.starts_with("ok ");
-        // While its last frame still waits for the pulses, main has not noticed a late edge yet. The edge then stops
-        // the robot after the command.
+        // Main notices a late edge only after the pulses of its last frame. The edge then stops the robot after the
+        // command.
         let has_unnoticed_edge =
             self.observer.is_stop_unreported() && self.running_robot.board.late_edges > 0;
         self.observe_motion_command(effect, Some(is_accepted));
@@ -70,10 +66,10 @@ impl World {
         }
         let is_refused_for_supply = answer.starts_with("err 8");
         if is_refused_for_supply
-            && !self.observer.was_low(0, 70 * FRAME)
+            && !self.observer.was_supply_low(0, 70 * FRAME)
             && Time::from(self.running_robot.motion().frame_count()) * FRAME > SUPPLY_SETTLING_TIME
         {
-            return broken_rule(Rule::NoNeedlessRefusal, answer);
+            return report_violation(Rule::NoNeedlessRefusal, answer);
         }
         if is_accepted && effect == Effect::Moves {
             let is_stack_intact = self.running_robot.board.is_stack_intact;
@@ -82,17 +78,17 @@ impl World {
             }
             if has_unnoticed_edge
                 || self.is_supply_weak
-                || self.observer.was_low(0, 1)
-                || self.observer.was_low(1, SUPPLY_SETTLING_TIME)
+                || self.observer.was_supply_low(0, 1)
+                || self.observer.was_supply_low(1, SUPPLY_SETTLING_TIME)
             {
-                self.observer.drop_pending();
+                self.observer.drop_pending_promises();
             } else if answer == "ok stand" && is_stack_intact {
                 self.check_robot_stands(answer)?;
             } else if COUNTED_MOTIONS.contains(&line) {
                 self.check_motion_ends(answer)?;
             }
         }
-        self.observer.verdict()
+        self.observer.take_verdict()
     }
 
     /// Passes a command that moves, freezes or rests the robot to the observer.
@@ -105,17 +101,17 @@ impl World {
         }
     }
 
-    /// Checks the promises of the answers: runs a clone until all promises are due.
-    pub(super) fn judge_promises(&mut self) -> Verdict {
-        self.observer.verdict()?;
-        if let Some(time) = self.observer.time_until_due() {
+    /// Checks the promises in the answers by running a clone until all promises are due.
+    pub(super) fn check_promises(&mut self) -> Verdict {
+        self.observer.take_verdict()?;
+        if let Some(time) = self.observer.time_until_promises_due() {
             let mut future_world = self.clone();
             for _ in 0..=time / FRAME {
                 future_world.run_frame()?;
             }
         }
-        self.observer.drop_pending();
-        self.observer.verdict()
+        self.observer.drop_pending_promises();
+        self.observer.take_verdict()
     }
 
     /// Checks that `limit` accepts all limits that `cal` prints.
@@ -135,7 +131,7 @@ impl World {
                 .expect("the direction follows the limits");
             let answer = future_robot.send_line(&format!("limit {servo} {limits}"));
             if answer.starts_with("err ") {
-                return broken_rule(Rule::LoadedLimitsValid, answer);
+                return report_violation(Rule::LoadedLimitsValid, answer);
             }
         }
         Ok(())
@@ -156,9 +152,9 @@ impl World {
             robot.run_without_reader(u32::from(DEBOUNCE_FRAMES));
         }
         if changed_robot.board.started_pulses() != unchanged_robot.board.started_pulses()
-            || main_fingerprint(&changed_robot) != main_fingerprint(&unchanged_robot)
+            || coarse_fingerprint(&changed_robot.main) != coarse_fingerprint(&unchanged_robot.main)
         {
-            return broken_rule(Rule::ContactsOnlyInRoutine, format!("{activity:?}"));
+            return report_violation(Rule::ContactsOnlyInRoutine, format!("{activity:?}"));
         }
         Ok(())
     }
@@ -167,10 +163,10 @@ impl World {
     pub(super) fn is_rest_pose_saved(&self) -> bool {
         let memory = &self.running_robot.board.memory;
         let motion = self.running_robot.motion();
-        // A busy EEPROM cannot be read, so a copy of its bytes is read.
+        // Reads a copy of the bytes, because a busy EEPROM cannot be read.
         let readable_memory = Eeprom::with_bytes(*memory.bytes());
         motion.is_resting()
-            && copies::last_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
+            && copies::read_rest_pose(motion.robot(), &readable_memory) == Some(*motion.pose())
     }
 
     fn check_robot_stands(&self, answer: &str) -> Verdict {
@@ -189,7 +185,7 @@ impl World {
             || activity != Activity::Gait(GaitId::STAND)
         {
             let status = future_robot.send_line("status");
-            return broken_rule(Rule::StandWorks, format!("{answer}, and then {status}"));
+            return report_violation(Rule::StandWorks, format!("{answer}, and then {status}"));
         }
         Ok(())
     }
@@ -198,7 +194,7 @@ impl World {
         let mut future_robot = self.running_robot.clone();
         future_robot.run_without_reader(MOTION_FRAMES);
         if future_robot.main.control().activity() != Activity::Stop {
-            return broken_rule(
+            return report_violation(
                 Rule::CountedMotionEnds,
                 format!("{answer}, and then {}", future_robot.send_line("status")),
             );
@@ -206,8 +202,8 @@ impl World {
         Ok(())
     }
 
-    /// Judges the pulses of a frame. `has_main_run` is false if main was stalled in the frame.
-    pub(super) fn judge_pulses(&mut self, has_main_run: bool) -> Verdict {
+    /// Checks the pulses of a frame. `has_main_run` is false if main was stalled during the frame.
+    pub(super) fn check_pulses(&mut self, has_main_run: bool) -> Verdict {
         self.observer.limits.is_memory_reliable = !self.running_robot.board.memory.is_worn;
         let widths = self
             .running_robot
@@ -229,12 +225,12 @@ impl World {
         let robot = self.robot();
         let is_pose_sent = has_main_run && widths.iter().any(|width| *width > 0);
         if is_pose_sent
-            && Clearance::of(&robot, motion.pose())
+            && Clearance::measure(&robot, motion.pose())
                 .first_hazard(&robot)
                 .is_some()
         {
-            return broken_rule(Rule::PosesGuarded, format!("{:?}", motion.pose()));
+            return report_violation(Rule::PosesGuarded, format!("{:?}", motion.pose()));
         }
-        self.observer.verdict()
+        self.observer.take_verdict()
     }
 }

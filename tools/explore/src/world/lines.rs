@@ -5,19 +5,19 @@ use lizard_core::step::Step;
 use lizard_core::virtual_board::{RunningRobot, is_answer};
 use lizard_rules::{Event, Rule, Time};
 
-use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE, Verdict, World, broken_rule};
+use super::{MAX_LINES_TO_FIND_RATE, UNREADABLE_BYTES, Verdict, World, report_violation};
 use crate::fingerprint;
 
-/// Returns a fingerprint of main without the fields that record that a line has arrived.
+/// Returns a fingerprint of main without the fields that record the arrival of a line.
 fn robot_fingerprint(robot: &RunningRobot) -> u64 {
     fingerprint::fingerprint_without_line_arrival(&robot.main)
 }
 
 impl World {
-    /// Sends the bytes of a line and runs main up to the line's immediate effect. If noise has changed the bytes, they
-    /// differ from `line`.
+    /// Sends a line and runs main until the line's immediate effect. `bytes` differ from `line` if noise has changed
+    /// them.
     pub(super) fn send_line(&mut self, line: &'static str, bytes: &[u8]) -> Verdict {
-        let robot_before = self.settled_clone();
+        let robot_before = self.clone_and_settle();
         self.running_robot.board.send(bytes);
         self.running_robot.board.send(b"\n");
         self.observe(Event::ByteReceived);
@@ -29,13 +29,13 @@ impl World {
                 break;
             }
             let step = self.running_robot.main.step(&mut self.running_robot.board);
-            if step != Step::Worked || self.running_robot.board.memory.was_polled_busy() {
-                // Main has no time for the line yet, and reads it later.
+            if step != Step::Worked || self.running_robot.board.memory.take_polled_busy() {
+                // Main is busy and reads the line later.
                 break;
             }
         }
         if self.running_robot.board.unread_count() == 0 {
-            self.judge_next_answer(line, &robot_before)?;
+            self.check_next_answer(line, &robot_before)?;
         }
         if self.unanswered_line.is_some() {
             let effect = effect(line, &self.robot());
@@ -46,12 +46,12 @@ impl World {
 
     /// Sends a line at another baud rate than the receiver's, and checks that the robot ignores the line.
     pub(super) fn send_line_at_other_rate(&mut self) -> Verdict {
-        let robot_before = self.settled_clone();
-        self.running_robot.board.send(&UNREADABLE);
+        let robot_before = self.clone_and_settle();
+        self.running_robot.board.send(&UNREADABLE_BYTES);
         self.observe(Event::ByteReceived);
-        let robot_after = self.settled_clone();
+        let robot_after = self.clone_and_settle();
         if robot_fingerprint(&robot_after) != robot_fingerprint(&robot_before) {
-            return broken_rule(Rule::OtherRateIgnored, robot_after.board.transmitter.text);
+            return report_violation(Rule::OtherRateIgnored, robot_after.board.transmitter.text);
         }
         Ok(())
     }
@@ -67,7 +67,7 @@ impl World {
             let line: &[u8] = if queried_robot.board.rate == self.sender_rate {
                 b"status\n"
             } else {
-                &UNREADABLE
+                &UNREADABLE_BYTES
             };
             queried_robot.board.send(line);
             for _ in 0..4 {
@@ -77,23 +77,23 @@ impl World {
                 return Ok(());
             }
         }
-        broken_rule(
+        report_violation(
             Rule::RateFound,
             format!("at {} baud", self.sender_rate.baud()),
         )
     }
 
-    /// Returns a clone of the robot that has printed all its output.
-    fn settled_clone(&self) -> RunningRobot {
+    /// Returns a clone of the robot, run until it has printed all its output.
+    fn clone_and_settle(&self) -> RunningRobot {
         let mut clone = self.running_robot.clone();
         clone.board.transmitter.text.clear();
         clone.settle();
         clone
     }
 
-    /// Judges the answer that the robot is about to print: the robot's state must already agree with it.
-    fn judge_next_answer(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
-        let robot_after = self.settled_clone();
+    /// Checks the answer that the robot is about to print: the robot's state must already agree with the answer.
+    fn check_next_answer(&mut self, line: &'static str, robot_before: &RunningRobot) -> Verdict {
+        let robot_after = self.clone_and_settle();
         let text = &robot_after.board.transmitter.text;
         let Some(answer) = text.lines().find(|line| is_answer(line)) else {
             return Ok(());
@@ -102,20 +102,20 @@ impl World {
             && (robot_fingerprint(&robot_after) != robot_fingerprint(robot_before)
                 || robot_after.board.memory.bytes() != robot_before.board.memory.bytes())
         {
-            return broken_rule(Rule::RefusalChangesNothing, text.clone());
+            return report_violation(Rule::RefusalChangesNothing, text.clone());
         }
         if answer.starts_with("ok gait=") {
-            // The answer to `status` is judged when it is printed.
+            // The answer to `status` is checked when it is printed.
             return Ok(());
         }
-        self.judged_answer_count += 1;
+        self.checked_answer_count += 1;
         self.unanswered_line = None;
-        self.judge_answer(line, answer)?;
-        self.judge_promises()
+        self.check_answer(line, answer)?;
+        self.check_promises()
     }
 
-    /// Passes the lines that the robot has printed to the observer; `composed_from` is the earliest time at which the
-    /// robot may have composed them.
+    /// Passes the printed lines to the observer. `composed_from` is the earliest time at which the robot may have
+    /// composed them.
     pub(super) fn observe_output(&mut self, composed_from: Time) -> Verdict {
         let text = std::mem::take(&mut self.running_robot.board.transmitter.text);
         // The last line may be incomplete.
@@ -124,14 +124,14 @@ impl World {
         for line in complete_lines.split("\r\n").filter(|line| !line.is_empty()) {
             self.observe(Event::LinePrinted(composed_from, line));
             if is_answer(line) {
-                if self.judged_answer_count > 0 && !line.starts_with("ok gait=") {
-                    self.judged_answer_count -= 1;
+                if self.checked_answer_count > 0 && !line.starts_with("ok gait=") {
+                    self.checked_answer_count -= 1;
                 } else if let Some(sent_line) = self.unanswered_line.take() {
-                    self.judge_answer(sent_line, line)?;
+                    self.check_answer(sent_line, line)?;
                 }
             }
         }
-        self.judge_promises()
+        self.check_promises()
     }
 
     /// Passes the robot's `# boot: ` lines to the observer while the output is held.

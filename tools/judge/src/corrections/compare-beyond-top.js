@@ -1,5 +1,5 @@
-// A counter never reaches a compare value beyond its top. avr8js treats the wrap as a match, and sets OCF1B each time
-// that the counter restarts.
+// A counter never reaches a compare value beyond its top. avr8js treats the wrap as a match and sets OCF1B whenever
+// the counter restarts.
 
 export function ignoreCompareBeyondTop({ timers }) {
   for (const timer of timers) {

@@ -1,6 +1,6 @@
-// All events that become due during an instruction are handled at its end. avr8js handles one event per instruction and
+// All events that become due during an instruction take effect at its end. avr8js handles one event per instruction and
 // leaves the others for later instructions: if a serial byte and a timer's flag are due together, the byte delays the
-// flag by an instruction.
+// flag by one instruction.
 const SREG = 0x5f;
 const SREG_I = 0x80;
 

@@ -1,5 +1,5 @@
-// The EEPROM's interrupt is pending as long as no byte is being written (data sheet, EECR). avr8js continues
-// to call the handler while a byte is being written, and then ignores the handler's byte.
+// The EEPROM interrupt is pending only while no write is in progress (data sheet, EECR). avr8js also calls the handler
+// during a write, and then ignores the byte that the handler writes.
 const EEPE = 0x02;
 
 export function holdEepromInterrupt({ cpu, eeprom }) {

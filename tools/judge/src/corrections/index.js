@@ -1,4 +1,4 @@
-// The corrections of avr8js 0.21.1, in an order that matters: each may wrap functions of the previous ones.
+// The corrections of avr8js 0.21.1. Their order matters: each may wrap functions that an earlier correction replaced.
 import { wakeTimersAtTheirFlags } from '../timer-events.js';
 import { ignoreCompareBeyondTop } from './compare-beyond-top.js';
 import { keepTransmitInterruptPending } from './data-register-empty.js';

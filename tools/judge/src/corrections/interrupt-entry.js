@@ -1,4 +1,4 @@
-// The entry of an interrupt takes four cycles (data sheet, 7.7.1), but two in avr8js.
+// The response to an interrupt takes four cycles (data sheet, 7.7.1), but only two in avr8js.
 const MISSING_CYCLES = 2;
 
 export function extendInterruptEntry({ cpu }) {

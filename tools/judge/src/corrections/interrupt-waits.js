@@ -1,12 +1,12 @@
-// The instruction after the one that switches interrupts on runs before any interrupt (data sheet,
-// 7.7). Programs rely on it: the compiler restores the stack pointer by `out SREG` and `out SPL`, and
-// an interrupt between the two overwrites the stack. avr8js serves the interrupt at once.
+// After an instruction enables interrupts, one more instruction runs before any interrupt (data sheet, 7.7). Programs
+// rely on this delay: the compiler restores the stack pointer by `out SREG` and then `out SPL`, and an interrupt
+// between the two would overwrite the stack. avr8js serves the interrupt at once.
 import { avrInstruction } from 'avr8js';
 
 const SREG = 0x5f;
 const SREG_I = 0x80;
 
-/** True for the opcodes of SEI, RETI, `out SREG`, and the stores that can reach SREG. */
+/** Returns true for the opcodes of SEI, RETI, `out SREG`, and the stores that can reach SREG. */
 const mayEnableInterrupts = (opcode) =>
   opcode === 0x9478 ||
   opcode === 0x9518 ||
@@ -17,7 +17,7 @@ const mayEnableInterrupts = (opcode) =>
 export function delayInterruptAfterEnable(uno) {
   const { cpu } = uno;
   const { data } = cpu;
-  /** The end of the last instruction that switched interrupts on, cycles. */
+  /** The cycle at which the last instruction that enabled interrupts ended. */
   let enabledCycle = -1;
   const execute = () => {
     const wasEnabled = data[SREG] & SREG_I;

@@ -1,5 +1,5 @@
-// avr8js treats SLEEP as a NOP. Here time passes from event to event until an interrupt is due. The interrupt's entry
-// takes four cycles more than in a processor that is awake (data sheet, 7.7.1).
+// avr8js treats SLEEP as a NOP. Here time jumps from event to event until an interrupt is pending. The response to an
+// interrupt takes four cycles longer from sleep (data sheet, 7.7.1).
 import { avrInstruction } from 'avr8js';
 
 const SLEEP = 0x9588;

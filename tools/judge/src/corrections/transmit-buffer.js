@@ -1,10 +1,10 @@
-// The transmitter sends one byte and holds a second byte (data sheet, 19.6): UDRE0 is set as long as there is no
-// second byte, and bytes are sent back to back. avr8js holds no second byte, so a gap follows each byte.
+// The transmitter buffers a second byte while it sends the first (data sheet, 19.6): UDRE0 is set while the buffer is
+// empty, and bytes are sent back to back. avr8js has no buffer; therefore a gap follows each byte.
 
 export function addTransmitBuffer({ cpu, usart }) {
   let isSending = false;
   let nextByte = null;
-  // The cycle at which the stop bit ends; the event is handled later, at the end of an instruction.
+  // The cycle at which the stop bit ends; its event is handled later, at the end of an instruction.
   let byteEndCycle;
   const shiftOut = (byte) => {
     isSending = true;

@@ -1,5 +1,5 @@
-// A receiver drops a waiting byte only when it is switched off (data sheet, 19.8.5). avr8js also drops the byte
-// when UCSR0B is written while the receiver is on and stays on, for example to enable the transmit interrupt.
+// A receiver drops an unread byte only when it is switched off (data sheet, 19.8.5). avr8js also drops the byte when
+// the program writes UCSR0B while the receiver stays on, for example to enable the transmit interrupt.
 const RXC = 0x80;
 const RXEN = 0x10;
 

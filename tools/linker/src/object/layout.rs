@@ -1,4 +1,4 @@
-//! Layout of an object: orders its functions so that calls are short, and moves their sections into this order.
+//! Layout of an object, in which functions are ordered so that calls are short.
 
 use object::build::elf::{Section, SectionId};
 use object::elf;
@@ -12,14 +12,14 @@ use crate::order::{Call, Pieces};
 const ROUTINES_SIZE: u32 = 320;
 
 impl Object<'_> {
-    /// Puts the functions into an order in which calls are short, with the routines of `frames.S` in the
-    /// middle. Sections before the routines are named `.lowtext`, as in the linker script; the other
-    /// sections follow the routines if the routines are linked first. Does nothing if a section could fall
-    /// through into the next section, or branches to another section. Returns the number of bytes saved.
+    /// Orders the functions so that calls are short, with the routines of `frames.S` in the middle. Sections before the
+    /// routines are named `.lowtext`, as in the linker script; the other sections follow the routines if the routines
+    /// are linked first. Does nothing if a section could fall through into the next section, or branches to another
+    /// section. Returns the number of bytes saved.
     pub(super) fn order_functions(&mut self) -> i64 {
-        let functions = self.function_sections();
+        let functions = self.find_function_sections();
         let may_move = |section: &Section| {
-            let Some(code) = self.code(section.id()) else {
+            let Some(code) = self.decode(section.id()) else {
                 return false;
             };
             let stops_at_end = match code.instructions.as_slice() {
@@ -43,49 +43,57 @@ impl Object<'_> {
         if !code_sections().all(may_move) {
             return 0;
         }
-        // The pieces are: each function; then the routines with the sections that stay after them; then all
-        // other files.
+        // The pieces are all functions, then the routines with the sections that stay after them, then all other files.
         let [middle_piece, other_files_piece] = [functions.len(), functions.len() + 1];
-        let piece_of =
+        let piece_index =
             |section: SectionId| functions.iter().position(|function| *function == section);
         let mut pieces = Pieces::default();
         let is_call = |reference: &&Reference| reference.kind == elf::R_AVR_CALL;
         for section in &functions {
             // The size is estimated as if all calls in the function were short.
-            let call_savings = 2 * self.references(*section).iter().filter(is_call).count() as u64;
+            let call_savings = 2 * self
+                .read_references(*section)
+                .iter()
+                .filter(is_call)
+                .count() as u64;
             let size = self.0.sections.get(*section).sh_size - call_savings;
             pieces.sizes.push(size as u32);
         }
-        let staying_sections = code_sections().filter(|section| piece_of(section.id()).is_none());
+        let staying_sections =
+            code_sections().filter(|section| piece_index(section.id()).is_none());
         let staying_bytes: u64 = staying_sections.map(|section| section.sh_size).sum();
         pieces
             .sizes
             .extend([ROUTINES_SIZE + staying_bytes as u32, 0]);
         for section in code_sections() {
-            for reference in self.references(section.id()) {
+            for reference in self.read_references(section.id()) {
                 let symbol = self.0.symbols.get(reference.symbol);
-                let from = piece_of(section.id()).unwrap_or(middle_piece);
-                let to = match symbol.section {
-                    Some(section) => piece_of(section).unwrap_or(middle_piece),
+                let caller = piece_index(section.id()).unwrap_or(middle_piece);
+                let callee = match symbol.section {
+                    Some(section) => piece_index(section).unwrap_or(middle_piece),
                     None if symbol.name.starts_with(b"__frame_") => middle_piece,
                     None => other_files_piece,
                 };
-                if is_call(&&reference) && from != to {
-                    let is_in_middle = from == middle_piece;
+                if is_call(&&reference) && caller != callee {
+                    let is_in_middle = caller == middle_piece;
                     let offset = if is_in_middle {
                         0
                     } else {
                         reference.offset as u32
                     };
-                    pieces.calls.push(Call { from, offset, to });
+                    pieces.calls.push(Call {
+                        caller,
+                        offset,
+                        callee,
+                    });
                 }
             }
         }
         let order = pieces.find_order();
         let compiled_order: Vec<usize> = (0..=other_files_piece).collect();
         let saved_bytes = 2
-            * (pieces.out_of_reach_count(&compiled_order) as i64
-                - pieces.out_of_reach_count(&order) as i64);
+            * (pieces.count_out_of_reach(&compiled_order) as i64
+                - pieces.count_out_of_reach(&order) as i64);
         if saved_bytes <= 0 {
             return 0;
         }
@@ -100,7 +108,7 @@ impl Object<'_> {
     }
 
     /// Moves a section of code and its table of relocations to the end of the file. Both must move, because the linker
-    /// places a section where the first of the two is.
+    /// uses the position of whichever comes first.
     fn move_to_end(&mut self, section: SectionId, is_before_routines: bool) {
         let new_section = self.0.sections.copy(section);
         if let (true, Some(name)) = (is_before_routines, new_section.name.strip_prefix(b".text")) {

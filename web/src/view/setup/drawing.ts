@@ -1,46 +1,46 @@
-// The drawing of the robot for the first connection, from above with the head upward: each servo, the direction of its
-// crank, and an arrow for a turn. The body is drawn shorter than it is, so that the cranks appear large.
+// The drawing of the robot for the first connection, from above with the head upward: each servo, its crank's
+// direction, and an arrow for a rotation. The body is shortened, so that the cranks appear large.
 import type { Description, Four, Scene, Point } from '../../robot';
 import { makeSvg } from '../make';
 
-/** The places of the servos A1 to A4 in the robot. */
-export const SERVO_PLACES = ['front left', 'front right', 'back right', 'back left'] as const;
-/** Returns a servo's name with its place, such as `A1, front left`. */
-export const servoName = (servo: number): string => `A${servo + 1}, ${SERVO_PLACES[servo]}`;
+/** The positions of servos A1 to A4 in the robot. */
+export const SERVO_POSITIONS = ['front left', 'front right', 'back right', 'back left'] as const;
+/** Formats a servo's name with its position, such as `A1, front left`. */
+export const formatServo = (servo: number): string => `A${servo + 1}, ${SERVO_POSITIONS[servo]}`;
 
 /** The servo that the drawing highlights. */
 export interface SelectedServo {
   servo: number;
-  /** The turn that the arrow shows, deg counter-clockwise; null for none. */
+  /** The rotation that the arrow shows, deg counter-clockwise; null for no arrow. */
   turnDeg: number | null;
 }
 
-/** Half of the drawn distance between the front and the rear shafts. */
+/** Half the drawn distance between the front and the rear shafts. */
 const HALF_LENGTH_MM = 34;
-/** Length of the arrow's arc: more than the servo's turn, so that the arrow is clearly visible. */
+/** Angle of the arrow's arc: larger than the servo's rotation, so that the arrow is clearly visible. */
 const ARC_DEG = 55;
 const RADIANS_PER_DEG = Math.PI / 180;
 
-/** Returns the point at `lengthMm` and an angle from another point, in the drawing's frame with y downward. */
+/** Returns the point at a distance and an angle from another point, in the drawing's frame with y downward. */
 function pointAt([x, y]: Point, lengthMm: number, degrees: number): Point {
   return [x + lengthMm * Math.cos(degrees * RADIANS_PER_DEG), y - lengthMm * Math.sin(degrees * RADIANS_PER_DEG)];
 }
 
 const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeSvg('line', { class: className, x1, y1, x2, y2 });
 
-/** Makes an arrow about a shaft that starts at the angle `start`, deg, and has the direction of `turn`. */
+/** Makes an arrow about a shaft; it starts at the angle `start`, deg, and has the direction of `turn`. */
 function makeArrow(shaft: Point, radius: number, start: number, turn: number): SVGElement[] {
   const direction = Math.sign(turn);
   const end = start + direction * ARC_DEG;
   const [x1, y1] = pointAt(shaft, radius, start);
   const [x2, y2] = pointAt(shaft, radius, end);
-  // SVG's sweep flag is 0 for counter-clockwise, since y is downward.
+  // Because y is downward, SVG's sweep flag is 0 for counter-clockwise.
   const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
   const headPoints = [pointAt(shaft, radius + 6, end - direction * 9), [x2, y2], pointAt(shaft, radius - 6, end - direction * 9)];
   return [arc, makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
-/** Makes the drawing of the robot; `selected` is the servo to highlight, null for none. */
+/** Makes the drawing of the robot; `selected` is the highlighted servo, null for none. */
 export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Scene, selected: SelectedServo | null): SVGElement {
   const shortening = Math.max(...shafts.map(([, y]) => Math.abs(y))) - HALF_LENGTH_MM;
   const shorten = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - shortening)];
@@ -49,13 +49,13 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const [halfWidth, halfLength] = [plate.half[0], plate.half[1] - shortening];
   const viewHalfWidth = Math.max(...shaftPoints.map(([x]) => Math.abs(x))) + crankLength + 58;
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
-  const angles = servos.map(({ neutral }, n) => `${servoName(n)}: ${neutral.toFixed(1)}°`).join('; ');
+  const angles = servos.map(({ neutral }, n) => `${formatServo(n)}: ${neutral.toFixed(1)}°`).join('; ');
   const arrowText = selected?.turnDeg ? ` An arrow shows A${selected.servo + 1} turning ${selected.turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.` : '';
   const svg = makeSvg('svg', {
     class: 'robot-drawing',
     viewBox: `${-viewHalfWidth} ${-viewHalfHeight} ${2 * viewHalfWidth} ${2 * viewHalfHeight}`,
     role: 'img',
-    'aria-label': `The robot from above, ahead is up. Where the cranks point, from its right, counter-clockwise: ${angles}.${arrowText}`,
+    'aria-label': `The robot from above; ahead is up. Angles of the cranks, counter-clockwise from the robot's right: ${angles}.${arrowText}`,
   });
   svg.append(
     makeSvg('rect', { class: 'plate', x: -halfWidth, y: -halfLength, width: 2 * halfWidth, height: 2 * halfLength, rx: 8 }),
@@ -73,7 +73,7 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
       group.append(makeLine('ghost', shaft, pointAt(shaft, crankLength, neutral + selected.turnDeg)), ...makeArrow(shaft, crankLength * 0.75, neutral + Math.sign(selected.turnDeg) * 8, selected.turnDeg));
     }
     group.append(makeSvg('circle', { class: 'shaft', cx: shaft[0], cy: shaft[1], r: 5 }));
-    // The text is beyond the crank, so that it does not overlap the arrow.
+    // The text is beyond the crank, where it does not overlap the arrow.
     const isLeft = shaft[0] < 0;
     const x = (isLeft ? -1 : 1) * (Math.abs(shaft[0]) + crankLength + 6);
     const y = shaft[1] + Math.sign(shaft[1]) * crankLength * 0.4;

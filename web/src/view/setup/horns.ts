@@ -1,4 +1,4 @@
-// The step Horns, in which each servo holds the middle of its travel while the user presses its crank on.
+// The step Horns, in which each servo holds its middle position while the user presses the crank onto the shaft.
 import { button, list, note, row, paragraph } from '../make';
 import type { Step } from './step';
 
@@ -8,12 +8,12 @@ export const hornsStep: Step = {
   needsRobot: true,
   selectedServo: () => null,
   makeElements: ({ run, markDone }) => [
-    paragraph('Nothing is on the shafts yet, and each horn is screwed into its link. First end the pulses; then switch on the servos\' supply, so that nothing starts.'),
+    paragraph('The shafts are still empty, and each horn is screwed into its link. First end the pulses, so that no servo moves; then switch on the servos\' supply.'),
     row(
       button('Let the servos rest', () =>
         run(async (guide) => {
           await guide.rest();
-          return 'No pulses now: switch on the servos\' supply.';
+          return 'The pulses have ended. Switch on the servos\' supply now.';
         }),
       ),
       button(
@@ -22,16 +22,16 @@ export const hornsStep: Step = {
           run(async (guide) => {
             await guide.center();
             markDone('Horns');
-            return 'Every servo holds its middle now, a pulse of 1500 µs.';
+            return 'Every servo now holds its middle position (pulse width 1500 µs).';
           }),
         true,
       ),
     ),
     list(
-      'Press each crank on as near to the angle in the drawing as the teeth allow. The dashed line is where angles begin.',
-      'Do not turn a crank by force while its servo has power: lift it off and put it on again.',
-      'Put the horns\' own screws in. Nothing may join the links before the signs are proven.',
+      'Press each crank onto its shaft, as near to the angle in the drawing as the teeth allow. The dashed line is at 0°.',
+      'Do not turn a crank by force while its servo has power; lift it off and refit it.',
+      'Insert the horns\' own screws. Do not connect the links before the signs are checked.',
     ),
-    note('25 teeth are 14.4° apart, so a crank is off by 7.2° at most; its trim corrects that later. If the horns are on already, go on.'),
+    note('The 25 teeth are 14.4° apart; a crank is therefore off by at most 7.2°, which its trim corrects later. If the horns are already fitted, continue.'),
   ],
 };

@@ -1,6 +1,6 @@
 // The step Keep, which saves the calibration in the board and as a file.
-import { calibrationText } from '../../robot';
-import { servoName } from './drawing';
+import { formatCalibration } from '../../robot';
+import { formatServo } from './drawing';
 import { saveFile } from '../download';
 import { button, make, note, row, table, paragraph } from '../make';
 import type { Step } from './step';
@@ -13,7 +13,7 @@ export const keepStep: Step = {
     if (!guide) return [paragraph('Reading the calibration…')];
     const { servos } = guide.calibration;
     const rows = servos.map(({ trim, limit, dir, scale }, servo) => [
-      servoName(servo),
+      formatServo(servo),
       dir,
       `${trim.toFixed(2)}°`,
       `${limit[0].toFixed(2)}° to ${limit[1].toFixed(2)}°`,
@@ -23,7 +23,7 @@ export const keepStep: Step = {
       run(async (guide) => {
         await guide.save();
         markDone('Keep');
-        return 'Saved: the board begins with it from now on, also after new firmware.';
+        return 'Saved: the board starts with it from now on, even with new firmware.';
       });
     const fileInput = make('input', { type: 'file', accept: '.toml' });
     fileInput.addEventListener('change', () => {
@@ -32,10 +32,10 @@ export const keepStep: Step = {
     });
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
-      paragraph(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'The board has saved it.' : 'Nothing has changed since the board was connected.'),
-      row(button('Save in the board', saveCalibration, guide.isChanged), button('Save as a file', () => saveFile('calibration.toml', [calibrationText(guide.calibration)], 'application/toml'))),
+      paragraph(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'Saved in the board.' : 'No setting has changed since the board was connected.'),
+      row(button('Save in the board', saveCalibration, guide.isChanged), button('Save as a file', () => saveFile('calibration.toml', [formatCalibration(guide.calibration)], 'application/toml'))),
       row(make('label', { className: 'file' }, 'Open a saved file ', fileInput)),
-      note('The file is the same as that of `lizard calibrate backup`. A file that you open takes effect at once; the button saves it in the board.'),
+      note('The file has the format of `lizard calibrate backup`. An opened file takes effect at once; the button saves it in the board.'),
     ];
   },
 };

@@ -1,17 +1,17 @@
-// The step Limits, which limits each servo's travel so that printed parts do not touch each other.
-import { servoName, type SelectedServo } from './drawing';
+// The step Limits, which limits each servo's travel, so that printed parts do not touch each other.
+import { formatServo, type SelectedServo } from './drawing';
 import { button, note, numberBox, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
 
-/** Turn of the servo per press of a button. */
+/** Rotation of the servo per press of a button. */
 const TURN_DEG = 5;
 
 export class LimitsStep implements Step {
   readonly name = 'Limits';
-  readonly title = 'Limit their travel';
+  readonly title = 'Limit the servos’ travel';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its commanded angle, deg; null while the robot stands. */
+  /** The last turned servo and its commanded angle, deg; null while the robot stands. */
   private lastTurn: { servo: number; degrees: number } | null = null;
 
   reset(): void {
@@ -29,7 +29,7 @@ export class LimitsStep implements Step {
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
     return [
-      paragraph(`Turn ${servoName(servo)} until a part of your print is about to touch another, and let it go no further. Where nothing touches, there is nothing to do.`),
+      paragraph(`Turn ${formatServo(servo)} until a printed part is about to touch another part, and set the limit there. Skip this step if no parts touch.`),
       row(
         button(`↺ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle + TURN_DEG)),
         button(`↻ ${TURN_DEG}°`, () => this.turnServo(tools, currentAngle - TURN_DEG)),
@@ -38,8 +38,8 @@ export class LimitsStep implements Step {
       ...(limit
         ? [
             row(
-              button('Not further ↺ than here', () => this.setLimit(tools, from, currentAngle)),
-              button('Not further ↻ than here', () => this.setLimit(tools, currentAngle, to)),
+              button('Set ↺ limit here', () => this.setLimit(tools, from, currentAngle)),
+              button('Set ↻ limit here', () => this.setLimit(tools, currentAngle, to)),
             ),
             row(
               makeBox('From, degrees', from, (value) => this.setLimit(tools, value, to)),
@@ -47,7 +47,7 @@ export class LimitsStep implements Step {
             ),
           ]
         : []),
-      note('A limit goes counter-clockwise from its first angle to its second. One with which a gait could not be walked is refused.'),
+      note('The travel goes counter-clockwise from the first angle to the second angle. A limit that would make a gait impossible is refused.'),
     ];
   }
 
@@ -64,7 +64,7 @@ export class LimitsStep implements Step {
       await guide.limit(servo, from, to);
       markDone(this.name);
       const [min, max] = guide.calibration.servos[servo].limit;
-      return `A${servo + 1} goes from ${min.toFixed(2)}° to ${max.toFixed(2)}°.`;
+      return `A${servo + 1} travels from ${min.toFixed(2)}° to ${max.toFixed(2)}°.`;
     });
   }
 }

@@ -1,15 +1,15 @@
-// The step Scale, in which the user measures how far each servo turns: not every servo turns by 1° per 10 µs of pulse
+// The step Scale, in which the user measures each servo's rotation: not every servo turns by 1° per 10 µs of pulse
 // width.
-import { servoName, type SelectedServo } from './drawing';
+import { formatServo, type SelectedServo } from './drawing';
 import { button, note, numberBox, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
 
 export class ScaleStep implements Step {
   readonly name = 'Scale';
-  readonly title = 'Measure how far they turn';
+  readonly title = 'Measure the servos’ rotation';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its commanded turn, deg counter-clockwise; null before the turn. */
+  /** The last turned servo and its commanded rotation, deg counter-clockwise; null before the rotation. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
 
   reset(): void {
@@ -25,11 +25,11 @@ export class ScaleStep implements Step {
     const currentScale = guide?.calibration.servos[servo].scale;
     const isTurned = this.lastTurn?.servo === servo;
     return [
-      paragraph(`Mark where the crank of ${servoName(servo)} points, turn it, and measure how far it went.`),
+      paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle.`),
       row(button(`Turn A${servo + 1}`, () => this.turnServo(tools), !isTurned)),
-      ...(isTurned ? [row(numberBox('It turned by, degrees', null, '0.1', (degrees) => this.setMeasuredTurn(tools, degrees)))] : []),
+      ...(isTurned ? [row(numberBox('Measured angle, degrees', null, '0.1', (degrees) => this.setMeasuredTurn(tools, degrees)))] : []),
       paragraph(`Scale: ${currentScale === undefined ? '–' : `${currentScale.toFixed(2)} µs per degree`}`),
-      note('Most servos are near 10. Without a protractor, leave this step out.'),
+      note('Most servos have about 10 µs per degree. Without a protractor, skip this step.'),
     ];
   }
 
@@ -37,13 +37,13 @@ export class ScaleStep implements Step {
     run(async (guide) => {
       const turn = await guide.turnForScale(servo);
       this.lastTurn = { servo, turnDeg: turn };
-      return `A${servo + 1} was told to turn ${Math.abs(turn)}°. Measure it.`;
+      return `A${servo + 1} received the command to turn by ${Math.abs(turn)}°. Measure its angle.`;
     });
   }
 
   private setMeasuredTurn({ servo, run, markDone }: StepTools, degrees: number): void {
     run(async (guide) => {
-      if (!this.lastTurn || degrees <= 0) return 'Give how far it turned, in degrees, more than 0.';
+      if (!this.lastTurn || degrees <= 0) return 'The measured angle must be more than 0 degrees.';
       const commandedTurn = this.lastTurn.turnDeg;
       this.reset();
       const scale = await guide.scaleByTurn(servo, commandedTurn, degrees);

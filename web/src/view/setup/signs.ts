@@ -1,23 +1,23 @@
-// The step Signs, in which the user proves the direction in which each servo turns. A servo with a wrong sign turns to
-// the other side of its neutral angle, so the guard would accept an unsafe pose.
-import { servoName, SERVO_PLACES, type SelectedServo } from './drawing';
+// The step Signs, in which the user checks each servo's direction of rotation. A servo with a wrong sign turns to the
+// other side of its neutral angle; the guard would therefore accept an unsafe pose.
+import { formatServo, SERVO_POSITIONS, type SelectedServo } from './drawing';
 import { button, note, row, paragraph } from '../make';
 import type { Step, StepTools } from './step';
 
-/** The key under which a servo's sign is marked as done. */
-const signKey = (servo: number) => `sign ${servo}`;
+/** Returns the key that marks a servo's sign as checked. */
+const toSignKey = (servo: number) => `sign ${servo}`;
 
-/** Returns the servos whose signs are not proven yet. */
-export const findUnprovenServos = (tools: StepTools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(signKey(servo)));
+/** Returns the servos whose signs are not checked yet. */
+export const findUncheckedServos = (tools: StepTools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(toSignKey(servo)));
 
 export class SignsStep implements Step {
   readonly name = 'Signs';
   readonly title = 'Prove the signs';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The servo that was turned last, and its turn, deg counter-clockwise; null before the first turn. */
+  /** The last turned servo and its rotation, deg counter-clockwise; null before the first rotation. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
-  /** The fault that the user has observed: another servo turned, or none; null without a fault. */
+  /** The fault that the user observed: another servo turned, or no servo turned; null without a fault. */
   private observedFault: 'other' | 'none' | null = null;
 
   reset(): void {
@@ -33,10 +33,10 @@ export class SignsStep implements Step {
     const isTurned = this.lastTurn?.servo === servo;
     const name = `A${servo + 1}`;
     return [
-      paragraph(`${servoName(servo)}: one servo alone turns by 10°. Look from above.`),
-      row(button(isTurned ? `Turn ${name} once more` : `Turn ${name}`, () => this.turnServo(tools), !isTurned)),
+      paragraph(`${formatServo(servo)}: only this servo turns, by 10°. Look from above.`),
+      row(button(isTurned ? `Turn ${name} again` : `Turn ${name}`, () => this.turnServo(tools), !isTurned)),
       ...(isTurned ? this.makeQuestion(tools) : []),
-      note('Do not leave this step out: the robot would take an unsafe pose for a safe one.'),
+      note('Do not skip this step: with a wrong sign, the robot would treat an unsafe pose as safe.'),
     ];
   }
 
@@ -48,16 +48,16 @@ export class SignsStep implements Step {
       tools.redraw();
     };
     const advice = {
-      other: `Two signal wires are exchanged. Switch the servos' supply off and put the signal of the servo at the ${SERVO_PLACES[servo]} on pin D${pin}. Then turn it once more.`,
-      none: `Has its supply power, and are its ground and the UNO's joined? Is its plug the right way round, the signal (orange) on pin D${pin}? Then turn it once more.`,
+      other: `Two signal wires are exchanged. Switch the servos' supply off and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn it again.`,
+      none: `Check that its supply is on, that its ground is connected to the UNO's ground, and that its signal (orange) is on pin D${pin}. Then turn it again.`,
     };
     return [
-      paragraph('Did it turn as the arrow shows?'),
+      paragraph('Did the servo turn in the direction of the arrow?'),
       row(
-        button('Yes', () => this.markProven(tools), true),
-        button('No, the other way', () => this.reverseSign(tools)),
+        button('Yes', () => this.markChecked(tools), true),
+        button('No, in the other direction', () => this.reverseSign(tools)),
         button('Another servo turned', observe('other')),
-        button('Nothing turned', observe('none')),
+        button('No servo turned', observe('none')),
       ),
       ...(this.observedFault ? [paragraph(advice[this.observedFault])] : []),
     ];
@@ -69,7 +69,7 @@ export class SignsStep implements Step {
       const turn = await guide.turnForSign(servo);
       this.observedFault = null;
       this.lastTurn = { servo, turnDeg: turn };
-      return `A${servo + 1} was told to turn ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
+      return `A${servo + 1} received the command to turn by ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
   }
 
@@ -78,15 +78,15 @@ export class SignsStep implements Step {
     tools.run(async (guide) => {
       await guide.reverse(servo);
       this.reset();
-      return `The sign of A${servo + 1} is "${guide.calibration.servos[servo].dir}" now. Turn it once more and look.`;
+      return `The sign of A${servo + 1} is now "${guide.calibration.servos[servo].dir}". Turn it again and check.`;
     });
   }
 
-  /** Marks this sign as proven and goes to the next unproven servo, or to the next step. */
-  private markProven(tools: StepTools): void {
-    tools.markDone(signKey(tools.servo));
+  /** Marks this sign as checked and goes to the next unchecked servo, or to the next step. */
+  private markChecked(tools: StepTools): void {
+    tools.markDone(toSignKey(tools.servo));
     this.reset();
-    const [nextServo] = findUnprovenServos(tools);
+    const [nextServo] = findUncheckedServos(tools);
     if (nextServo !== undefined) {
       tools.servo = nextServo;
       return tools.redraw();
@@ -94,7 +94,7 @@ export class SignsStep implements Step {
     tools.markDone(this.name);
     tools.run(async (guide) => {
       await guide.stand();
-      return 'All four turn the right way.';
+      return 'All four servos turn in the right direction.';
     });
     tools.goTo('Trims');
   }

@@ -5,23 +5,23 @@ import type { Session } from '../../session';
 import type { WriteContent, Writer } from '../writer';
 import type { SelectedServo } from './drawing';
 
-/** The state and the functions that the dialog offers to its steps. */
+/** The state and functions that the dialog offers to its steps. */
 export interface StepTools {
   readonly session: Session;
   readonly writer: Writer;
-  /** The guide through the calibration of the connected robot; null until the robot's calibration is read. */
+  /** The guide for the connected robot; null until its calibration is read. */
   readonly guide: BoardGuide | null;
-  /** The servo that the user has selected, 0 to 3. */
+  /** The selected servo, 0 to 3. */
   servo: number;
   /** Connects a board on USB, or disconnects a board. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(content: WriteContent): void;
-  /** Runs an action with the robot's guide; shows the message that it returns, or the reason if it fails. */
+  /** Runs an action with the robot's guide; shows the returned message, or the error. */
   run(action: (guide: Guide) => Promise<string>): void;
-  /** Lets the robot stand, with all servos back at neutral. */
+  /** Makes the robot stand, with all servos at neutral. */
   stand(): void;
-  /** Applies the calibration in the text of a file named `name`, without saving it in the board. */
+  /** Applies the calibration in the text of the file `name`, without saving it in the board. */
   setCalibration(text: string, name: string): void;
   /** Marks a step, or a part of a step, as done. */
   markDone(step: string): void;
@@ -40,12 +40,12 @@ export interface Step {
   readonly title: string;
   /** True if the step needs a robot with this firmware. */
   readonly needsRobot: boolean;
-  /** True if the step treats one servo at a time, which the user selects. */
+  /** True if the step concerns one servo at a time, which the user selects. */
   readonly isPerServo?: boolean;
   /** Makes the elements of the step. */
   makeElements(tools: StepTools): Node[];
-  /** Returns the servo to highlight in the drawing, null for none; a step without this method has no drawing. */
+  /** Returns the highlighted servo of the drawing, null for none; a step without this method has no drawing. */
   selectedServo?(tools: StepTools): SelectedServo | null;
-  /** Resets the step's own state when the step is entered or another board is connected. */
+  /** Resets the step's state when the user enters the step or connects another board. */
   reset?(): void;
 }

@@ -1,9 +1,9 @@
-// The step Trims, in which the user corrects each crank's angle in small steps, which take effect at once.
-import { servoName } from './drawing';
+// The step Trims, in which the user corrects each crank's angle in small steps that take effect at once.
+import { formatServo } from './drawing';
 import { button, note, row, paragraph } from '../make';
 import type { Step } from './step';
 
-/** The changes of the trim that the buttons make, deg counter-clockwise. */
+/** The trim changes of the buttons, deg counter-clockwise. */
 const TRIM_CHANGES = [0.5, 0.1, -0.1, -0.5];
 
 export const trimsStep: Step = {
@@ -22,11 +22,11 @@ export const trimsStep: Step = {
         return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
     return [
-      paragraph(`Let the robot stand, and turn the crank of ${servoName(servo)} until it points to ${neutral}°, or mirrors the one on the other side.`),
+      paragraph(`Make the robot stand, and change the trim until the crank of ${formatServo(servo)} points to ${neutral}°, or mirrors the crank on the other side.`),
       row(button('Stand', stand, true)),
       row(...TRIM_CHANGES.map((change) => button(`${change > 0 ? '↺' : '↻'} ${Math.abs(change)}°`, changeTrim(change)))),
       paragraph(`Trim: ${trim === undefined ? '–' : `${trim.toFixed(2)}°`}`),
-      note('↺ is counter-clockwise seen from above. A trim above 7.2° would be less on the next tooth: fit that horn again.'),
+      note('↺ is counter-clockwise as seen from above. If a trim exceeds 7.2°, refit the horn on the next tooth.'),
     ];
   },
 };

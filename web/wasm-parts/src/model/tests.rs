@@ -6,7 +6,7 @@ use crate::solids::Triangles;
 
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
-fn model_of(drive: &str) -> Model {
+fn make_model(drive: &str) -> Model {
     Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\""))
         .expect("paper.toml is valid with either drive")
 }
@@ -18,16 +18,16 @@ fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
 }
 
 #[test]
-fn lagging_legs_are_where_the_twins_shape_places_them() {
-    let model = model_of("strut");
+fn mounts_of_lagging_legs_match_the_twin_shape() {
+    let model = make_model("strut");
     let robot = model.assembly().robot().clone();
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let angles = [0, 1, 2, 3].map(|servo| neutral[servo] + [4.0, -6.0, 3.0, 5.0][servo]);
     let lags = [0.0, 2.5, -3.0, 7.0];
     let sweeps = [0, 1, 2, 3].map(|i| FORWARD_TURN_SIGN[i] * (angles[i] - neutral[i]) - lags[i]);
-    let shape = Shape::of(&robot, angles, sweeps).expect("every loop closes");
-    let places = model.mount_places(angles, lags).expect("every loop closes");
-    let place_of = |mount| places[model.mount_index(mount)];
+    let shape = Shape::from_angles(&robot, angles, sweeps).expect("every loop closes");
+    let places = model.place_mounts(angles, lags).expect("every loop closes");
+    let get_place = |mount| places[model.find_mount(mount)];
     for servo in 0..4 {
         let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
         for (joint, mount) in leg
@@ -35,14 +35,14 @@ fn lagging_legs_are_where_the_twins_shape_places_them() {
             .into_iter()
             .zip([Mount::Crank(servo), Mount::Follower(servo)])
         {
-            let error = (to_chassis(place_of(mount), plan.crank_joint) - joint).length();
+            let error = (to_chassis(get_place(mount), plan.crank_joint) - joint).length();
             assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
-        let error = (to_chassis(place_of(Mount::Foot(servo)), plan.foot) - leg.foot).length();
+        let error = (to_chassis(get_place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
         assert!(error < 1e-9, "foot {servo} is off by {error} mm");
         let [from, to] = leg.strut_anchors;
         let strut_end = Vector::new((to - from).length(), 0.0);
-        let strut = place_of(Mount::Strut(servo));
+        let strut = get_place(Mount::Strut(servo));
         let error = (to_chassis(strut, Vector::default()) - from).length()
             + (to_chassis(strut, strut_end) - to).length();
         assert!(error < 1e-9, "strut {servo} is off by {error} mm");
@@ -50,8 +50,8 @@ fn lagging_legs_are_where_the_twins_shape_places_them() {
 }
 
 #[test]
-fn without_lag_every_mount_has_its_pose_in_the_assembly() {
-    let model = model_of("rigid");
+fn mounts_without_lag_match_the_assembly() {
+    let model = make_model("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
     let pose = robot
@@ -59,31 +59,31 @@ fn without_lag_every_mount_has_its_pose_in_the_assembly() {
         .solve(&angles.into())
         .expect("every loop closes");
     let places = model
-        .mount_places(angles, [0.0; 4])
+        .place_mounts(angles, [0.0; 4])
         .expect("every loop closes");
     assert_eq!(places.len(), model.mounts.len());
     for (mount, place) in model.mounts.iter().zip(places) {
-        let Placement { origin, x_axis } = model.assembly().place(*mount, &pose);
+        let Placement { origin, x_axis } = model.assembly().placement(*mount, &pose);
         let coordinates = [origin.x, origin.y, x_axis.x, x_axis.y]
             .into_iter()
             .zip(place);
         let error = coordinates.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(error < 1e-9, "{mount:?}: {place:?}");
+        assert!(error < 1e-9, "{mount:?} is off by {error} mm");
     }
 }
 
 /// Returns the corners of each solid.
-fn corners_of(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
+fn list_corners(solids: &[Triangles]) -> Vec<Vec<[f32; 3]>> {
     let corners = solids.iter().map(|solid| solid.corners.as_chunks().0);
     corners.map(<[_]>::to_vec).collect()
 }
 
 #[test]
-fn a_solid_has_the_height_of_its_body_and_no_corner_outside_it() {
-    let model = model_of("strut");
+fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
+    let model = make_model("strut");
     let (entry, solids) = (
         model.entry(),
-        corners_of(&model.solids().expect("every solid is closed")),
+        list_corners(&model.solids().expect("every solid is closed")),
     );
     let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest_solid_index, Some(solids.len() - 1));
@@ -99,10 +99,10 @@ fn a_solid_has_the_height_of_its_body_and_no_corner_outside_it() {
         let [from, to] = body.z();
         assert!(
             (low - from).abs() < 1e-4 && (high - to).abs() < 1e-4,
-            "{}: {low} to {high}",
+            "{}: z from {low} to {high} mm",
             body.name
         );
-        // Seen from above, each corner must lie on or within the body's own shapes.
+        // Seen from above, each corner must lie on or within the body's shapes.
         for corner in &solids[body_entry.solid] {
             let [x, y, _] = corner.map(f64::from);
             let point = Vector::new(
@@ -115,7 +115,7 @@ fn a_solid_has_the_height_of_its_body_and_no_corner_outside_it() {
                 .fold(f64::INFINITY, f64::min);
             assert!(
                 error < 1e-3,
-                "{} has a corner {error} mm outside of it",
+                "{} has a corner {error} mm outside its shapes",
                 body.name
             );
         }
@@ -123,8 +123,8 @@ fn a_solid_has_the_height_of_its_body_and_no_corner_outside_it() {
 }
 
 #[test]
-fn every_body_has_a_step_and_every_part_has_as_many_bodies_as_pieces() {
-    let model = model_of("strut");
+fn every_body_has_a_step_and_every_part_has_a_body_per_piece() {
+    let model = make_model("strut");
     let entry = model.entry();
     assert_eq!(entry.steps.len(), 15);
     assert!(
@@ -140,15 +140,15 @@ fn every_body_has_a_step_and_every_part_has_as_many_bodies_as_pieces() {
     for (part, count) in counts {
         assert_eq!(part.count, count, "{}", part.name);
     }
-    assert!(entry.floor > 20.0, "{}", entry.floor);
+    assert!(entry.floor > 20.0, "{} mm", entry.floor);
 }
 
 #[test]
-fn a_robot_whose_parts_cannot_be_made_is_refused_with_the_key_and_the_value() {
+fn the_refusal_of_impossible_parts_names_the_key_and_the_value() {
     let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
     let refusal = Model::read(&toml).err().expect("the robot is refused");
     assert!(
-        refusal.refused.contains("parts.height is 10 mm"),
+        refusal.refused.starts_with("parts.height ") && refusal.refused.ends_with(" 10 mm"),
         "{}",
         refusal.refused
     );

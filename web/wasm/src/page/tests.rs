@@ -6,7 +6,7 @@ use super::*;
 use crate::paper::PAPER_TOML;
 
 #[test]
-fn a_refused_robot_leaves_the_previous_one_in_place() {
+fn the_previous_robot_stays_after_a_refused_robot() {
     let mut page = Page::default();
     assert_eq!(page.follow_pulses([24_000; 4]), None);
     page.read(PAPER_TOML).expect("paper.toml is valid");
@@ -17,22 +17,22 @@ fn a_refused_robot_leaves_the_previous_one_in_place() {
     assert!(page.follow_pulses([24_000; 4]).is_some());
 }
 
-fn page_of_paper() -> Page {
+fn make_paper_page() -> Page {
     let mut page = Page::default();
     page.read(PAPER_TOML).expect("paper.toml is valid");
     page
 }
 
-/// Returns a page of the paper's robot with ideal servos.
-fn page_with_ideal_servos() -> Page {
-    let mut page = page_of_paper();
+/// Makes a page with the paper's robot and ideal servos.
+fn make_ideal_page() -> Page {
+    let mut page = make_paper_page();
     page.set_servos("ideal");
     page
 }
 
-/// Returns the robot's own values of the sliders.
+/// Returns the robot's own slider values.
 fn own_floor(page: &Page) -> Floor {
-    Floor::of(page.robot().expect("a robot was read"))
+    Floor::for_robot(page.robot().expect("a robot was read"))
 }
 
 fn predict_walk(page: &Page) -> GaitPrediction {
@@ -41,32 +41,32 @@ fn predict_walk(page: &Page) -> GaitPrediction {
     page.predict(walk_index).expect("the robot has this gait")
 }
 
-/// Returns the predicted distance of a cycle of `walk`, mm.
-fn predicted_mm(page: &Page) -> f64 {
-    let forward = predict_walk(page).movement.forward;
+/// Predicts the distance of a cycle of `walk`, mm.
+fn predict_walk_mm(page: &Page) -> f64 {
+    let forward = predict_walk(page).displacement.forward;
     forward.expect("the displacement is determined")
 }
 
 #[test]
 fn a_servo_keeps_its_angle_when_its_pulses_end() {
-    let mut page = page_with_ideal_servos();
-    let scene_of = |frame: Option<Frame>| {
+    let mut page = make_ideal_page();
+    let get_scene = |frame: Option<Frame>| {
         frame
             .and_then(|frame| frame.scene)
             .expect("every loop closes")
     };
-    let first_scene = scene_of(page.follow_pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
+    let first_scene = get_scene(page.follow_pulses([24_000 + 1600, 24_000, 24_000, 24_000]));
     assert!(
         (first_scene.angles[0] - 148.590378).abs() < 1e-9,
         "{first_scene:?}"
     );
-    assert_eq!(scene_of(page.follow_pulses([0; 4])), first_scene);
+    assert_eq!(get_scene(page.follow_pulses([0; 4])), first_scene);
 }
 
 #[test]
-fn real_servos_have_a_dead_band_and_a_limited_speed_and_ideal_ones_neither() {
-    let mut page = page_of_paper();
-    let turn_and_error = |page: &mut Page, cycles: u32| {
+fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
+    let mut page = make_paper_page();
+    let step_a1 = |page: &mut Page, cycles: u32| {
         let frame = page.follow_pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
         let frame = frame.expect("a robot was read");
         (
@@ -75,30 +75,30 @@ fn real_servos_have_a_dead_band_and_a_limited_speed_and_ideal_ones_neither() {
         )
     };
     let assert_near = |(turn, error): (f64, f64), expected: [f64; 2]| {
-        assert!((turn - expected[0]).abs() < 1e-9, "{turn}");
-        assert!((error - expected[1]).abs() < 1e-9, "{error}");
+        assert!((turn - expected[0]).abs() < 1e-9, "turn {turn} deg");
+        assert!((error - expected[1]).abs() < 1e-9, "error {error} deg");
     };
-    // 4 us are less than half of the servo's dead band of 10 us.
-    assert_near(turn_and_error(&mut page, 64), [0.0, 0.4]);
-    // A jump of 20 deg: in the first 20 ms a servo of 500 deg/s turns by less than 10 deg, as the rotor must spin up.
-    // Then its error stays within the dead band plus the error that holds the pad against friction.
-    let (first_turn, _) = turn_and_error(&mut page, 3200);
+    // 4 us is less than half of the servo's dead band of 10 us.
+    assert_near(step_a1(&mut page, 64), [0.0, 0.4]);
+    // A step of 20 deg: in the first 20 ms, a servo of 500 deg/s turns by less than 10 deg, because the rotor must spin
+    // up. Afterwards, its error stays within the dead band plus the error that holds the pad against friction.
+    let (first_turn, _) = step_a1(&mut page, 3200);
     assert!((1.0..10.0).contains(&first_turn), "{first_turn}");
     for _ in 0..20 {
-        turn_and_error(&mut page, 3200);
+        step_a1(&mut page, 3200);
     }
-    let (last_turn, error) = turn_and_error(&mut page, 3200);
+    let (last_turn, error) = step_a1(&mut page, 3200);
     assert!((18.8..20.6).contains(&last_turn), "{last_turn}");
     assert!((last_turn + error - 20.0).abs() < 1e-9);
     page.set_servos("ideal");
-    assert_near(turn_and_error(&mut page, 3200), [20.0, 0.0]);
-    // An unknown model changes nothing: the servos stay ideal.
+    assert_near(step_a1(&mut page, 3200), [20.0, 0.0]);
+    // An unknown model has no effect: the servos stay ideal.
     page.set_servos("better");
-    assert_near(turn_and_error(&mut page, 0), [0.0, 0.0]);
+    assert_near(step_a1(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Lets the page follow two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for
-/// the second cycle: the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
+/// Follows two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for the second
+/// cycle the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
 fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name));
@@ -119,7 +119,7 @@ fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64;
     let lags = second_cycle.iter().flat_map(|frame| frame.lag);
     let largest_lag = lags.fold(0.0, |largest: f64, lag| largest.max(lag.abs()));
     (
-        end_place(&first_cycle).movement_to(end_place(&second_cycle)),
+        end_place(&first_cycle).displacement_to(end_place(&second_cycle)),
         slides,
         largest_lag,
     )
@@ -128,126 +128,139 @@ fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64;
 #[test]
 fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
     for name in ["walk", "left", "arc-right", "back"] {
-        let mut page = page_of_paper();
+        let mut page = make_paper_page();
         let robot = page.robot().expect("a robot was read");
         let prediction = robot.predict(robot.gait(name).expect("the robot has this gait"));
-        // A pose in every frame, and one in every second frame, as a board reports it on USB.
+        // A pose in every frame, and in every second frame, as a board reports poses on USB.
         for frames in [1, 2] {
-            let (movement, _, _) = follow_cycles(&mut page, name, frames);
+            let (displacement, _, _) = follow_cycles(&mut page, name, frames);
             let assert_near = |value: f64, expected: Option<f64>, tolerance: f64| {
                 let deviation = value - expected.expect("the displacement is determined");
-                assert!(deviation.abs() < tolerance, "{name} {frames} {movement:?}");
+                assert!(
+                    deviation.abs() < tolerance,
+                    "{name}, {frames} frames: {displacement:?}"
+                );
             };
             // The poses in between are interpolated.
             assert_near(
-                movement.forward,
+                displacement.forward,
                 prediction.forward,
                 0.4 * f64::from(frames),
             );
-            assert_near(movement.left, prediction.left, 0.5);
-            assert_near(movement.turn, prediction.turn, 0.3);
+            assert_near(displacement.left, prediction.left, 0.5);
+            assert_near(displacement.turn, prediction.turn, 0.3);
         }
     }
 }
 
 #[test]
 fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
-    let mut page = page_of_paper();
-    let lines_of = |page: &Page| predict_walk(page).lines.expect("the servos are not ideal");
-    let sg90_mm = predicted_mm(&page);
+    let mut page = make_paper_page();
+    let predict_utilisations = |page: &Page| {
+        predict_walk(page)
+            .utilisations
+            .expect("the servos are not ideal")
+    };
+    let sg90_mm = predict_walk_mm(&page);
     page.set_servos("ideal");
-    let ideal_mm = predicted_mm(&page);
-    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, and up to 2 % since the samples
-    // of a waveform cut its corners; the prediction for ideal servos has no such samples.
+    let ideal_mm = predict_walk_mm(&page);
+    // The loss is 1 deg of 40, as in crates/twin/tests/stream.rs, plus up to 2 %, because a waveform's samples cut its
+    // corners; the prediction for ideal servos has no such samples.
     assert!(
         (sg90_mm / ideal_mm - 39.0 / 40.0).abs() < 0.02,
-        "{sg90_mm} {ideal_mm}"
+        "SG90 {sg90_mm} mm, ideal {ideal_mm} mm"
     );
     page.set_servos("copy");
-    let copy_lines = lines_of(&page);
+    let copy_utilisations = predict_utilisations(&page);
     page.set_servos("own");
-    let own_lines = lines_of(&page);
-    for (copy_share, own_share) in copy_lines.into_iter().zip(own_lines) {
+    let own_utilisations = predict_utilisations(&page);
+    for (copy_utilisation, own_utilisation) in copy_utilisations.into_iter().zip(own_utilisations) {
         assert!(
-            copy_share > 1.3 * own_share,
-            "a weaker servo uses more: {copy_share} {own_share}"
+            copy_utilisation > 1.3 * own_utilisation,
+            "a weaker servo must have a higher utilisation: copy {copy_utilisation}, own {own_utilisation}"
         );
     }
     // docs/gaits.md lists these two values, for half and full pace, and also the value for 4 V that is checked below.
     assert!(
-        (own_lines[9] - 0.45).abs() < 0.005 && (own_lines[19] - 0.72).abs() < 0.005,
-        "{own_lines:?}"
+        (own_utilisations[9] - 0.45).abs() < 0.005 && (own_utilisations[19] - 0.72).abs() < 0.005,
+        "{own_utilisations:?}"
     );
     page.set_servos("own at 4.0");
-    let weak_lines = lines_of(&page);
-    assert!((weak_lines[19] - 0.87).abs() < 0.005, "{weak_lines:?}");
-    // An unknown supply changes nothing.
+    let low_supply_utilisations = predict_utilisations(&page);
+    assert!(
+        (low_supply_utilisations[19] - 0.87).abs() < 0.005,
+        "{low_supply_utilisations:?}"
+    );
+    // An invalid supply has no effect.
     page.set_servos("own at 12");
     page.set_servos("own at a wall");
-    assert_eq!(lines_of(&page), weak_lines);
+    assert_eq!(predict_utilisations(&page), low_supply_utilisations);
 }
 
 #[test]
-fn at_least_two_feet_hold_at_any_time_of_a_walk() {
-    let (_, slides, _) = follow_cycles(&mut page_of_paper(), "walk", 1);
+fn at_least_two_feet_stick_at_any_time_of_a_walk() {
+    let (_, slides, _) = follow_cycles(&mut make_paper_page(), "walk", 1);
     let mut slid_mm = [0.0; 4];
     for frame_slides in slides {
-        let holding_count = frame_slides.iter().filter(|mm| **mm < 0.3).count();
-        assert!(holding_count >= 2, "{frame_slides:?}");
+        let sticking_count = frame_slides.iter().filter(|mm| **mm < 0.3).count();
+        assert!(sticking_count >= 2, "{frame_slides:?} mm");
         slid_mm = [0, 1, 2, 3].map(|i| slid_mm[i] + frame_slides[i]);
     }
     assert!(
         slid_mm.iter().all(|mm| *mm > 20.0),
-        "each foot slides at some time in the cycle: {slid_mm:?}"
+        "each foot must slide at some time in the cycle: {slid_mm:?} mm"
     );
 }
 
 #[test]
 fn springs_set_on_the_page_act_as_predicted() {
-    let mut page = page_with_ideal_servos();
-    let (rigid_prediction, rigid_mm) = (predict_walk(&page), predicted_mm(&page));
-    assert_eq!((rigid_prediction.lag, rigid_prediction.share), (None, None));
+    let mut page = make_ideal_page();
+    let (rigid_prediction, rigid_mm) = (predict_walk(&page), predict_walk_mm(&page));
+    assert_eq!(
+        (rigid_prediction.lag, rigid_prediction.fraction),
+        (None, None)
+    );
     for force in [0.35, 0.55] {
         page.set_floor(Floor {
-            kind: Legs::Strut,
+            kind: LegDrive::Strut,
             force,
             ..own_floor(&page)
         });
-        let (sprung_prediction, sprung_mm) = (predict_walk(&page), predicted_mm(&page));
-        let (movement, _, largest_lag) = follow_cycles(&mut page, "walk", 1);
+        let (sprung_prediction, sprung_mm) = (predict_walk(&page), predict_walk_mm(&page));
+        let (displacement, _, largest_lag) = follow_cycles(&mut page, "walk", 1);
         assert!(
-            (movement.forward - sprung_mm).abs() < 0.5,
-            "{movement:?} {sprung_prediction:?}"
+            (displacement.forward - sprung_mm).abs() < 0.5,
+            "followed {displacement:?}, predicted {sprung_prediction:?}"
         );
         assert!(
             (largest_lag / sprung_prediction.lag.expect("the legs have springs") - 1.0).abs()
                 < 0.05,
-            "{largest_lag} {sprung_prediction:?}"
+            "lag {largest_lag} deg, predicted {sprung_prediction:?}"
         );
-        let share = sprung_mm / rigid_mm;
+        let fraction = sprung_mm / rigid_mm;
         assert!(
-            (sprung_prediction.share.expect("the legs have springs") - share).abs() < 0.01,
+            (sprung_prediction.fraction.expect("the legs have springs") - fraction).abs() < 0.01,
             "{sprung_prediction:?}"
         );
     }
 }
 
 #[test]
-fn a_strut_with_a_strong_spring_performs_like_a_rigid_one() {
-    let mut page = page_of_paper();
+fn a_strut_with_a_strong_spring_matches_a_rigid_strut() {
+    let mut page = make_paper_page();
     page.set_floor(Floor {
-        kind: Legs::Strut,
+        kind: LegDrive::Strut,
         force: 3.0,
         ..own_floor(&page)
     });
-    let share = predict_walk(&page).share.expect("the legs have springs");
-    assert!(share > 0.99, "{share}");
+    let fraction = predict_walk(&page).fraction.expect("the legs have springs");
+    assert!(fraction > 0.99, "{fraction} of the rigid distance");
 }
 
 #[test]
 fn mass_and_friction_matter_only_with_springs() {
-    let forward_with = |kind: Legs, mass: f64, friction: f64, force: f64| {
-        let mut page = page_with_ideal_servos();
+    let predict_with = |kind: LegDrive, mass: f64, friction: f64, force: f64| {
+        let mut page = make_ideal_page();
         page.set_floor(Floor {
             kind,
             force,
@@ -256,20 +269,20 @@ fn mass_and_friction_matter_only_with_springs() {
             friction,
             ..own_floor(&page)
         });
-        predicted_mm(&page)
+        predict_walk_mm(&page)
     };
-    let [rigid, strut] = [Legs::Rigid, Legs::Strut];
-    let rigid_mm = forward_with(rigid, 280.0, 0.7, 1.0);
-    assert_eq!(rigid_mm, forward_with(rigid, 560.0, 0.2, 1.0));
-    let strut_mm = forward_with(strut, 280.0, 0.7, 0.5);
-    assert!((strut_mm - forward_with(strut, 140.0, 1.4, 0.5)).abs() < 1e-6);
-    assert!((strut_mm - forward_with(strut, 280.0, 1.4, 1.0)).abs() < 1e-6);
-    assert!((strut_mm - forward_with(strut, 280.0, 1.4, 0.5)).abs() > 1.0);
+    let [rigid, strut] = [LegDrive::Rigid, LegDrive::Strut];
+    let rigid_mm = predict_with(rigid, 280.0, 0.7, 1.0);
+    assert_eq!(rigid_mm, predict_with(rigid, 560.0, 0.2, 1.0));
+    let strut_mm = predict_with(strut, 280.0, 0.7, 0.5);
+    assert!((strut_mm - predict_with(strut, 140.0, 1.4, 0.5)).abs() < 1e-6);
+    assert!((strut_mm - predict_with(strut, 280.0, 1.4, 1.0)).abs() < 1e-6);
+    assert!((strut_mm - predict_with(strut, 280.0, 1.4, 0.5)).abs() > 1.0);
 }
 
 #[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
-    let mut page = page_of_paper();
+    let mut page = make_paper_page();
     let even_prediction = predict_walk(&page);
     page.set_floor(Floor {
         ratio: 1.4,
@@ -280,47 +293,48 @@ fn friction_that_differs_by_direction_changes_the_prediction() {
 }
 
 #[test]
-fn a_written_floor_is_read_back_and_everything_else_stays() {
-    let floor_of = |text: &str| Floor::of(&Robot::parse(text).expect("the text is a valid robot"));
+fn a_written_floor_is_read_back_and_all_other_values_stay() {
+    let read_floor =
+        |text: &str| Floor::for_robot(&Robot::parse(text).expect("the text is a valid robot"));
     let write_floor = |text: &str, floor| {
         let edited = Page::edit_floor(text, floor).expect("the values can be written");
         assert_eq!(edited.refusal, None);
         edited.text
     };
-    assert_eq!(write_floor(PAPER_TOML, floor_of(PAPER_TOML)), PAPER_TOML);
+    assert_eq!(write_floor(PAPER_TOML, read_floor(PAPER_TOML)), PAPER_TOML);
     let floor = Floor {
         friction: 0.55,
         ratio: 1.5,
         mass: 412.0,
         leaf: 2.0,
         twist: -0.6,
-        kind: Legs::Strut,
+        kind: LegDrive::Strut,
         force: 2.5,
         rate: 0.25,
         play: 0.5,
     };
     let strut_toml = write_floor(PAPER_TOML, floor);
-    assert_eq!(floor_of(&strut_toml), floor);
-    let rigid_toml = write_floor(&strut_toml, floor_of(PAPER_TOML));
-    assert_eq!(floor_of(&rigid_toml), floor_of(PAPER_TOML));
+    assert_eq!(read_floor(&strut_toml), floor);
+    let rigid_toml = write_floor(&strut_toml, read_floor(PAPER_TOML));
+    assert_eq!(read_floor(&rigid_toml), read_floor(PAPER_TOML));
     assert!(!rigid_toml.contains("\nforce ="), "{rigid_toml}");
 }
 
 #[test]
 fn a_foot_that_is_too_long_shortens_the_predicted_walk_on_stiff_feet() {
-    let mut page = page_of_paper();
+    let mut page = make_paper_page();
     let own_floor = own_floor(&page);
-    let mut forward_with = |leaf: f64, twist: f64| {
+    let mut predict_with = |leaf: f64, twist: f64| {
         page.set_floor(Floor {
             leaf,
             twist,
             ..own_floor
         });
-        predicted_mm(&page)
+        predict_walk_mm(&page)
     };
-    let level_mm = forward_with(2.0, 0.0);
+    let level_mm = predict_with(2.0, 0.0);
     assert!(
-        forward_with(3.3, 1.0) < 0.3 * level_mm
-            && forward_with(own_floor.leaf, 1.0) > 0.9 * level_mm
+        predict_with(3.3, 1.0) < 0.3 * level_mm
+            && predict_with(own_floor.leaf, 1.0) > 0.9 * level_mm
     );
 }

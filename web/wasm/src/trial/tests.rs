@@ -1,9 +1,9 @@
-//! Tests of edited gaits: their conversion to bars, their trial and refusal, and their tables.
+//! Tests of edited gaits: conversion to bars, trial, refusal and tables.
 
 use super::*;
-use crate::paper::{PAPER_TOML, paper_robot, paper_robot_and_twin};
+use crate::paper::{PAPER_TOML, load_paper_robot, load_paper_robot_and_twin};
 
-fn bars_of(robot: &Robot, name: &str) -> Bars {
+fn get_bars(robot: &Robot, name: &str) -> Bars {
     robot
         .gait(name)
         .expect("the robot has this gait")
@@ -19,17 +19,21 @@ fn try_bars(bars: &Bars, twin: &Twin) -> Result<Trial, RefusedTrial> {
 /// Puts a gait into the text of a robot.toml.
 fn put_into(bars: &Bars, text: &str) -> String {
     let gait = EditedGait::Bars(bars.clone());
-    gait.put_into(text, &paper_robot())
+    gait.put_into(text, &load_paper_robot())
         .expect("bars always have a table")
 }
 
 #[test]
 fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
-    let (robot, twin) = paper_robot_and_twin();
+    let (robot, twin) = load_paper_robot_and_twin();
     for name in ["walk", "trot", "crawl", "left", "arc-left", "arc-right"] {
         let gait = robot.gait(name).expect("the robot has this gait");
-        let trial = try_bars(&bars_of(&robot, name), &twin).expect("the gait is valid");
-        assert_eq!(trial.prediction, GaitPrediction::of(&twin, gait), "{name}");
+        let trial = try_bars(&get_bars(&robot, name), &twin).expect("the gait is valid");
+        assert_eq!(
+            trial.prediction,
+            GaitPrediction::predict(&twin, gait),
+            "{name}"
+        );
         assert_eq!(trial.speed, gait.audit().peak_speed.speed, "{name}");
     }
     for name in ["stand", "look"] {
@@ -38,32 +42,32 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
     }
 }
 
-/// The robot has a gait in reverse, `back`, so its distance can be computed in two ways.
+/// The robot has a reversed gait, `back`; therefore its distance can be computed in two ways.
 #[test]
-fn a_reversed_gait_walks_the_same_distance_backwards() {
-    let (robot, twin) = paper_robot_and_twin();
+fn a_reversed_gait_walks_the_same_distance_backward() {
+    let (robot, twin) = load_paper_robot_and_twin();
     let back = robot.gait("back").expect("the robot has this gait");
     let forward_mm = |prediction: GaitPrediction| {
-        let forward = prediction.movement.forward;
+        let forward = prediction.displacement.forward;
         forward.expect("the distance is determined")
     };
-    let predicted_mm = forward_mm(GaitPrediction::of(&twin, back));
-    let trial = try_bars(&bars_of(&robot, "back"), &twin).expect("the gait is valid");
+    let predicted_mm = forward_mm(GaitPrediction::predict(&twin, back));
+    let trial = try_bars(&get_bars(&robot, "back"), &twin).expect("the gait is valid");
     let trial_mm = forward_mm(trial.prediction);
     assert!(
         predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
-        "{trial_mm} and {predicted_mm} mm"
+        "trial {trial_mm} mm, predicted {predicted_mm} mm"
     );
     assert!((trial.speed - back.audit().peak_speed.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
-        let bars = bars_of(&robot, name);
+        let bars = get_bars(&robot, name);
         let [own_mm, reversed_mm] = [bars.clone(), bars.reversed()].map(|bars| {
             let trial = try_bars(&bars, &twin).expect("the gait is valid");
             forward_mm(trial.prediction)
         });
         assert!(
             (own_mm + reversed_mm).abs() < 0.2,
-            "{name}: {own_mm} and {reversed_mm} mm"
+            "{name}: {own_mm} mm, reversed {reversed_mm} mm"
         );
         let twice_reversed = bars.reversed().reversed();
         assert_eq!(twice_reversed.gain, bars.gain, "{name}");
@@ -79,10 +83,10 @@ fn a_reversed_gait_walks_the_same_distance_backwards() {
 
 #[test]
 fn a_refusal_offers_the_nearest_valid_values() {
-    let (robot, twin) = paper_robot_and_twin();
+    let (robot, twin) = load_paper_robot_and_twin();
     let too_large_gait = Bars {
         amplitude: 60.0,
-        ..bars_of(&robot, "walk")
+        ..get_bars(&robot, "walk")
     };
     let refusal = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
     assert!(
@@ -91,44 +95,44 @@ fn a_refusal_offers_the_nearest_valid_values() {
         refusal.refused
     );
     assert!(!refusal.alternatives.is_empty(), "{:?}", refusal.refused);
-    for Alternative { what, value } in refusal.alternatives {
+    for Alternative { parameter, value } in refusal.alternatives {
         let is_valid_with = |value: f64| {
             let mut bars = too_large_gait.clone();
-            match what {
+            match parameter {
                 "amplitude" => bars.amplitude = value,
                 _ => bars.period = value,
             }
             try_bars(&bars, &twin).is_ok()
         };
-        let step = if what == "amplitude" { 0.1 } else { -0.01 };
-        assert!(is_valid_with(value), "{what} {value}");
-        assert!(!is_valid_with(value + step), "{what} {value}");
+        let step = if parameter == "amplitude" { 0.1 } else { -0.01 };
+        assert!(is_valid_with(value), "{parameter} {value}");
+        assert!(!is_valid_with(value + step), "{parameter} {value}");
     }
 }
 
 #[test]
-fn the_table_is_valid_in_a_robot_toml() {
-    let robot = paper_robot();
+fn a_robot_toml_accepts_the_table() {
+    let robot = load_paper_robot();
     let mine = Bars {
         name: "mine".to_string(),
         amplitude: 18.5,
-        ..bars_of(&robot, "arc-left")
+        ..get_bars(&robot, "arc-left")
     };
     let robot = Robot::parse(&format!("{PAPER_TOML}\n{}", mine.to_toml()))
         .expect("the robot with the gait is valid");
-    assert_eq!(bars_of(&robot, "mine"), mine);
+    assert_eq!(get_bars(&robot, "mine"), mine);
 }
 
 #[test]
 fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
-    let robot = paper_robot();
+    let robot = load_paper_robot();
     let walk = Bars {
         amplitude: 15.0,
-        ..bars_of(&robot, "walk")
+        ..get_bars(&robot, "walk")
     };
     let text = put_into(&walk, PAPER_TOML);
     let changed_robot = Robot::parse(&text).expect("the changed robot is valid");
-    assert_eq!(bars_of(&changed_robot, "walk"), walk);
+    assert_eq!(get_bars(&changed_robot, "walk"), walk);
     let gait_names = |robot: &Robot| -> Vec<_> {
         let names = robot.gaits().iter().map(|gait| gait.name().to_string());
         names.collect()
@@ -144,15 +148,15 @@ fn a_gait_replaces_the_gait_of_the_same_name_or_else_is_added() {
         gait_names(&extended_robot).len(),
         gait_names(&robot).len() + 1
     );
-    assert_eq!(bars_of(&extended_robot, "mine"), mine);
+    assert_eq!(get_bars(&extended_robot, "mine"), mine);
 }
 
 #[test]
 fn an_invalid_name_is_refused_without_alternatives() {
-    let (robot, twin) = paper_robot_and_twin();
+    let (robot, twin) = load_paper_robot_and_twin();
     let misnamed_gait = Bars {
         name: "Wa lk".to_string(),
-        ..bars_of(&robot, "walk")
+        ..get_bars(&robot, "walk")
     };
     let refusal = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
     assert_eq!(refusal.alternatives, []);

@@ -1,4 +1,4 @@
-//! Tests of the parser: words, gaits, notations of numbers, and errors.
+//! Tests of the parser for command words, gaits, number formats and errors.
 
 use std::format;
 use std::string::{String, ToString};
@@ -13,7 +13,7 @@ fn parse_line(line: &str) -> Result<Command, LineError> {
     parse(line.as_bytes(), &Sample::asymmetric())
 }
 
-/// Checks that each of the lines between the bars is refused for this reason.
+/// Checks that each line is refused with this error; `lines` separates them by bars.
 #[track_caller]
 fn assert_each_refused(lines: &str, line_error: LineError) {
     for line in lines.split('|') {
@@ -22,12 +22,12 @@ fn assert_each_refused(lines: &str, line_error: LineError) {
 }
 
 /// Returns the command that starts a gait without a number of cycles.
-fn command_of_gait(gait: GaitId) -> Command {
+fn gait_command(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }
 
 #[test]
-fn words_are_parsed_as_their_commands() {
+fn every_word_is_parsed_as_its_command() {
     for (line, command) in [
         ("help", Command::Help),
         ("?", Command::Help),
@@ -60,8 +60,8 @@ fn words_are_parsed_as_their_commands() {
     }
 }
 
-/// Parses a line for three consoles: in the first, gaits have priority over every word; in the second, over the words
-/// from `cal` on; in the third, over no word.
+/// Parses a line for three consoles. Gaits have priority over every word in the first, over the words from `cal` on in
+/// the second, and over no word in the third.
 fn parse_with_three_priorities(line: &str, robot: &Robot) -> [Result<Command, LineError>; 3] {
     const CAL_INDEX: usize = Word::Cal as usize;
     const WORD_COUNT: usize = Word::ALL.len();
@@ -74,7 +74,7 @@ fn parse_with_three_priorities(line: &str, robot: &Robot) -> [Result<Command, Li
 }
 
 #[test]
-fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
+fn a_yielding_word_is_a_command_unless_a_gait_has_the_same_name() {
     let robot = Sample::paper();
     for (word_index, word) in Word::ALL.iter().enumerate() {
         let (text, example) = (word.text(), word.example());
@@ -90,10 +90,10 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
         let robot_with_both = Sample::paper().with_gait(text).with_gait(&longer_name);
         let first_yielding_indices = [0, Word::Cal as usize, Word::ALL.len()];
         for (line, gait_result) in [
-            (text, Ok(command_of_gait(robot_with_both.gait_id(text)))),
+            (text, Ok(gait_command(robot_with_both.gait_id(text)))),
             (
                 &*longer_name,
-                Ok(command_of_gait(robot_with_both.gait_id(&longer_name))),
+                Ok(gait_command(robot_with_both.gait_id(&longer_name))),
             ),
             (
                 &std::format!("{text} 1 2"),
@@ -113,23 +113,23 @@ fn a_word_that_yields_is_a_command_unless_a_gait_has_its_name() {
     }
 }
 
-/// Returns the angle that the console reads from these degrees.
-fn angle_of(degrees: f64) -> Angle {
+/// Converts degrees to an angle as the parser does.
+fn to_angle(degrees: f64) -> Angle {
     Angle::from_centideg((degrees * 100.0).round() as i32)
 }
 
 #[test]
-fn every_setting_is_read_with_its_servo() {
+fn every_setting_is_parsed_with_its_servo() {
     use Servo::{A1, A2, A3, A4};
-    let trim_of = |degrees| Setting::Trim(Sweep(angle_of(degrees).0 as i16));
-    let limit_of = |from, to| Setting::Limit(angle_of(from), angle_of(to));
+    let trim = |degrees| Setting::Trim(Sweep(to_angle(degrees).0 as i16));
+    let limit = |from, to| Setting::Limit(to_angle(from), to_angle(to));
     for (line, servo, setting) in [
-        ("trim 1 0", A1, trim_of(0.0)),
-        ("trim 2 -3.5", A2, trim_of(-3.5)),
-        ("trim 3 +20", A3, trim_of(20.0)),
-        ("trim 4 -20.00", A4, trim_of(-20.0)),
-        ("limit 2 311.41 131.41", A2, limit_of(311.41, 131.41)),
-        ("limit 1 -48.6 360", A1, limit_of(-48.6, 0.0)),
+        ("trim 1 0", A1, trim(0.0)),
+        ("trim 2 -3.5", A2, trim(-3.5)),
+        ("trim 3 +20", A3, trim(20.0)),
+        ("trim 4 -20.00", A4, trim(-20.0)),
+        ("limit 2 311.41 131.41", A2, limit(311.41, 131.41)),
+        ("limit 1 -48.6 360", A1, limit(-48.6, 0.0)),
         ("dir 3 +", A3, Setting::Direction(true)),
         ("dir 3 -", A3, Setting::Direction(false)),
         ("scale 4 5", A4, Setting::Scale(500)),
@@ -142,7 +142,7 @@ fn every_setting_is_read_with_its_servo() {
 }
 
 #[test]
-fn a_missing_malformed_or_surplus_argument_is_answered_with_the_usage() {
+fn a_missing_malformed_or_surplus_argument_yields_the_usage() {
     for (usage, lines) in [
         (
             Text::TrimUsage,
@@ -175,7 +175,7 @@ fn a_missing_malformed_or_surplus_argument_is_answered_with_the_usage() {
 }
 
 #[test]
-fn a_setting_out_of_range_is_answered_with_the_range() {
+fn a_setting_out_of_range_yields_the_range() {
     for (range, lines) in [
         (
             Text::TrimRange,
@@ -199,10 +199,10 @@ fn a_setting_out_of_range_is_answered_with_the_range() {
 }
 
 #[test]
-fn every_gait_is_a_command_with_any_blanks_between_its_words() {
+fn any_blanks_may_separate_the_words_of_a_gait() {
     let robot = Sample::asymmetric();
     for name in GAIT_NAMES {
-        let command = Ok(command_of_gait(robot.gait_id(name)));
+        let command = Ok(gait_command(robot.gait_id(name)));
         for blank in [" ", "   ", "\t", " \t "] {
             let line = name.replace(' ', blank);
             assert_eq!(parse(line.as_bytes(), &robot), command, "{line:?}");
@@ -228,37 +228,37 @@ fn a_line_that_only_resembles_the_name_of_a_gait_is_an_error() {
 }
 
 #[test]
-fn the_first_words_of_a_gaits_name_alone_are_an_incomplete_name() {
+fn the_first_words_of_a_gaits_name_yield_an_incomplete_name() {
     let robot = Sample::asymmetric().with_gait("arc to left");
-    let read = |line: &str| parse(line.as_bytes(), &robot);
-    assert_eq!(read("arc"), Err(LineError::IncompleteName));
-    assert_eq!(read("arc to"), Err(LineError::IncompleteName));
+    let parse_for_robot = |line: &str| parse(line.as_bytes(), &robot);
+    assert_eq!(parse_for_robot("arc"), Err(LineError::IncompleteName));
+    assert_eq!(parse_for_robot("arc to"), Err(LineError::IncompleteName));
     assert_eq!(
-        read("arc  to\tleft"),
-        Ok(command_of_gait(robot.gait_id("arc to left")))
+        parse_for_robot("arc  to\tleft"),
+        Ok(gait_command(robot.gait_id("arc to left")))
     );
-    assert_eq!(read("arc t"), Err(LineError::UnknownCommand));
-    assert_eq!(read("arc left"), Err(LineError::UnknownCommand));
+    assert_eq!(parse_for_robot("arc t"), Err(LineError::UnknownCommand));
+    assert_eq!(parse_for_robot("arc left"), Err(LineError::UnknownCommand));
     let count_error = Err(LineError::WrongArguments(Text::CountUsage));
-    assert_eq!(read("arc to left too"), count_error);
+    assert_eq!(parse_for_robot("arc to left too"), count_error);
 }
 
 #[test]
-fn every_gait_accepts_every_count_from_1_to_999_and_no_other() {
+fn every_gait_accepts_exactly_the_counts_from_1_to_999() {
     let robot = Sample::asymmetric();
     for name in GAIT_NAMES {
-        let read = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
+        let parse_count = |count: &str| parse(format!("{name} {count}").as_bytes(), &robot);
         for count in (0..=70_000u32).chain([655_360, 655_361, 99_999_999]) {
             let order = Order::Gait(robot.gait_id(name), count as u16);
             let expected = match count {
                 1..=999 => Ok(Command::Order(order)),
                 _ => Err(LineError::WrongArguments(Text::CountUsage)),
             };
-            assert_eq!(read(&count.to_string()), expected, "{name} {count}");
+            assert_eq!(parse_count(&count.to_string()), expected, "{name} {count}");
         }
         for count in ["-1", "+1", "1.0", "1,", "x", "1 1", "0x1", "1s"] {
             let count_error = Err(LineError::WrongArguments(Text::CountUsage));
-            assert_eq!(read(count), count_error, "{name} {count}");
+            assert_eq!(parse_count(count), count_error, "{name} {count}");
         }
     }
 }
@@ -266,12 +266,12 @@ fn every_gait_accepts_every_count_from_1_to_999_and_no_other() {
 #[test]
 fn a_gait_named_step_2_has_priority_over_two_cycles_of_a_gait_named_step() {
     let robot = Sample::paper().with_gait("step 2").with_gait("step");
-    let read = |line: &str| parse(line.as_bytes(), &robot);
-    let gait_command = |name, cycles| Ok(Command::Order(Order::Gait(robot.gait_id(name), cycles)));
-    assert_eq!(read("step  2"), gait_command("step 2", 0));
-    assert_eq!(read("step 02"), gait_command("step", 2));
-    assert_eq!(read("step 3"), gait_command("step", 3));
-    assert_eq!(read("step 2 3"), gait_command("step 2", 3));
+    let parse_for_robot = |line: &str| parse(line.as_bytes(), &robot);
+    let counted_gait = |name, cycles| Ok(Command::Order(Order::Gait(robot.gait_id(name), cycles)));
+    assert_eq!(parse_for_robot("step  2"), counted_gait("step 2", 0));
+    assert_eq!(parse_for_robot("step 02"), counted_gait("step", 2));
+    assert_eq!(parse_for_robot("step 3"), counted_gait("step", 3));
+    assert_eq!(parse_for_robot("step 2 3"), counted_gait("step 2", 3));
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn a_line_that_begins_with_no_word_and_no_gait_is_an_unknown_command() {
 }
 
 #[test]
-fn a_command_that_takes_no_argument_refuses_one() {
+fn a_command_without_arguments_refuses_an_argument() {
     let lines = "stop now|rest 5|help me|? ?|status all|cal 1|save it|load 1|factory reset";
     assert_each_refused(lines, LineError::UnexpectedArgument);
 }
@@ -303,7 +303,7 @@ fn speed_and_watch_require_one_whole_number() {
 }
 
 #[test]
-fn every_speed_and_watch_interval_in_range_is_accepted_and_no_other() {
+fn speed_and_watch_accept_exactly_the_numbers_in_their_range() {
     for number in (0..=70_000).chain([655_350, 99_999_999]) {
         let expected_speed = match number {
             10..=100 => Ok(Command::Order(Order::Speed(number as u8))),
@@ -324,7 +324,7 @@ fn parse_with_number(word: &str, number: u32) -> Result<Command, LineError> {
     with_shared_robot(|robot| parse(format!("{word} {number}").as_bytes(), robot))
 }
 
-/// Calls a function with a shared robot, since making a robot takes longer than parsing a line.
+/// Calls a function with a shared robot, because building a robot takes longer than parsing a line.
 fn with_shared_robot<T>(call: impl FnOnce(&Sample) -> T) -> T {
     std::thread_local!(static ROBOT: Sample = Sample::asymmetric());
     ROBOT.with(call)

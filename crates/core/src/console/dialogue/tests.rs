@@ -1,4 +1,4 @@
-//! Tests of the console through its serial line: commands are sent, and the printed lines are checked.
+//! Tests of the console over its serial port: they send commands and check the printed lines.
 
 use std::format;
 use std::string::{String, ToString};
@@ -20,7 +20,7 @@ mod status;
 use super::*;
 use crate::console::word::Word;
 use crate::guard::clearance::Clearance;
-use crate::memory::restart::{Cause, Restart, Stance};
+use crate::memory::restart::{Cause, Restart, ServoState};
 use crate::memory::settings::Settings;
 use crate::motion::Activity;
 use crate::numbers::pose::{Pose, Pulses};
@@ -29,7 +29,7 @@ use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
 use crate::step::Step;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
 use dialogue::{
-    Dialogue, activity_name, assert_status, neutral_pose_text, parse_pairs,
+    Dialogue, activity_name, assert_status, format_neutral_pose, parse_pairs,
     run_frame_and_read_widths, set_supply, start_asymmetric_robot, wake_asymmetric_robot,
     wake_robot,
 };
@@ -38,20 +38,20 @@ use dialogue::{
 const NEUTRAL_COMMAND: &str = "pose 132.37 47.91 309.64 226.18";
 
 #[test]
-fn the_banner_names_version_and_robot_once() {
+fn the_banner_with_version_and_robot_is_printed_once() {
     for hash in [0, 0x1f0a_9c3e, 0x0000_00f0, u32::MAX, 0x9999_9999] {
         let mut dialogue = Dialogue::power_on(Sample::asymmetric().with_hash(hash));
         let version = env!("CARGO_PKG_VERSION");
         let banner =
             format!("# lizard {version} robot sample {hash:08x}, send help for the commands");
-        let calibration_line = "# calibration: none is saved, robot.toml's is in use".to_string();
+        let calibration_line = "# calibration: none saved, using robot.toml's".to_string();
         assert_eq!(dialogue.read_lines(), [banner, calibration_line]);
         assert!(dialogue.run_frames(50).is_empty());
     }
 }
 
 #[test]
-fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
+fn an_accepted_line_is_answered_with_ok_and_the_line_in_lower_case() {
     let commands = [
         "stop",
         "rest",
@@ -70,7 +70,7 @@ fn an_accepted_line_is_answered_by_ok_and_the_line_in_lower_case() {
 }
 
 #[test]
-fn help_lists_every_gait_and_every_command_as_often_as_it_is_sent() {
+fn help_lists_every_gait_and_every_command_each_time() {
     let mut dialogue = wake_asymmetric_robot();
     let printed_lines = dialogue.send(b"help\r");
     let gaits_line = format!("# gaits: {}", GAIT_NAMES.join("|"));
@@ -79,7 +79,7 @@ fn help_lists_every_gait_and_every_command_as_often_as_it_is_sent() {
     let expected = [
         gaits_line.as_str(),
         words_line.as_str(),
-        "# a word alone tells what it wants, the docs what it does",
+        "# send a command alone for its usage; the docs explain it",
         "ok help",
     ];
     assert_eq!(printed_lines, expected);
@@ -113,7 +113,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
         assert_eq!(listed_names, names);
         // A line ends only if the prefix, its names, a bar and the next name would exceed the limit.
         for pair in lines.windows(2) {
-            let next_name = pair[1].split('|').next().expect("a line has a name");
+            let next_name = pair[1].split('|').next().expect("each line has a name");
             let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
             assert!(
                 joined_length > usize::from(print::MAX_GAITS_LINE_BYTES),
@@ -123,7 +123,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
     }
 }
 
-/// Runs a robot, without reading its output, until the guard holds it.
+/// Runs a robot until the guard holds it, without reading its output.
 fn run_until_guard_holds() -> Dialogue {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("stray");
@@ -133,11 +133,11 @@ fn run_until_guard_holds() -> Dialogue {
             return dialogue;
         }
     }
-    panic!("the guard does not stop the gait `stray`");
+    panic!("the guard has not stopped the gait `stray`");
 }
 
 #[test]
-fn each_hold_is_reported_once_and_shown_by_status_until_the_robot_moves_again() {
+fn each_hold_is_reported_once_and_status_shows_it_until_the_robot_moves_again() {
     let mut dialogue = run_until_guard_holds();
     let printed_lines = dialogue.read_lines();
     assert_eq!(printed_lines.len(), 1);
@@ -163,7 +163,7 @@ fn each_hold_is_reported_once_and_shown_by_status_until_the_robot_moves_again() 
 }
 
 #[test]
-fn the_reason_for_a_hold_is_printed_even_if_stand_arrives_before_it_is_written() {
+fn the_hold_reason_is_printed_even_if_stand_arrives_first() {
     let mut dialogue = run_until_guard_holds();
     dialogue.board.send(b"stand\r");
     dialogue.run_without_reader(3);
@@ -177,10 +177,10 @@ fn the_reason_for_a_hold_is_printed_even_if_stand_arrives_before_it_is_written()
 }
 
 #[test]
-fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report() {
+fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_report() {
     let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.board.send(b"stray\rwatch 1\rhelp\r");
-    // Every line is read as soon as it is written, until the first line of the help.
+    // Every line is read as soon as it is written, up to the first line of `help`.
     let mut printed_lines = Vec::new();
     let mut read_line_and_match_gaits = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
@@ -193,7 +193,8 @@ fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report
             .starts_with("# gaits: ")
     };
     while !read_line_and_match_gaits(&mut dialogue) {}
-    // From here on, nobody reads. Meanwhile the guard stops the robot, a pulse edge is late, and a report becomes due.
+    // From here on the output is not read, while the guard stops the robot, a pulse edge is late and a report becomes
+    // due.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;
@@ -206,7 +207,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report
         "ok watch 1",
         "# gaits: ",
         "# others: ",
-        "# a word ",
+        "# send a command ",
         "ok help",
         "# fault: ",
         "# held ",
@@ -224,21 +225,21 @@ fn pending_lines_are_written_in_the_order_banner_answer_fault_hold_reason_report
 }
 
 #[test]
-fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
+fn a_resting_robot_refuses_to_move_until_it_receives_stand() {
     let unsafe_pose = "pose 95 90 309.64 226.18";
     for line in ["sway", "sway left", "stop", NEUTRAL_COMMAND, unsafe_pose] {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.expect_accepted("rest");
-        dialogue.expect_refused(line, "7 servos are resting, send stand first");
+        dialogue.expect_refused(line, "7 the servos are resting; send stand first");
         for _ in 0..50 {
             assert_eq!(dialogue.run_frame(), Pulses::default(), "{line}");
         }
         assert_eq!(dialogue.status_value("gait"), "rest");
-        // Commands that move no servo are still obeyed, and errors are still reported.
+        // Commands that move no servo are still executed, and errors are still reported.
         for line in ["speed 50", "watch 0", "rest", "help"] {
             dialogue.expect_accepted(line);
         }
-        dialogue.expect_refused("pose 1 2 3 4", "3 A1 reaches 61.37..215.36");
+        dialogue.expect_refused("pose 1 2 3 4", "3 A1 must be 61.37..215.36");
         dialogue.expect_refused("dance", "1 ");
         dialogue.expect_accepted("stand");
         dialogue.run_frames(25);
@@ -253,10 +254,10 @@ fn a_resting_robot_refuses_to_move_until_it_is_told_to_stand() {
 }
 
 #[test]
-fn the_travel_of_a_pose_is_checked_before_its_margins() {
+fn a_poses_travel_is_checked_before_its_margins() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_refused("pose 400 1 1 1", "3 A1 reaches 61.37..215.36");
-    dialogue.expect_refused("pose 132 47 200 226", "3 A3 reaches 235.64..18.64");
+    dialogue.expect_refused("pose 400 1 1 1", "3 A1 must be 61.37..215.36");
+    dialogue.expect_refused("pose 132 47 200 226", "3 A3 must be 235.64..18.64");
     let message = dialogue.send_line("pose 132.37 4 309.64 226.18");
     assert!(
         message.starts_with("err 4 ") || message.starts_with("err 5 "),

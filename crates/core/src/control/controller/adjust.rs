@@ -1,5 +1,7 @@
-//! Changes of the servos' settings. A change takes effect at once. It is refused if some gait, the current pose or the
-//! target would then be outside a servo's travel.
+//! Changes of the servos' settings.
+//!
+//! A change takes effect at once. It is refused if a gait, the current pose or the target would then exceed a servo's
+//! travel.
 
 use super::Controller;
 use crate::control::order::Setting;
@@ -9,7 +11,7 @@ use crate::numbers::calibration::Calibration;
 use crate::numbers::part::Servo;
 
 impl Controller {
-    /// Changes a setting of a servo, or refuses to and changes nothing.
+    /// Changes a setting of a servo. A refusal changes nothing.
     #[inline(never)]
     pub(super) fn set_servo(&mut self, servo: Servo, setting: Setting) -> Result<(), Refusal> {
         let mut settings = self.settings;
@@ -19,7 +21,7 @@ impl Controller {
             Setting::Direction(is_direct) => adjustment.set_direct(is_direct),
             Setting::Scale(scale) => adjustment.set_scale(scale),
             Setting::Limit(clockwise, counter_clockwise) => {
-                let neutral = self.motion.robot().neutral_angle_of(servo);
+                let neutral = self.motion.robot().servo_neutral_angle(servo);
                 adjustment.travel_min = neutral.sweep_to(clockwise);
                 adjustment.travel_max = neutral.sweep_to(counter_clockwise);
             }
@@ -28,17 +30,17 @@ impl Controller {
         self.replace_settings(&settings)
     }
 
-    /// Replaces all settings, or refuses to and changes nothing.
+    /// Replaces all settings. A refusal changes nothing.
     #[inline(never)]
     pub(super) fn replace_settings(&mut self, settings: &Settings) -> Result<(), Refusal> {
         let mut calibrations = *self.motion.calibration();
         for servo in Servo::all() {
-            let new_calibration = servo.of_mut(&mut calibrations);
+            let new_calibration = servo.pick_mut(&mut calibrations);
             *new_calibration = settings.calibration(servo, self.motion.robot());
             self.check_gaits(servo, new_calibration)?;
         }
         for servo in Servo::all() {
-            self.check_poses(servo, servo.of(&calibrations))?;
+            self.check_poses(servo, servo.pick(&calibrations))?;
         }
         self.settings = *settings;
         self.motion.calibrate_all(&calibrations);
@@ -46,7 +48,7 @@ impl Controller {
         Ok(())
     }
 
-    /// Checks that no gait leaves a servo's travel.
+    /// Checks that no gait exceeds a servo's travel.
     #[inline(never)]
     fn check_gaits(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self
@@ -60,7 +62,7 @@ impl Controller {
         }
     }
 
-    /// Checks that the current pose and the target stay within a servo's travel.
+    /// Checks that the current pose and the target are within a servo's travel.
     #[inline(never)]
     fn check_poses(&self, servo: Servo, calibration: &Calibration) -> Result<(), Refusal> {
         match self.motion.exceeds_travel(servo, calibration) {
@@ -69,7 +71,7 @@ impl Controller {
         }
     }
 
-    /// Applies the calibration in the settings to the motion.
+    /// Calibrates the motion according to the settings.
     pub(super) fn apply_calibration(&mut self) {
         for servo in Servo::all() {
             let calibration = self.settings.calibration(servo, self.motion.robot());

@@ -1,8 +1,9 @@
-//! EEPROM operations, a byte at a time between the frames.
+//! EEPROM operations, one byte at a time between the frames.
 //!
-//! Writing a byte takes 3.4 ms. So an order only starts an operation. The main loop asks for the next byte whenever it
-//! has nothing more urgent to do, and takes no input until the operation is complete. With a weak supply a wrong byte
-//! may be written, so nothing is written below a certain voltage, or before the supply has been measured.
+//! Writing a byte takes 3.4 ms, so an order only starts an operation. The main loop advances the operation by a byte
+//! whenever it has nothing more urgent to do, and takes no input until the operation is complete. With a weak supply a
+//! wrong byte may be written. Therefore nothing is written below a certain voltage, or before the supply has been
+//! measured.
 
 use super::Controller;
 use crate::control::refusal::Refusal;
@@ -12,7 +13,7 @@ use crate::memory::copies::{self, SavedState};
 use crate::memory::record::{Memory, Progress, RecordWrite};
 use crate::memory::settings::Settings;
 
-/// Frames within which the supplies are measured; no order waits longer for the measurement.
+/// Frames within which the supplies are measured, the longest time that an order waits for the measurement.
 const MEASURING_FRAMES: u32 = 25;
 
 /// An EEPROM operation that an order has started.
@@ -20,21 +21,21 @@ const MEASURING_FRAMES: u32 = 25;
 pub enum Job {
     /// Load the saved settings.
     Load,
-    /// Choose the copy that the settings overwrite: the first step of saving.
+    /// Choose the copy to be overwritten, the first step of saving.
     ChooseCopy,
-    /// Write the settings over the copy.
+    /// Write the settings to the chosen copy.
     WriteCopy(RecordWrite),
 }
 
 impl Controller {
-    /// True while an EEPROM operation is in progress; no order may be given meanwhile. The write of a rest
-    /// pose that waits for a better supply does not count, since no order depends on it.
+    /// True while an EEPROM operation is in progress, and no order may be given. The write of a rest pose that waits
+    /// for a better supply does not count, because no order depends on it.
     pub fn is_memory_in_use(&self) -> bool {
         self.job.is_some() || self.rest_pose_write.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits until the supply has been measured, or until a dip has ended or has become a low
-    /// level. Meanwhile there is nothing to do before the next frame.
+    /// True while an order waits for the measurement of the supply, or for the end of a dip: either the supply recovers
+    /// or its level falls. Meanwhile there is nothing to do before the next frame.
     pub fn waits_for_supply(&self) -> bool {
         let supply = self.safety.supply();
         let is_supply_undecided = match supply.measured_level() {
@@ -44,7 +45,7 @@ impl Controller {
         self.job.is_some() && is_supply_undecided
     }
 
-    /// Advances the EEPROM operation by at most one byte. Returns the outcome of an order once the order is complete,
+    /// Advances the EEPROM operation by at most one byte. Returns the outcome of the order once the order is complete,
     /// otherwise `None`.
     #[inline(never)]
     pub fn advance_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
@@ -53,11 +54,11 @@ impl Controller {
         }
         let may_write = self.safety.allows_writing_now();
         if may_write && let Some(record_write) = &mut self.rest_pose_write {
-            let rest_settings = Settings::of_pose(self.motion.pose(), self.motion.robot());
+            let rest_settings = Settings::for_pose(self.motion.pose(), self.motion.robot());
             match record_write.advance(rest_settings.bytes(), memory) {
                 Progress::InProgress => return None,
                 Progress::Done => {}
-                Progress::Failed => self.safety.notify(Notice::RestPoseNotKept),
+                Progress::Failed => self.safety.notify(Notice::RestPoseNotSaved),
             }
             self.rest_pose_write = None;
             return None;
@@ -76,7 +77,7 @@ impl Controller {
                     _ => Err(Refusal::NothingSaved),
                 }
             }
-            Some(Job::ChooseCopy | Job::WriteCopy(_)) if !may_write => Err(Refusal::Supply),
+            Some(Job::ChooseCopy | Job::WriteCopy(_)) if !may_write => Err(Refusal::SupplyTooLow),
             Some(Job::ChooseCopy) => match copies::save(&mut self.settings, memory) {
                 None => Ok(()),
                 Some(record_write) => {
@@ -88,7 +89,7 @@ impl Controller {
                 match record_write.advance(self.settings.bytes(), memory) {
                     Progress::InProgress => return None,
                     Progress::Done => Ok(()),
-                    Progress::Failed => Err(Refusal::SettingsNotKept),
+                    Progress::Failed => Err(Refusal::WriteFailed),
                 }
             }
         };

@@ -1,4 +1,4 @@
-//! The state of the robot, as a console reports it.
+//! The getters with which the console reads the robot's state.
 
 use super::Controller;
 use crate::control::fault::Fault;
@@ -11,7 +11,7 @@ use crate::numbers::gaits::Input;
 use crate::numbers::section::SectionError;
 
 impl Controller {
-    /// The robot's motion.
+    /// The motion: the robot, its pose and its current activity.
     pub const fn motion(&self) -> &Motion {
         &self.motion
     }
@@ -21,14 +21,14 @@ impl Controller {
         &self.settings
     }
 
-    /// The reason why the flash holds no usable robot; `None` if it holds one.
-    pub const fn damage(&self) -> Option<SectionError> {
-        self.damage
+    /// The error in the robot's section of flash; `None` if the section is valid.
+    pub const fn section_error(&self) -> Option<SectionError> {
+        self.section_error
     }
 
     /// The state of the saved settings at power-on.
-    pub const fn saved_state(&self) -> SavedState {
-        self.saved_state
+    pub const fn saved_settings_state(&self) -> SavedState {
+        self.saved_settings_state
     }
 
     /// The input whose contact may end the current step of a routine.
@@ -36,7 +36,7 @@ impl Controller {
         self.contact.input
     }
 
-    /// The monitor of the supply, the serial line, the pulses and the stack.
+    /// The monitor of the supply, the serial port, the pulses and the stack.
     pub const fn safety(&self) -> &Safety {
         &self.safety
     }
@@ -51,7 +51,8 @@ impl Controller {
         self.reset_count
     }
 
-    /// The current fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault of [`Safety`].
+    /// The current fault: [`Fault::Guard`] while the guard holds the robot, otherwise the fault that [`Safety`]
+    /// recorded.
     pub fn fault(&self) -> Option<Fault> {
         match self.motion.hazard() {
             Some(_) => Some(Fault::Guard),
@@ -60,7 +61,7 @@ impl Controller {
     }
 
     /// Consecutive resets that a weak supply may have caused.
-    pub const fn brown_outs(&self) -> u8 {
-        self.brown_outs
+    pub const fn suspected_brown_outs(&self) -> u8 {
+        self.suspected_brown_outs
     }
 }

@@ -1,7 +1,7 @@
-//! The running routine: a sequence of steps from robot.toml that the robot carries out by itself.
+//! The running routine: a sequence of steps in robot.toml that the robot executes by itself.
 //!
-//! A step is a gait for some cycles, a gait for some time, a rest, or a wait; a contact may end it earlier.
-//! Every stop and every other motion ends the routine; only an order or `boot` starts one.
+//! A step is a gait for some cycles, a gait for some time, a rest, or a wait. A contact may end the step earlier. Every
+//! stop and every other motion ends the routine, and only an order or `boot` starts a routine.
 
 use super::Controller;
 use crate::control::contact::Contact;
@@ -15,10 +15,10 @@ pub(super) struct Routine {
     pub id: GaitId,
     /// The index of the next step.
     next_step: u8,
-    /// Rounds that are not complete yet, including the current one; 0 for a routine without an end.
+    /// The number of rounds left, including the current round; 0 for an endless routine.
     rounds_left: u16,
-    /// Frames until the current step ends; 0 if it ends when its gait has completed its cycles, [`Step::ENDLESS`] if
-    /// only a contact ends it.
+    /// Frames until the current step ends; 0 if the step ends after the cycles of its gait, [`Step::ENDLESS`] if only a
+    /// contact ends the step.
     frames_left: u16,
 }
 
@@ -38,8 +38,8 @@ impl Routine {
 }
 
 impl Controller {
-    /// Begins a gait for `count` cycles, 0 for no limit; or a routine for `count` rounds, 0 for the number in
-    /// robot.toml.
+    /// Starts a gait for `count` cycles, or endlessly if `count` is 0; or a routine for `count` rounds, or for the
+    /// number in robot.toml if `count` is 0.
     #[inline(never)]
     pub(super) fn start_gait(&mut self, id: GaitId, count: u16) {
         let gait = self.motion.robot().gait(id);
@@ -53,13 +53,13 @@ impl Controller {
             } else {
                 count
             };
-            self.begin_next_step();
+            self.start_next_step();
         } else {
             self.motion.start_gait(id, count);
         }
     }
 
-    /// Continues the routine after a frame. `is_closed` is the level of the contact that may end the current step.
+    /// Advances the routine by a frame. `is_closed` is true while the contact that may end the current step is closed.
     #[inline(never)]
     pub(super) fn advance_routine(&mut self, is_closed: bool) {
         if self.motion.hazard().is_some() {
@@ -75,13 +75,13 @@ impl Controller {
             }
         };
         if self.contact.add_level(is_closed) || is_step_over {
-            self.begin_next_step();
+            self.start_next_step();
         }
     }
 
-    /// Begins the next step, or ends the routine after its last round.
+    /// Starts the next step, or ends the routine after its last round.
     #[inline(never)]
-    fn begin_next_step(&mut self) {
+    fn start_next_step(&mut self) {
         let robot = *self.motion.robot();
         let gait = robot.gait(self.routine.id);
         // A routine stores these numbers in place of the channels' offsets.
@@ -91,11 +91,11 @@ impl Controller {
             step_index = first_step_of_round.offset;
             if self.routine.rounds_left == 1 {
                 self.routine = Routine::NONE;
-                // The pose of the routine's last rest has to survive a loss of power.
+                // The pose of the routine's last rest must survive a loss of power.
                 if self.motion.is_resting() {
                     self.rest();
                 }
-                // A gait that is still under way brakes first.
+                // A gait that is still running brakes first.
                 if !self.motion.brake_to_standstill() {
                     self.safety.notify(Notice::Done);
                 }
@@ -119,9 +119,9 @@ impl Controller {
         self.routine.next_step = step_index as u8 + 1;
         self.routine.frames_left = if kind == Step::CYCLES { 0 } else { count };
         self.contact = if kind == Step::WAIT {
-            Contact::waiting_to_close(input)
+            Contact::for_wait(input)
         } else {
-            Contact::waiting_while_open(input)
+            Contact::for_motion(input)
         };
         match kind {
             Step::REST => self.motion.rest(),

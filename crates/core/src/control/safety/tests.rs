@@ -1,4 +1,4 @@
-//! Tests of every fault, alone and together with others.
+//! Tests of every fault, alone and together with other faults.
 
 use super::*;
 use crate::sample::{HEALTHY_BOARD, Sample};
@@ -7,20 +7,20 @@ fn sample_supplies() -> Supplies {
     Sample::asymmetric().supplies()
 }
 
-/// Returns the state after power-on, with `boot` cancelled.
+/// Returns a monitor after power-on whose `boot` is cancelled.
 fn safety_without_boot() -> Safety {
     let mut safety = Safety::default();
-    safety.note_byte();
+    safety.record_byte();
     safety
 }
 
-/// Checks a frame of a robot that stands still, without a `deadman` time.
+/// Checks a frame of a robot that stands still and has no `deadman` time.
 fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.check_frame(health, &sample_supplies(), State::Posing, 0)
 }
 
-/// Returns the health of a board with this supply voltage of the chip, and 6 V at the servos' rail.
-fn health_at(volts: f64) -> Health {
+/// Returns the health of a board whose chip is supplied with `volts`, and whose servos' rail has 6 V.
+fn health_at_volts(volts: f64) -> Health {
     Health {
         supply: Reading {
             reference: (1.08 / volts * 1024.0) as u16,
@@ -34,14 +34,14 @@ fn health_at(volts: f64) -> Health {
 fn take_notices(safety: &mut Safety) -> std::vec::Vec<Notice> {
     let mut notices = std::vec::Vec::new();
     while let Some(notice) = safety.next_notice() {
-        safety.note_printed(notice);
+        safety.clear_notice(notice);
         notices.push(notice);
     }
     notices
 }
 
 #[test]
-fn a_healthy_board_causes_no_reaction_and_no_notice() {
+fn a_healthy_board_causes_neither_a_reaction_nor_a_notice() {
     let mut safety = safety_without_boot();
     for _ in 0..1000 {
         assert_eq!(
@@ -91,7 +91,7 @@ fn boot_is_requested_once_three_seconds_after_power_on() {
 
 #[test]
 fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
-    let boots_after = |disturb: fn(&mut Safety)| {
+    let boots_despite = |disturb: fn(&mut Safety)| {
         let mut safety = Safety::default();
         let mut has_booted = false;
         for frame in 1..=400 {
@@ -102,32 +102,32 @@ fn a_byte_a_fault_or_a_low_supply_cancels_boot() {
         }
         has_booted
     };
-    assert!(boots_after(|_| {}));
-    assert!(!boots_after(Safety::note_byte));
-    assert!(!boots_after(|safety| safety.record_fault(Fault::LateEdge)));
-    assert!(!boots_after(|safety| {
+    assert!(boots_despite(|_| {}));
+    assert!(!boots_despite(Safety::record_byte));
+    assert!(!boots_despite(|safety| safety.record_fault(Fault::LateEdge)));
+    assert!(!boots_despite(|safety| {
         for _ in 0..6 {
-            check_still_frame(safety, &health_at(4.2));
+            check_still_frame(safety, &health_at_volts(4.2));
         }
         safety.clear_fault();
     }));
 }
 
 #[test]
-fn a_gait_ends_once_no_command_has_been_received_for_the_time_of_deadman_and_no_sooner() {
+fn a_gait_without_a_command_ends_after_the_deadman_time_and_no_sooner() {
     let supplies = sample_supplies();
     for deadman_ms in [1u16, 19, 20, 21, 100, 1000, 60_000] {
         let mut safety = safety_without_boot();
         for _ in 0..10 {
-            safety.note_command();
+            safety.record_command();
             let mut frames = 0;
             while safety.check_frame(&HEALTHY_BOARD, &supplies, State::Walking, deadman_ms)
                 == Reaction::None
             {
                 frames += 1;
             }
-            // If the command arrived just before the first frame, these are the times since it, ms: in the last frame,
-            // which ended the gait, and in the previous one.
+            // The times since a command just before the first frame, ms: in the last frame, which ended the gait, and
+            // in the previous frame.
             let (last_ms, previous_ms) = (20 * frames, 20 * frames - 20);
             assert!(
                 last_ms >= u32::from(deadman_ms) && previous_ms < u32::from(deadman_ms),
@@ -140,7 +140,7 @@ fn a_gait_ends_once_no_command_has_been_received_for_the_time_of_deadman_and_no_
 }
 
 #[test]
-fn without_deadman_or_gait_silence_is_not_a_fault() {
+fn silence_without_deadman_or_without_a_gait_is_not_a_fault() {
     let mut safety = safety_without_boot();
     let supplies = sample_supplies();
     for _ in 0..5000 {
@@ -156,7 +156,7 @@ fn without_deadman_or_gait_silence_is_not_a_fault() {
 }
 
 #[test]
-fn a_gait_that_boot_starts_ends_only_after_the_time_of_deadman() {
+fn a_gait_started_by_boot_ends_only_after_the_deadman_time() {
     let mut safety = Safety::default();
     let mut state = State::Posing;
     let mut boot_frame = 0;
@@ -180,7 +180,7 @@ fn a_falling_supply_first_forbids_writing_then_stops_the_robot_then_ends_the_pul
     // Returns the reaction and the fault after six frames, true if the robot may move, true if the EEPROM may be
     // written, and the number of notices.
     let mut observe_at = |volts| {
-        let reactions = [(); 6].map(|()| check_still_frame(&mut safety, &health_at(volts)));
+        let reactions = [(); 6].map(|()| check_still_frame(&mut safety, &health_at_volts(volts)));
         (
             reactions[5],
             safety.fault(),
@@ -238,34 +238,34 @@ fn a_stack_in_the_data_stops_the_robot_again_after_every_cleared_fault() {
 }
 
 #[test]
-fn of_two_reactions_at_once_the_stronger_one_counts() {
+fn the_stronger_of_two_simultaneous_reactions_counts() {
     let mut safety = safety_without_boot();
     for _ in 0..5 {
-        check_still_frame(&mut safety, &health_at(4.0));
+        check_still_frame(&mut safety, &health_at_volts(4.0));
     }
     let health = Health {
         late_edges: 1,
-        ..health_at(4.0)
+        ..health_at_volts(4.0)
     };
     assert_eq!(check_still_frame(&mut safety, &health), Reaction::EndPulses);
 }
 
 #[test]
-fn each_notice_is_given_once_and_in_a_fixed_order() {
+fn each_notice_is_printed_once_and_in_a_fixed_order() {
     let mut safety = safety_without_boot();
     for notice in [
         Notice::Boot,
         Notice::SavedSettings,
         Notice::Supply,
         Notice::Fault,
-        Notice::RestPoseNotKept,
+        Notice::RestPoseNotSaved,
         Notice::Boot,
     ] {
         safety.notify(notice);
     }
     let expected_notices = [
         Notice::SavedSettings,
-        Notice::RestPoseNotKept,
+        Notice::RestPoseNotSaved,
         Notice::Fault,
         Notice::Supply,
         Notice::Boot,

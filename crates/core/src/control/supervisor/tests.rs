@@ -1,4 +1,4 @@
-//! Tests that docs/faults.md has the tables, and that every entry of the tables satisfies the safety rules.
+//! Tests that docs/faults.md shows the tables, and that every entry of the tables satisfies the safety rules.
 
 use std::format;
 use std::string::String;
@@ -16,7 +16,7 @@ const SUPPLY_LEVELS: [(Option<Level>, &str); 5] = [
     (Some(Level::Rest), "too low to hold"),
 ];
 
-const fn event_text(event: Event) -> &'static str {
+const fn describe_event(event: Event) -> &'static str {
     match event {
         Event::Stand => "`stand`",
         Event::Move => "another motion",
@@ -24,7 +24,7 @@ const fn event_text(event: Event) -> &'static str {
         Event::Rest => "`rest`",
         Event::Save => "`save`",
         Event::BootDue => "the time of `boot` has come",
-        Event::Silence => "no line for as long as `deadman` says",
+        Event::Silence => "no command within the `deadman` time",
         Event::SupplyTooLowToMove => "the supply gets too low to move",
         Event::SupplyTooLowToHold => "the supply gets too low to hold",
         Event::LateEdge => "an edge of a pulse is late",
@@ -33,7 +33,7 @@ const fn event_text(event: Event) -> &'static str {
     }
 }
 
-fn response_text(response: Response, state: State) -> String {
+fn describe_response(response: Response, state: State) -> String {
     let is_resting = state == State::Resting;
     match response {
         Response::Nothing => "-".into(),
@@ -47,15 +47,15 @@ fn response_text(response: Response, state: State) -> String {
     }
 }
 
-/// Returns the rows of an event in the table of events: one for each set of supply levels with equal responses.
-fn rows_of(event: Event) -> Vec<String> {
-    let cells_of = |supply| {
-        let text_of = |state| response_text(response(event, supply, state), state);
-        State::ALL.map(text_of).join(" | ")
+/// Formats an event's rows in the table of events, one for each set of supply levels with equal responses.
+fn format_event_rows(event: Event) -> Vec<String> {
+    let format_cells = |supply| {
+        let format_cell = |state| describe_response(response(event, supply, state), state);
+        State::ALL.map(format_cell).join(" | ")
     };
     let mut groups: Vec<(Vec<&str>, String)> = Vec::new();
     for (supply, name) in SUPPLY_LEVELS {
-        let cells = cells_of(supply);
+        let cells = format_cells(supply);
         match groups
             .iter_mut()
             .find(|(_, group_cells)| *group_cells == cells)
@@ -64,15 +64,15 @@ fn rows_of(event: Event) -> Vec<String> {
             None => groups.push((Vec::from([name]), cells)),
         }
     }
-    let row_of = |(names, cells): &(Vec<&str>, String)| {
+    let format_row = |(names, cells): &(Vec<&str>, String)| {
         let supply = if names.len() == SUPPLY_LEVELS.len() {
             "any".into()
         } else {
             names.join(", ")
         };
-        format!("| {} | {supply} | {cells} |", event_text(event))
+        format!("| {} | {supply} | {cells} |", describe_event(event))
     };
-    groups.iter().map(row_of).collect()
+    groups.iter().map(format_row).collect()
 }
 
 #[track_caller]
@@ -84,8 +84,8 @@ fn assert_in_docs(table: &str) {
 }
 
 #[test]
-fn the_docs_print_the_table_of_events() {
-    let rows: Vec<String> = Event::ALL.into_iter().flat_map(rows_of).collect();
+fn the_docs_show_the_table_of_events() {
+    let rows: Vec<String> = Event::ALL.into_iter().flat_map(format_event_rows).collect();
     let header =
         "| what happens | supply | resting | standing, holding, moving to a pose | walking |";
     assert_in_docs(&format!(
@@ -95,15 +95,15 @@ fn the_docs_print_the_table_of_events() {
 }
 
 #[test]
-fn the_docs_print_the_table_of_resets() {
+fn the_docs_show_the_table_of_resets() {
     let mut rows = Vec::new();
     for cause in Cause::ALL {
-        for (brown_outs, frequency) in [
+        for (suspected_brown_outs, frequency) in [
             (0, "once, twice"),
             (BROWN_OUTS_TO_REST, "three times in a row"),
         ] {
-            let action_after = |servos| first_action(cause, brown_outs, servos);
-            if brown_outs > 0
+            let action_after = |servos| first_action(cause, suspected_brown_outs, servos);
+            if suspected_brown_outs > 0
                 && ServosBefore::ALL.map(action_after)
                     == ServosBefore::ALL.map(|servos| first_action(cause, 0, servos))
             {
@@ -142,7 +142,7 @@ fn the_docs_print_the_table_of_resets() {
 fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
     for event in Event::ALL {
         for (supply, _) in SUPPLY_LEVELS {
-            // `save` is obeyed, too, but moves nothing.
+            // `save` is executed, too, but moves no servo.
             if response(event, supply, State::Resting) == Response::Obey {
                 assert!(matches!(event, Event::Stand | Event::BootDue | Event::Save));
             }
@@ -151,13 +151,13 @@ fn only_stand_and_boot_give_pulses_to_a_resting_robot() {
 }
 
 #[test]
-fn a_falling_supply_never_allows_a_command_that_a_higher_supply_refuses() {
+fn a_lower_supply_never_allows_a_command_that_a_higher_supply_refuses() {
     for event in [Event::Stand, Event::Move, Event::Save, Event::BootDue] {
         for state in State::ALL {
-            let is_obeyed = |(supply, _)| response(event, supply, state) == Response::Obey;
-            let are_obeyed = [0, 2, 3, 4].map(|index| is_obeyed(SUPPLY_LEVELS[index]));
+            let is_executed = |(supply, _)| response(event, supply, state) == Response::Obey;
+            let are_executed = [0, 2, 3, 4].map(|index| is_executed(SUPPLY_LEVELS[index]));
             assert!(
-                are_obeyed.is_sorted_by(|higher, lower| higher >= lower),
+                are_executed.is_sorted_by(|higher, lower| higher >= lower),
                 "{event:?}"
             );
         }
@@ -165,12 +165,13 @@ fn a_falling_supply_never_allows_a_command_that_a_higher_supply_refuses() {
 }
 
 #[test]
-fn servos_wake_only_after_power_on_or_an_unknown_state_and_are_taken_over_only_if_held() {
+fn servos_wake_at_neutral_only_after_power_on_or_an_unknown_state_and_resume_only_if_held() {
     for cause in Cause::ALL {
-        for brown_outs in 0..=BROWN_OUTS_TO_REST {
+        for suspected_brown_outs in 0..=BROWN_OUTS_TO_REST {
             for servos_before in ServosBefore::ALL {
-                let case = format!("{cause:?}, {brown_outs} brown-outs, {servos_before:?}");
-                let (action, fault) = first_action(cause, brown_outs, servos_before);
+                let case =
+                    format!("{cause:?}, {suspected_brown_outs} brown-outs, {servos_before:?}");
+                let (action, fault) = first_action(cause, suspected_brown_outs, servos_before);
                 let is_unknown = servos_before == ServosBefore::Unknown && fault.is_none();
                 let must_wake = cause == Cause::Power || is_unknown;
                 match action {
@@ -179,7 +180,7 @@ fn servos_wake_only_after_power_on_or_an_unknown_state_and_are_taken_over_only_i
                         assert_eq!(
                             servos_before,
                             ServosBefore::Held,
-                            "nothing to take over: {case}"
+                            "nothing to resume: {case}"
                         );
                         assert!(!must_wake, "must wake: {case}");
                     }

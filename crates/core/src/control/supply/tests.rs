@@ -1,4 +1,4 @@
-//! Tests of the supply's level, which follows from the readings frame by frame.
+//! Tests of the supply's level as a function of the readings in successive frames.
 
 use std::vec::Vec;
 
@@ -6,11 +6,11 @@ use proptest::prelude::*;
 
 use super::*;
 
-const fn thresholds([slow, stop, rest]: [u16; 3]) -> Thresholds {
+const fn thresholds([slow_mv, stop_mv, rest_mv]: [u16; 3]) -> Thresholds {
     Thresholds {
-        slow_mv: slow,
-        stop_mv: stop,
-        rest_mv: rest,
+        slow_mv,
+        stop_mv,
+        rest_mv,
     }
 }
 
@@ -27,22 +27,22 @@ const SUPPLIES_WITH_RAIL: Supplies = Supplies {
     ..SUPPLIES
 };
 
-/// Returns the converter's reading if the board has `volts` and the rail has `rail_volts`.
-fn reading_at(volts: f64, rail_volts: f64) -> Reading {
+/// Computes the converter's reading if the board has `volts` and the rail has `rail_volts`.
+fn compute_reading(volts: f64, rail_volts: f64) -> Reading {
     Reading {
         reference: (1.1 / volts * 1024.0) as u16,
         rail: (rail_volts / 2.0 / volts * 1024.0) as u16,
     }
 }
 
-/// Adds readings of a board without a measured rail until the level changes. Returns the number of frames, 0 if the
-/// level has not changed after 200 frames, and the level.
+/// Adds readings of a board without a measured rail until the level changes. Returns the number of frames, or 0 if the
+/// level has not changed after 200 frames; and the level.
 fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level) {
-    measure_until_change(supply, reading_at(volts, 0.0), &SUPPLIES)
+    measure_until_change(supply, compute_reading(volts, 0.0), &SUPPLIES)
 }
 
-/// Adds the same reading until the level changes. Returns the number of frames, 0 if the level has not changed after
-/// 200 frames, and the level.
+/// Adds the same reading until the level changes. Returns the number of frames, or 0 if the level has not changed after
+/// 200 frames; and the level.
 fn measure_until_change(
     supply: &mut Supply,
     reading: Reading,
@@ -67,12 +67,12 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
             let rail = 700;
             let reading = Reading { reference, rail };
             let exact_centivolts = 1024.0 * f64::from(reference_mv) / f64::from(reference) / 10.0;
-            let centivolts = Voltage::of_board(reading, &supplies).centivolts();
-            // Higher voltages become 81.91 V.
+            let centivolts = Voltage::for_board(reading, &supplies).centivolts();
+            // Higher voltages are limited to 81.91 V.
             let expected_centivolts = exact_centivolts.floor().min(8191.0);
             let case = (reference, reference_mv);
             assert_eq!(f64::from(centivolts), expected_centivolts, "{case:?}");
-            let rail_centivolts = Voltage::of_rail(reading, &SUPPLIES_WITH_RAIL).centivolts();
+            let rail_centivolts = Voltage::for_rail(reading, &SUPPLIES_WITH_RAIL).centivolts();
             let exact_rail_centivolts = 700.0 * 2200.0 / f64::from(reference) / 10.0;
             assert_eq!(
                 f64::from(rail_centivolts),
@@ -80,14 +80,14 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
             );
         }
     }
-    let unknown_voltage = Voltage::of_board(Reading::default(), &SUPPLIES);
+    let unknown_voltage = Voltage::for_board(Reading::default(), &SUPPLIES);
     assert_eq!(unknown_voltage.centivolts(), 0);
 }
 
 proptest! {
     #[test]
-    fn the_comparison_of_a_voltage_agrees_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
-        let voltage = Voltage::of_board(Reading { reference, rail: 0 }, &SUPPLIES);
+    fn voltage_comparisons_agree_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
+        let voltage = Voltage::for_board(Reading { reference, rail: 0 }, &SUPPLIES);
         let exact = 1024.0 * 1100.0 / f64::from(reference);
         prop_assert_eq!(voltage.is_below(mv), exact < f64::from(mv));
     }
@@ -124,7 +124,7 @@ fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
                     true => outlier_volts,
                     false => usual_volts,
                 };
-                supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
+                supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
             }
             assert_eq!(
                 supply.level(),
@@ -142,7 +142,7 @@ fn after_fifty_better_readings_the_level_nearest_to_the_current_one_counts() {
         measure_board_until_change(&mut supply, 4.2);
         for frame in 0..50 {
             let volts = if frame == outlier_frame { 4.5 } else { 5.0 };
-            supply.add_reading(reading_at(volts, 0.0), &SUPPLIES);
+            supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES);
         }
         assert_eq!(
             supply.level(),
@@ -153,22 +153,22 @@ fn after_fifty_better_readings_the_level_nearest_to_the_current_one_counts() {
 }
 
 #[test]
-fn a_short_dip_changes_nothing() {
+fn a_short_dip_does_not_change_the_level() {
     let mut supply = Supply::default();
     for _ in 0..100 {
         for volts in [4.0, 4.0, 4.0, 4.0, 4.0, 5.0] {
-            assert!(!supply.add_reading(reading_at(volts, 0.0), &SUPPLIES));
+            assert!(!supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES));
         }
     }
     assert_eq!(supply.level(), Level::Good);
 }
 
 #[test]
-fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold() {
+fn the_level_improves_one_second_after_the_voltage_exceeds_the_threshold_plus_hysteresis() {
     let mut supply = Supply::default();
     measure_board_until_change(&mut supply, 4.2);
     assert_eq!(supply.level(), Level::Stop);
-    // Between the threshold and 0.15 V above it, the level stays as it is.
+    // Between the threshold and 0.15 V above the threshold, the level does not change.
     assert_eq!(measure_board_until_change(&mut supply, 4.40).0, 0);
     let slow_change = measure_board_until_change(&mut supply, 4.5);
     assert_eq!(slow_change, (50, Level::Slow));
@@ -178,12 +178,12 @@ fn a_supply_is_good_again_a_second_after_it_has_risen_well_above_the_threshold()
 }
 
 #[test]
-fn a_supply_that_wavers_around_a_threshold_changes_its_level_once() {
+fn a_supply_that_oscillates_around_a_threshold_changes_its_level_only_once() {
     let mut supply = Supply::default();
     let mut levels = Vec::new();
     for frame in 0..2000 {
         let volts = if frame % 20 < 10 { 4.47 } else { 4.60 };
-        if supply.add_reading(reading_at(volts, 0.0), &SUPPLIES) {
+        if supply.add_reading(compute_reading(volts, 0.0), &SUPPLIES) {
             levels.push(supply.level());
         }
     }
@@ -191,7 +191,7 @@ fn a_supply_that_wavers_around_a_threshold_changes_its_level_once() {
 }
 
 #[test]
-fn the_worse_of_two_supplies_counts_and_is_reported() {
+fn the_worse_of_two_supplies_determines_the_level_and_is_reported() {
     let supplies = SUPPLIES_WITH_RAIL;
     for (board_volts, rail_volts, level, worse_volts) in [
         (5.0, 6.6, Level::Good, 5.0),
@@ -200,18 +200,22 @@ fn the_worse_of_two_supplies_counts_and_is_reported() {
         (4.45, 5.0, Level::Rest, 5.0),
     ] {
         let mut supply = Supply::default();
-        measure_until_change(&mut supply, reading_at(board_volts, rail_volts), &supplies);
+        measure_until_change(
+            &mut supply,
+            compute_reading(board_volts, rail_volts),
+            &supplies,
+        );
         assert_eq!(supply.level(), level);
         let reported_volts = f64::from(supply.worst_voltage(&supplies).centivolts()) / 100.0;
         assert!(
             (reported_volts - worse_volts).abs() < 0.05,
-            "{reported_volts} {worse_volts}"
+            "reported {reported_volts} V for {worse_volts} V"
         );
     }
 }
 
 #[test]
-fn a_supply_that_is_not_measured_yet_is_not_low() {
+fn an_unmeasured_supply_is_not_low() {
     let supplies = SUPPLIES_WITH_RAIL;
     let mut supply = Supply::default();
     let (frames, _) = measure_until_change(&mut supply, Reading::default(), &supplies);

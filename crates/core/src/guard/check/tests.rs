@@ -1,10 +1,10 @@
-//! Sections with a correct CRC that would harm a servo or the board. Each test corrupts one
-//! number, and also checks the nearest harmless value.
+//! Tests of sections with a correct CRC that would damage a servo or the board. Each test changes one number, and also
+//! checks the nearest harmless value.
 
 use std::vec::Vec;
 
 use super::*;
-use crate::numbers::calibration::NeededTravel;
+use crate::numbers::calibration::SweepRange;
 use crate::numbers::section::write_checksum;
 use crate::sample::Sample;
 
@@ -26,7 +26,7 @@ impl ChangedSection {
         self
     }
 
-    /// True if the guard accepts the section.
+    /// True if [`Robot::open`] accepts the section.
     fn is_accepted(&self) -> bool {
         let mut section = self.0.clone();
         write_checksum(&mut section);
@@ -40,16 +40,16 @@ impl ChangedSection {
     }
 }
 
-/// True if the guard accepts the section of [`Sample::asymmetric`] with this word at that offset.
+/// True if [`Robot::open`] accepts the section of [`Sample::asymmetric`] with `word` at `offset`.
 fn is_accepted_with(offset: u16, word: u16) -> bool {
     ChangedSection::new().with_word(offset, word).is_accepted()
 }
 
 #[test]
-fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
-    // D0 and D1 are the serial line, D13 is the LED.
+fn each_servo_and_the_rail_require_a_usable_pin_of_their_own() {
+    // D0 and D1 are the serial port, D13 is the LED.
     let is_usable_pin = |pin: u8| (2..=12).contains(&pin) || (14..=19).contains(&pin);
-    let other_pins_of = |servo: u16| {
+    let other_pins = |servo: u16| {
         let pins = Sample::asymmetric().content.pins;
         (0..4)
             .filter(move |index| *index != usize::from(servo))
@@ -60,11 +60,11 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
             for pin in 0..=u8::MAX {
                 let section = ChangedSection::new().with_word(offset!(rail_pin), rail_pin);
                 let is_accepted = section.with_byte(offset!(pins) + servo, pin).is_accepted();
-                let is_used = other_pins_of(servo)
+                let is_used = other_pins(servo)
                     .chain([rail_pin as u8])
                     .any(|other_pin| other_pin == pin);
                 let is_rail_unused =
-                    other_pins_of(servo).all(|other_pin| u16::from(other_pin) != rail_pin);
+                    other_pins(servo).all(|other_pin| u16::from(other_pin) != rail_pin);
                 let is_valid_pin = is_usable_pin(pin) && !is_used && is_rail_unused;
                 let case = (servo, pin, rail_pin);
                 assert_eq!(is_accepted, is_valid_pin, "{case:?}");
@@ -80,7 +80,7 @@ fn each_servo_and_the_rail_need_a_usable_pin_of_their_own() {
 }
 
 #[test]
-fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits() {
+fn a_travel_must_cover_the_gaits_and_the_neutral_angle_with_tolerable_pulses() {
     for servo in 0..4 {
         let is_accepted_with_change = |change: &dyn Fn(&mut Calibration)| {
             let mut content = Sample::asymmetric().content.clone();
@@ -92,14 +92,17 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
         };
         assert!(is_accepted_with_change(&|_| {}));
         for (min_pulse, is_tolerated) in [(7_998, false), (7_999, true), (8_000, true)] {
-            // The shortest pulse is that of the travel's clockwise limit.
+            // The shortest pulse belongs to the travel's clockwise limit.
             let set_shortest_pulse = |calibration: &mut Calibration| {
                 let pulse_below_neutral =
                     calibration.neutral_width.0 - calibration.clamped_width(calibration.travel_min);
                 calibration.neutral_width.0 = min_pulse + pulse_below_neutral;
             };
             let is_accepted = is_accepted_with_change(&set_shortest_pulse);
-            assert_eq!(is_accepted, is_tolerated, "{servo} {min_pulse}");
+            assert_eq!(
+                is_accepted, is_tolerated,
+                "servo {servo}: {min_pulse} cycles"
+            );
         }
         for (max_pulse, is_tolerated) in [(40_001, true), (40_002, false)] {
             let set_longest_pulse = |calibration: &mut Calibration| {
@@ -108,15 +111,18 @@ fn a_travel_needs_tolerable_pulses_the_neutral_angle_and_the_range_of_the_gaits(
                 calibration.neutral_width.0 = max_pulse - pulse_above_neutral;
             };
             let is_accepted = is_accepted_with_change(&set_longest_pulse);
-            assert_eq!(is_accepted, is_tolerated, "{servo} {max_pulse}");
+            assert_eq!(
+                is_accepted, is_tolerated,
+                "servo {servo}: {max_pulse} cycles"
+            );
         }
-        // The neutral angle is within the travel, even if no gait needs it.
+        // The travel must include the neutral angle even if the gaits do not need it.
         for (travel, has_neutral) in [([0, 900], true), ([1, 900], false), ([-900, -1], false)] {
             let mut content = Sample::asymmetric().content.clone();
             let [min, max] = travel.map(Sweep);
             let calibration = &mut content.calibration[servo];
             (calibration.travel_min, calibration.travel_max) = (min, max);
-            content.needed_travel[servo] = NeededTravel { min, max };
+            content.needed_travel[servo] = SweepRange { min, max };
             let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
             assert_eq!(is_accepted, has_neutral, "{travel:?}");
         }
@@ -142,6 +148,6 @@ fn a_section_whose_neutral_pose_is_unsafe_is_refused() {
             _ => content.limits.type2.0 = i16::MAX,
         }
         let is_accepted = ChangedSection(content.section_bytes()).is_accepted();
-        assert!(!is_accepted, "{change}");
+        assert!(!is_accepted, "change {change}");
     }
 }

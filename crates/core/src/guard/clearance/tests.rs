@@ -1,5 +1,5 @@
-//! Compares the guard's integers with floating point, for random robots in random poses, and checks the hazard that is
-//! reported at each limit.
+//! Compares the guard's integers with floating point, for random robots in random poses, and checks the reported hazard
+//! at each limit.
 
 use std::vec::Vec;
 
@@ -15,7 +15,7 @@ use crate::numbers::units::Sweep;
 use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
 use crate::sample::{Measurements, Sample, sine, steps_per_mm};
 
-/// Yields random robots, each with several poses, since making a robot takes longer than testing it.
+/// Yields random robots, each with several poses, because building a robot takes longer than testing a pose.
 fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     Sample::random().prop_flat_map(|robot| {
         let poses = [(); 8].map(|()| robot.any_pose());
@@ -23,7 +23,7 @@ fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
     })
 }
 
-/// Upper bounds of the integers' errors at a pose.
+/// Upper bounds of the guard's errors at a pose.
 struct Bounds {
     ends: [bounds::EndErrors; 2],
     /// The errors of the slider lengths, mm.
@@ -31,39 +31,40 @@ struct Bounds {
 }
 
 impl Bounds {
-    fn of(robot: &Sample, pose: &Pose) -> Self {
+    fn compute(robot: &Sample, pose: &Pose) -> Self {
         let [a1, a2, a3, a4] = robot.degrees(pose);
         let lizard = robot.measurements.lizard;
-        let end_errors_of = |index: usize, end, angles| {
-            bounds::EndErrors::of(&lizard.end(end), &robot.ends[index], angles)
+        let end_errors = |index: usize, end, angles| {
+            bounds::EndErrors::at_angles(&lizard.end(end), &robot.ends[index], angles)
         };
-        let slider_error_of = |index: usize, side| {
+        let slider_error = |index: usize, side| {
             bounds::slider_error(&lizard.side(side), &robot.content.sliders[index])
         };
         Self {
             ends: [
-                end_errors_of(0, kinematics::End::Head, [a1, a2]),
+                end_errors(0, kinematics::End::Head, [a1, a2]),
                 // In the tail's own frame.
-                end_errors_of(1, kinematics::End::Tail, [-a4, -a3]),
+                end_errors(1, kinematics::End::Tail, [-a4, -a3]),
             ],
             sliders: [
-                slider_error_of(0, kinematics::Side::Left),
-                slider_error_of(1, kinematics::Side::Right),
+                slider_error(0, kinematics::Side::Left),
+                slider_error(1, kinematics::Side::Right),
             ],
         }
     }
 
-    fn max_end_error(&self, error_of: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
-        error_of(&self.ends[0]).max(error_of(&self.ends[1]))
+    fn max_end_error(&self, error: impl Fn(&bounds::EndErrors) -> f64) -> f64 {
+        error(&self.ends[0]).max(error(&self.ends[1]))
     }
 }
 
-/// Decides in floating point if a pose is safe. Returns `Some(true)` if the pose satisfies all limits by more than the
-/// errors, `Some(false)` if it violates one by more than the errors, and `None` if the errors may change the decision.
+/// Decides in floating point whether a pose is safe. Returns `Some(true)` if the pose satisfies all limits by more than
+/// the errors, `Some(false)` if it violates a limit by more than the errors, and `None` if the errors may change the
+/// decision.
 fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
-    let bounds = Bounds::of(robot, pose);
+    let bounds = Bounds::compute(robot, pose);
     let Some(solution) = robot.solve(pose) else {
-        // For a loop that just fails to close, the integers may return a margin, up to the bound of the error.
+        // For a loop that just fails to close, the guard may compute a margin up to the bound of the error.
         return (bounds.max_end_error(|end| end.type2) < robot.measurements.limits.type2)
             .then_some(false);
     };
@@ -74,7 +75,7 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     if exact_poses.iter().zip(&bounds.ends).any(may_be_crossed) {
         return None;
     }
-    // Limits are rounded up to a step, strokes inwards.
+    // Limits are rounded up to a step, and strokes are rounded inwards.
     let step = 1.0
         / steps_per_mm(robot.content.sliders[0].scale)
             .min(steps_per_mm(robot.content.sliders[1].scale));
@@ -98,17 +99,17 @@ fn decide_safety(robot: &Sample, pose: &Pose) -> Option<bool> {
     }
 }
 
-/// Checks that every margin and slider of a pose is within the bounds of its error.
+/// Checks that the error of every margin and slider length of a pose is within its bound.
 fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
-    let clearance = Clearance::of(robot, pose);
+    let clearance = Clearance::measure(robot, pose);
     let Some(solution) = robot.solve(pose) else {
         return Ok(());
     };
-    let bounds = Bounds::of(robot, pose);
+    let bounds = Bounds::compute(robot, pose);
     for (index, (name, exact)) in solution.margins.iter().enumerate() {
         let end = match index {
             0 | 1 => index,
-            index => kinematics::End::of_servo((index - 2) % 4) as usize,
+            index => kinematics::End::from_servo((index - 2) % 4) as usize,
         };
         let five_bar_pose = [&solution.head, &solution.tail][end];
         let bound = &bounds.ends[end];
@@ -133,7 +134,7 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let error = sine(clearance.margins[index]) - exact;
         prop_assert!(
             error.abs() <= max_error,
-            "{name} is off by {error} of {max_error}"
+            "{name}: error {error}, at most {max_error} allowed"
         );
     }
     for (index, exact) in [solution.left.d, solution.right.d].into_iter().enumerate() {
@@ -142,7 +143,7 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
         let max_error = bounds.sliders[index];
         prop_assert!(
             error.abs() <= max_error,
-            "slider {index} is off by {error} of {max_error}"
+            "slider {index}: error {error} mm, at most {max_error} mm allowed"
         );
     }
     Ok(())
@@ -161,12 +162,12 @@ proptest! {
     }
 
     #[test]
-    fn the_decision_equals_that_of_floating_point_unless_the_errors_may_change_it(
+    fn the_decision_matches_floating_point_unless_the_errors_may_change_it(
         (robot, poses) in robots_with_poses(),
     ) {
         for pose in &poses {
             if let Some(is_safe) = decide_safety(&robot, pose) {
-                let hazard = Clearance::of(&robot, pose).first_hazard(&robot);
+                let hazard = Clearance::measure(&robot, pose).first_hazard(&robot);
                 prop_assert_eq!(hazard.is_none(), is_safe, "{:?}", hazard);
             }
         }
@@ -174,7 +175,7 @@ proptest! {
 }
 
 #[test]
-fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
+fn the_bounds_decide_nearly_every_pose_and_are_narrow_at_neutral() {
     let mut runner = TestRunner::deterministic();
     let mut decided_count = 0;
     for _ in 0..250 {
@@ -186,12 +187,15 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
             .iter()
             .filter(|pose| decide_safety(&robot, pose).is_some());
         decided_count += decided_poses.count();
-        let standing_bounds = Bounds::of(&robot, &Pose::NEUTRAL);
+        let standing_bounds = Bounds::compute(&robot, &Pose::NEUTRAL);
         let (type2, type1) = (
             standing_bounds.max_end_error(|end| end.type2),
             standing_bounds.max_end_error(bounds::EndErrors::type1),
         );
-        assert!(type2 < 0.01 && type1 < 0.02, "{type2} {type1}");
+        assert!(
+            type2 < 0.01 && type1 < 0.02,
+            "type-2 {type2}, type-1 {type1}"
+        );
         assert!(
             standing_bounds.sliders.iter().all(|mm| *mm < 0.05),
             "{:?}",
@@ -201,8 +205,8 @@ fn the_bounds_decide_nearly_every_pose_and_are_narrow_where_a_robot_stands() {
     assert!(decided_count > 1900, "{decided_count} of 2000");
 }
 
-/// In floating point the sample is safe, in integers it is not: its stroke ends just beyond the length at which the
-/// slider stands, and the ends of a stroke are rounded inwards.
+/// The sample is safe in floating point but not in integers: its stroke ends just beyond the slider's length at
+/// neutral, and the ends of a stroke are rounded inwards.
 #[test]
 fn a_sample_that_is_safe_only_in_floating_point_does_not_stand_safely() {
     let mut measurements = Measurements::paper();
@@ -219,7 +223,7 @@ fn a_sample_that_is_safe_only_in_floating_point_does_not_stand_safely() {
 /// Returns a robot and the clearance of its neutral pose, which is far from every limit.
 fn measure_safe_robot() -> (Sample, Clearance) {
     let robot = Sample::asymmetric();
-    let clearance = Clearance::of(&robot, &Pose::NEUTRAL);
+    let clearance = Clearance::measure(&robot, &Pose::NEUTRAL);
     assert_eq!(clearance.first_hazard(&robot), None);
     (robot, clearance)
 }
@@ -256,7 +260,7 @@ fn a_margin_at_its_limit_is_safe_and_one_step_below_it_is_not() {
 }
 
 #[test]
-fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
+fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_it_is_not() {
     let (robot, safe_clearance) = measure_safe_robot();
     for (index, side) in Side::ALL.into_iter().enumerate() {
         let Slider {
@@ -274,7 +278,7 @@ fn a_slider_at_either_end_of_its_stroke_is_safe_and_one_step_beyond_is_not() {
 }
 
 #[test]
-fn the_first_of_several_hazards_is_reported_margins_before_strokes() {
+fn of_several_hazards_the_first_is_reported_and_margins_precede_strokes() {
     let (robot, mut clearance) = measure_safe_robot();
     let mut expected_hazards: Vec<Hazard> = Vec::new();
     for (index, side) in Side::ALL.into_iter().enumerate().rev() {
@@ -307,8 +311,8 @@ fn the_smallest_margin_is_found_at_every_index() {
 fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
     let robot = Sample::asymmetric();
     for servo in 0..4 {
-        // The change point is on the x axis of the chassis. Beyond it, the crank's y is negative in the frame of the
-        // leg's five-bar.
+        // The change point is on the x axis of the chassis. Beyond this point, the crank's y is negative in the frame
+        // of the leg's five-bar.
         let neutral_deg = f64::from(robot.neutral_angles()[servo].0) * 360.0 / 65536.0;
         let axis_deg = 180.0 * (neutral_deg / 180.0).round();
         for (offset_deg, is_positive) in [(-2.0f64, false), (2.0, true)] {
@@ -316,7 +320,7 @@ fn a_leg_beyond_a_change_point_has_a_negative_margin_at_either_end() {
             let turn_deg = axis_deg + offset_deg * direction - neutral_deg;
             let mut pose = Pose::NEUTRAL;
             pose.0[servo] = Sweep((turn_deg * 65536.0 / 360.0) as i16);
-            let margin = Clearance::of(&robot, &pose).margins[6 + servo];
+            let margin = Clearance::measure(&robot, &pose).margins[6 + servo];
             assert_eq!(margin > Sine(0), is_positive, "A{} {margin:?}", servo + 1);
         }
     }

@@ -1,4 +1,4 @@
-//! Compares the five-bar's margins in integers with the closed form in floating point.
+//! Compares the integer margins of a five-bar with the closed form in floating point.
 
 use lizard_kinematics as kinematics;
 use proptest::prelude::*;
@@ -36,8 +36,8 @@ fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
         })
 }
 
-fn margins_of(sample: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
-    let [left, right] = [left, right].map(Direction::of);
+fn compute_margins(sample: &SampleFiveBar, left: Angle, right: Angle) -> EndMargins {
+    let [left, right] = [left, right].map(Direction::from_angle);
     sample.five_bar().margins(&left, &right)
 }
 
@@ -45,33 +45,33 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn the_margins_of_any_bars_are_within_their_error_bounds(
+    fn margins_of_random_bars_are_within_their_error_bounds(
         five_bar in any_five_bar(),
         left: u16,
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
         let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
-        let actual = margins_of(&sample, left, right);
+        let actual = compute_margins(&sample, left, right);
         let angles = [left, right].map(degrees);
-        let bound = bounds::EndErrors::of(&five_bar, &sample, angles);
+        let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
         let Ok(pose) = five_bar.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
             prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
         let error = sine(actual.type2).abs() - pose.type2;
-        prop_assert!(error <= bound.type2, "type-2 off by {error}: {bound:?}");
+        prop_assert!(error <= bound.type2, "type-2 error {error}: {bound:?}");
         if actual == EndMargins::default() {
-            // Margins of zero are reported as "below 0.1", so the true type-2 margin has to be below that.
+            // Margins of zero are reported as "below 0.1", so the true type-2 margin must be below 0.1.
             prop_assert!(pose.type2 < 0.1, "no margins at a type-2 margin of {}", pose.type2);
         }
         if !bound.are_margins_known {
-            // The tables may have no value here. Then the margin may be too small, or all margins zero.
+            // The tables may have no value here, so the margin may be too small, or all margins may be zero.
             return Ok(());
         }
         prop_assert_ne!(actual, EndMargins::default());
-        prop_assert!(-error <= bound.type2, "type-2 off by {error}: {bound:?}");
+        prop_assert!(-error <= bound.type2, "type-2 error {error}: {bound:?}");
         if pose.gap.x.abs() > bound.gap_x && pose.type2 > bound.type2 {
             prop_assert_eq!(actual.type2.0 > 0, pose.gap.x > 0.0, "{:?} {:?}", actual, pose);
         }
@@ -80,16 +80,16 @@ proptest! {
             ("right", actual.type1_right, pose.type1_right(), bound.type1_right),
         ] {
             let error = sine(actual) - exact;
-            prop_assert!(error.abs() <= bound, "type-1, {side}, off by {error} of {bound}");
+            prop_assert!(error.abs() <= bound, "type-1, {side}: error {error}, at most {bound} allowed");
         }
     }
 }
 
-/// The five-bars have short couplers at a small type-2 margin, where rounding a length by one step turns the couplers
-/// most. A search over random bars found them; their errors exceeded an earlier bound, which had been guessed from
+/// A search over random bars found these five-bars, with short couplers at a small type-2 margin, where rounding a
+/// length by one step turns the couplers most. Their errors exceeded an earlier bound, which was an estimate from
 /// trials.
 #[test]
-fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
+fn the_largest_known_errors_are_within_their_bounds() {
     for (lengths, angles, known_error) in [
         (
             [
@@ -117,14 +117,14 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
         let five_bar = kinematics::FiveBar::new(lengths);
         let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let angles = angles.map(Angle);
-        let actual = margins_of(&sample, angles[0], angles[1]);
+        let actual = compute_margins(&sample, angles[0], angles[1]);
         let angles = angles.map(degrees);
-        let bound = bounds::EndErrors::of(&five_bar, &sample, angles);
+        let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
         let pose = five_bar
             .forward(angles[0], angles[1])
             .expect("the loop closes");
         let error = (sine(actual.type2).abs() - pose.type2).abs();
-        // The five-bar still has the error for which it was chosen.
+        // The five-bar must still have the error for which it was chosen.
         assert!(error > known_error && pose.type2 > 0.1, "{error}");
         assert!(
             error <= bound.type2 && bound.type2 < 2.5 * error,
@@ -134,9 +134,9 @@ fn the_largest_errors_found_with_random_bars_are_within_their_bounds() {
 }
 
 #[test]
-fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
-    // The crank tips are close and the couplers long, so the squared distance is small and its rounding relatively
-    // large.
+fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
+    // The crank tips are close and the couplers are long. Therefore the squared distance is small, and its rounding is
+    // relatively large.
     let five_bar = kinematics::FiveBar::new([20.0, 30.0, 126.0, 126.0, 30.0]);
     let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let (mut error_sum, mut count) = (0.0, 0.0);
@@ -145,7 +145,7 @@ fn rounding_does_not_bias_the_type_2_margin_where_few_bits_are_left() {
         let pose = five_bar
             .forward(degrees(left), degrees(right))
             .expect("the loop closes");
-        let actual = sine(margins_of(&sample, left, right).type2);
+        let actual = sine(compute_margins(&sample, left, right).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
             error_sum += actual - pose.type2;
             count += 1.0;
@@ -161,10 +161,10 @@ fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
     let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
     let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
-        margins_of(&sample, left, right)
+        compute_margins(&sample, left, right)
     };
-    // Both cranks point outward: their tips are 80 mm apart, more than the couplers reach.
+    // Both cranks point outward: the distance between their tips is 80 mm, more than the couplers reach.
     assert_eq!(margins_at(18_000, 0), EndMargins::default());
-    // The cranks cross: the couplers close the loop upside down.
+    // The cranks cross, so the couplers close the loop upside down.
     assert!(margins_at(6_000, 12_000).type2 < Sine(0));
 }

@@ -13,9 +13,9 @@ fn robot_with_blank_memory() -> (Sample, Eeprom) {
     (Sample::asymmetric(), Eeprom::blank())
 }
 
-/// Makes settings all of whose values depend on `n`, except `boot`.
+/// Makes settings whose values, except `boot`, depend on `n`.
 fn make_settings(robot: &Sample, n: i16) -> Settings {
-    let mut settings = Settings::of(robot);
+    let mut settings = Settings::for_robot(robot);
     for servo in Servo::ALL {
         let mut adjustment = settings.adjustment(servo);
         adjustment.trim = Sweep(37 * n - 5 * servo as i16);
@@ -44,12 +44,12 @@ fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
 
 /// Returns the settings to use, and the state of the saved ones.
 fn load_settings(robot: &Sample, eeprom: &Eeprom) -> (Settings, SavedState) {
-    let mut settings = Settings::of(robot);
+    let mut settings = Settings::for_robot(robot);
     let state = load(robot, eeprom, &mut settings);
     (settings, state)
 }
 
-/// Returns the settings with save number 0, so that settings of different saves can be compared.
+/// Returns the settings with save number 0, for comparing settings of different saves.
 fn clear_save_number(mut settings: Settings) -> Settings {
     settings.set_save_number(0);
     settings
@@ -59,7 +59,7 @@ fn clear_save_number(mut settings: Settings) -> Settings {
 fn each_of_a_thousand_saves_is_loaded_again() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     let loaded = load_settings(&robot, &eeprom);
-    assert_eq!(loaded, (Settings::of(&robot), SavedState::Blank));
+    assert_eq!(loaded, (Settings::for_robot(&robot), SavedState::Blank));
     for n in 0..1000 {
         let new_settings = make_settings(&robot, n % 70);
         let saved_settings = save_settings(&new_settings, &mut eeprom);
@@ -77,7 +77,7 @@ fn unchanged_bytes_are_not_written_again() {
     eeprom.log.clear();
     save_settings(&make_settings(&robot, 3), &mut eeprom);
     assert!(eeprom.log.is_empty());
-    // A save writes only the bytes that differ from the older copy, which it overwrites.
+    // A save writes only those bytes of the older copy that change.
     save_settings(&make_settings(&robot, 4), &mut eeprom);
     eeprom.log.clear();
     save_settings(&make_settings(&robot, 5), &mut eeprom);
@@ -85,18 +85,18 @@ fn unchanged_bytes_are_not_written_again() {
     assert!(eeprom.log.iter().all(|(_, old, new)| old != new));
 }
 
-/// The values that a byte may have after a power cut during its write: the erase has set some bits of the old value, or
-/// the write has not cleared all bits of the new one.
+/// Iterates over the possible values of a byte after a power cut during its write: the erase has set some bits of the
+/// old value, or the write has not cleared all bits of the new value.
 fn torn_values(old: u8, new: u8) -> impl Iterator<Item = u8> {
     (0..=255u8).flat_map(move |ones| [old | ones, new | ones])
 }
 
 #[test]
-fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
+fn a_power_cut_at_any_byte_leaves_the_old_or_the_new_settings() {
     let robot = Sample::asymmetric();
     for save_count in 0..4 {
         let mut eeprom = Eeprom::blank();
-        let mut old_settings = Settings::of(&robot);
+        let mut old_settings = Settings::for_robot(&robot);
         for n in 0..save_count {
             save_settings(&make_settings(&robot, 10 + n), &mut eeprom);
             (old_settings, _) = load_settings(&robot, &eeprom);
@@ -119,7 +119,7 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
                 } else {
                     assert_eq!(
                         settings, new_settings,
-                        "cut in write {write_count}: {state:?}"
+                        "power cut in write {write_count}: {state:?}"
                     );
                 }
             }
@@ -129,7 +129,7 @@ fn a_power_cut_at_any_byte_leaves_the_old_settings_or_the_new() {
 }
 
 #[test]
-fn a_save_after_a_power_cut_is_complete_whatever_the_cut_left() {
+fn a_save_after_a_power_cut_is_complete() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     save_settings(&make_settings(&robot, 1), &mut eeprom);
     save_settings(&make_settings(&robot, 2), &mut eeprom);
@@ -153,7 +153,7 @@ fn with_flipped_bit(eeprom: &Eeprom, bit: usize) -> Eeprom {
 }
 
 #[test]
-fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
+fn any_flipped_bit_leaves_the_last_or_the_previous_settings() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     let previous_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     let last_settings = save_settings(&make_settings(&robot, 2), &mut eeprom);
@@ -171,7 +171,7 @@ fn any_flipped_bit_leaves_the_last_settings_or_the_previous_ones() {
             previous_count += 1;
         }
     }
-    // A flipped bit of the last copy leaves the previous settings, any other bit the last ones.
+    // A flipped bit of the last copy leaves the previous settings, any other flipped bit the last settings.
     assert_eq!((previous_count, last_count), (45 * 8, 8 * (1024 - 45)));
 }
 
@@ -184,7 +184,7 @@ fn any_flipped_bit_leaves_the_only_copy_or_the_settings_of_robot_toml() {
         let is_in_content = bit / 8 < 45;
         let is_in_other_copy = (64..109).contains(&(bit / 8));
         let expected_loaded = match (is_in_content, is_in_other_copy) {
-            (true, _) => (Settings::of(&robot), SavedState::Damaged),
+            (true, _) => (Settings::for_robot(&robot), SavedState::Damaged),
             (_, true) => (only_settings, SavedState::OneCopy),
             _ => (only_settings, SavedState::Latest),
         };
@@ -200,7 +200,10 @@ fn settings_for_other_servos_or_of_another_format_are_not_used() {
         .clone()
         .with_changes(|content| content.servo_hash ^= 0x0001_0000);
     let loaded = load_settings(&other_robot, &eeprom);
-    assert_eq!(loaded, (Settings::of(&other_robot), SavedState::Foreign));
+    assert_eq!(
+        loaded,
+        (Settings::for_robot(&other_robot), SavedState::Foreign)
+    );
     let mut foreign_bytes = *make_settings(&robot, 1).bytes();
     foreign_bytes[0] = 2;
     save_settings(&Settings::from_bytes(foreign_bytes), &mut eeprom);
@@ -226,7 +229,7 @@ fn every_bit_of_the_servos_hash_distinguishes_other_servos() {
 }
 
 #[test]
-fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
+fn settings_whose_travel_does_not_cover_a_gait_are_not_used() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     let mut narrow_settings = make_settings(&robot, 1);
     let mut adjustment = narrow_settings.adjustment(Servo::A3);
@@ -234,11 +237,11 @@ fn settings_with_which_a_gait_would_leave_the_travel_are_not_used() {
     narrow_settings.set_adjustment(Servo::A3, adjustment);
     save_settings(&narrow_settings, &mut eeprom);
     let loaded = load_settings(&robot, &eeprom);
-    assert_eq!(loaded, (Settings::of(&robot), SavedState::Unfit));
+    assert_eq!(loaded, (Settings::for_robot(&robot), SavedState::Unfit));
 }
 
 #[test]
-fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
+fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_no_longer_exists() {
     let (robot, mut eeprom) = robot_with_blank_memory();
     let saved_settings = save_settings(&make_settings(&robot, 1), &mut eeprom);
     assert_eq!(
@@ -264,21 +267,21 @@ fn a_boot_gait_is_found_by_its_name_and_replaced_by_stand_if_it_is_gone() {
 }
 
 #[test]
-fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
+fn a_rest_pose_is_read_until_it_is_invalidated_and_only_for_the_same_servos() {
     let (robot, mut eeprom) = robot_with_blank_memory();
-    assert_eq!(last_rest_pose(&robot, &eeprom), None);
+    assert_eq!(read_rest_pose(&robot, &eeprom), None);
     for sweeps in [[0, 1, -2, 30_000], [-100, 4000, 17, -32_768]] {
         let rest_pose = Pose(sweeps.map(Sweep));
-        let saved_settings = Settings::of_pose(&rest_pose, &robot);
+        let saved_settings = Settings::for_pose(&rest_pose, &robot);
         let mut record_write = REST_POSE_ADDRESS.start_write();
         while record_write.advance(saved_settings.bytes(), &mut eeprom) == Progress::InProgress {}
-        assert_eq!(last_rest_pose(&robot, &eeprom), Some(rest_pose));
+        assert_eq!(read_rest_pose(&robot, &eeprom), Some(rest_pose));
         let other_robot = robot.clone().with_changes(|content| content.servo_hash = 7);
-        assert_eq!(last_rest_pose(&other_robot, &eeprom), None);
+        assert_eq!(read_rest_pose(&other_robot, &eeprom), None);
     }
     let mut record_write = REST_POSE_ADDRESS.start_invalidation();
     while record_write.advance(&[0; CONTENT_BYTES], &mut eeprom) == Progress::InProgress {}
-    assert_eq!(last_rest_pose(&robot, &eeprom), None);
+    assert_eq!(read_rest_pose(&robot, &eeprom), None);
     let is_outside = |address: &u16| !(128..128 + RECORD_BYTES).contains(address);
     let mut addresses = eeprom.log.iter().map(|(address, ..)| address);
     assert!(!addresses.any(is_outside));
@@ -286,19 +289,19 @@ fn a_rest_pose_is_kept_until_it_is_invalidated_and_only_for_the_same_servos() {
 }
 
 #[test]
-fn random_bytes_in_the_memory_are_not_read_as_settings() {
+fn random_bytes_are_not_accepted_as_settings() {
     let robot = Sample::asymmetric();
     let mut state = 1u32;
     for _ in 0..2000 {
         let bytes: [u8; 1024] = core::array::from_fn(|index| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            // With the marks in place, so that only the CRC can reject the bytes.
+            // The marks are correct, so only the CRC can reject the bytes.
             match index % 64 {
                 0 => 0xa5,
                 _ => (state >> 24) as u8,
             }
         });
         let loaded = load_settings(&robot, &Eeprom::with_bytes(bytes));
-        assert_eq!(loaded, (Settings::of(&robot), SavedState::Damaged));
+        assert_eq!(loaded, (Settings::for_robot(&robot), SavedState::Damaged));
     }
 }

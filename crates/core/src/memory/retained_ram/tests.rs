@@ -1,4 +1,4 @@
-//! Tests of resets between any two stores, of random RAM contents, and of every reset cause.
+//! Tests of resets between any two stores, of random RAM contents, and of every cause of a reset.
 
 use std::cell::{Cell, RefCell};
 use std::vec::Vec;
@@ -9,12 +9,12 @@ use super::*;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::{PulseWidth, Sweep};
 
-/// RAM that survives a reset; the reset may occur after any number of stores.
+/// RAM that survives a reset, which may occur after any number of stores.
 struct Ram {
     bytes: RefCell<Vec<u8>>,
-    /// The number of stores until the reset; later ones are lost.
+    /// The number of stores until the reset; later stores are lost.
     stores_left: Cell<usize>,
-    /// The number of all stores, including the lost ones.
+    /// The number of all stores, including lost stores.
     store_count: Cell<usize>,
 }
 
@@ -27,7 +27,7 @@ impl Ram {
         }
     }
 
-    /// Returns the RAM after the first `begin` since power-on.
+    /// Returns the RAM after the first call of `begin` since power-on.
     fn after_power_on() -> Self {
         let ram = Self::with_bytes(std::vec![0; CELL_COUNT]);
         let restart = begin(&ram, Some(Cause::Power));
@@ -35,7 +35,7 @@ impl Ram {
         ram
     }
 
-    /// Returns a copy of the RAM that loses all stores after the first `stores`.
+    /// Returns a copy of the RAM that loses all but the first `stores` stores.
     fn with_reset_after(&self, stores: usize) -> Self {
         let ram = self.copy_after_reset();
         ram.stores_left.set(stores);
@@ -69,8 +69,8 @@ const REPORTED_CAUSES: [Option<Cause>; 4] = [
     Some(Cause::Watchdog),
 ];
 
-fn make_stance(n: i16) -> Stance {
-    Stance {
+fn make_servo_state(n: i16) -> ServoState {
+    ServoState {
         is_resting: n % 3 == 0,
         frames_awake: (n % 21) as u8,
         pose: Pose([n, -n, 7 * n, -32_768 + n].map(Sweep)),
@@ -79,49 +79,49 @@ fn make_stance(n: i16) -> Stance {
 }
 
 #[test]
-fn a_stored_stance_survives_a_reset_but_not_a_loss_of_power() {
+fn a_stored_servo_state_survives_a_reset_but_not_a_loss_of_power() {
     let ram = Ram::after_power_on();
     for n in 1..100 {
-        store_stance(&ram, &make_stance(n), n as u8);
+        store_servo_state(&ram, &make_servo_state(n), n as u8);
         for reported_cause in REPORTED_CAUSES {
             let restarted_ram = ram.copy_after_reset();
             let restart = begin(&restarted_ram, reported_cause);
-            assert_eq!(restart.stance_before, Some(make_stance(n)));
-            assert_eq!(restart.brown_outs, n as u8);
-            // A second reset, before the program has stored anything.
+            assert_eq!(restart.servo_state_before, Some(make_servo_state(n)));
+            assert_eq!(restart.suspected_brown_outs, n as u8);
+            // A second reset before the program has stored a servo state.
             let second_restart = begin(&restarted_ram, reported_cause);
-            assert_eq!(second_restart.stance_before, Some(make_stance(n)));
+            assert_eq!(second_restart.servo_state_before, Some(make_servo_state(n)));
         }
         let unpowered_ram = ram.copy_after_reset();
         assert_eq!(begin(&unpowered_ram, Some(Cause::Power)), Restart::NONE);
         assert_eq!(
-            begin(&unpowered_ram, Some(Cause::External)).stance_before,
+            begin(&unpowered_ram, Some(Cause::External)).servo_state_before,
             None,
-            "no stance was stored since"
+            "no servo state has been stored since power-on"
         );
     }
 }
 
 #[test]
-fn a_reset_between_any_two_stores_leaves_the_old_stance_or_the_new_one() {
+fn a_reset_between_any_two_stores_leaves_the_old_or_the_new_servo_state() {
     let ram = Ram::after_power_on();
-    store_stance(&ram, &make_stance(1), 1);
+    store_servo_state(&ram, &make_servo_state(1), 1);
     let mut found_counts = [0; 2];
     for n in 2..9 {
         let complete_ram = ram.with_reset_after(usize::MAX);
-        store_stance(&complete_ram, &make_stance(n), n as u8);
+        store_servo_state(&complete_ram, &make_servo_state(n), n as u8);
         for stores in 0..=complete_ram.store_count.get() {
             let torn_ram = ram.with_reset_after(stores);
-            store_stance(&torn_ram, &make_stance(n), n as u8);
-            let found_stance = begin(&torn_ram.copy_after_reset(), None).stance_before;
-            let index = usize::from(found_stance == Some(make_stance(n)));
+            store_servo_state(&torn_ram, &make_servo_state(n), n as u8);
+            let found_servo_state = begin(&torn_ram.copy_after_reset(), None).servo_state_before;
+            let index = usize::from(found_servo_state == Some(make_servo_state(n)));
             assert!(
-                index == 1 || found_stance == Some(make_stance(n - 1)),
-                "{n} {stores}"
+                index == 1 || found_servo_state == Some(make_servo_state(n - 1)),
+                "servo state {n}, {stores} stores"
             );
             found_counts[index] += 1;
         }
-        store_stance(&ram, &make_stance(n), n as u8);
+        store_servo_state(&ram, &make_servo_state(n), n as u8);
     }
     assert!(
         found_counts[0] > 100 && found_counts[1] == 7,
@@ -130,9 +130,9 @@ fn a_reset_between_any_two_stores_leaves_the_old_stance_or_the_new_one() {
 }
 
 #[test]
-fn a_reset_between_any_two_stores_of_begin_loses_nothing() {
+fn a_reset_between_any_two_stores_of_begin_keeps_the_servo_state() {
     let ram = Ram::after_power_on();
-    store_stance(&ram, &make_stance(5), 5);
+    store_servo_state(&ram, &make_servo_state(5), 5);
     mark_hung(&ram);
     let complete_ram = ram.with_reset_after(usize::MAX);
     begin(&complete_ram, None);
@@ -141,14 +141,18 @@ fn a_reset_between_any_two_stores_of_begin_loses_nothing() {
         let torn_ram = ram.with_reset_after(stores);
         begin(&torn_ram, None);
         let restart = begin(&torn_ram.copy_after_reset(), None);
-        assert_eq!(restart.stance_before, Some(make_stance(5)), "{stores}");
+        assert_eq!(
+            restart.servo_state_before,
+            Some(make_servo_state(5)),
+            "{stores}"
+        );
         assert!((1..=2).contains(&restart.reset_count));
         assert!(matches!(restart.cause, Cause::Watchdog | Cause::External));
     }
 }
 
 #[test]
-fn every_cause_is_known_from_its_flag_or_from_ram() {
+fn every_cause_is_determined_from_its_flag_or_from_ram() {
     for (reported_cause, has_hung, cause, is_supply_suspected) in [
         (Some(Cause::External), false, Cause::External, false),
         (Some(Cause::BrownOut), false, Cause::BrownOut, true),
@@ -187,24 +191,24 @@ proptest! {
         reported_cause in prop::sample::select(&REPORTED_CAUSES[..]),
     ) {
         let mut bytes = bytes;
-        // In one of 256 cases random bytes contain the mark.
+        // Random bytes contain the mark in one of 256 cases.
         prop_assume!(bytes[MARK_CELL] != POWERED_MARK);
         let ram = Ram::with_bytes(bytes.clone());
         let restart = begin(&ram, reported_cause);
-        prop_assert_eq!((restart.reset_count, restart.stance_before), (0, None));
-        prop_assert_eq!(begin(&ram, Some(Cause::External)).stance_before, None);
+        prop_assert_eq!((restart.reset_count, restart.servo_state_before), (0, None));
+        prop_assert_eq!(begin(&ram, Some(Cause::External)).servo_state_before, None);
         bytes[MARK_CELL] = POWERED_MARK;
         // Neither RUNNING nor HUNG.
         bytes[STATE_CELL] = 0x5b;
-        prop_assert_eq!(begin(&Ram::with_bytes(bytes), reported_cause).stance_before, None);
+        prop_assert_eq!(begin(&Ram::with_bytes(bytes), reported_cause).servo_state_before, None);
     }
 
     #[test]
-    fn a_flipped_bit_in_a_stored_stance_is_detected(bit in 0..8 * CELLS_PER_COPY, n in 1i16..100) {
+    fn a_flipped_bit_in_a_stored_servo_state_is_detected(bit in 0..8 * CELLS_PER_COPY, n in 1i16..100) {
         let ram = Ram::after_power_on();
-        store_stance(&ram, &make_stance(n), n as u8);
+        store_servo_state(&ram, &make_servo_state(n), n as u8);
         let copy_cell = FIRST_COPY_CELL + CELLS_PER_COPY * usize::from(ram.get(VALID_COPY_CELL) & 1);
         ram.set(copy_cell + bit / 8, ram.get(copy_cell + bit / 8) ^ (1 << (bit % 8)));
-        prop_assert_eq!(begin(&ram, None).stance_before, None);
+        prop_assert_eq!(begin(&ram, None).servo_state_before, None);
     }
 }

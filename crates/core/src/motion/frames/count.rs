@@ -1,8 +1,8 @@
-//! The count of a gait's cycles, and the braking of the gait at the end of the last one.
+//! The count of a gait's cycles, and the braking at the end of the last cycle.
 //!
-//! Braking takes at most seven frames. Meanwhile the gait covers as much phase as in three frames at full pace, or less
-//! if it was slower. So the gait begins to brake three frames before the end of its last cycle, and stops within two
-//! frames of that end.
+//! Braking takes at most seven frames, in which the gait covers as much phase as in three frames at full pace, or less
+//! if it is slower. Therefore the gait begins to brake three frames before the end of its last cycle, and stops within
+//! two frames of that end.
 
 use super::Motion;
 use crate::motion::state::{State, Target};
@@ -11,7 +11,7 @@ use crate::numbers::units::phase16;
 /// The count of a gait's cycles. A phase is in 1/65536 cycle, so it wraps at the end of a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct CycleCount {
-    /// Cycles left, including the current one; 0 if the gait has no count.
+    /// The number of cycles left, including the current cycle; 0 if the gait has no count.
     pub cycles_left: u16,
     /// The phase covered since the count started, modulo one cycle.
     pub phase_covered: u16,
@@ -29,7 +29,7 @@ impl CycleCount {
 }
 
 impl Motion {
-    /// Adds the phase that the last frame covered, and makes the gait brake shortly before the count ends.
+    /// Adds the phase covered in the last frame, and makes the gait brake shortly before the count ends.
     #[inline(never)]
     pub(super) fn count_cycles(&mut self) {
         let State::Cycling { gait, phase, .. } = &self.state else {

@@ -1,4 +1,4 @@
-//! The methods with which other modules read the state of a motion.
+//! The getters with which other modules read the state of a motion.
 
 use super::Motion;
 use crate::guard::hazard::Hazard;
@@ -6,7 +6,7 @@ use crate::motion::state::State;
 use crate::numbers::pose::{Pose, Pulses};
 
 impl Motion {
-    /// The phase of the gait, 1/2^24 cycle; 0 if no gait runs.
+    /// The phase of the gait, 1/2^24 cycle; 0 if no gait is running.
     pub const fn phase(&self) -> u32 {
         match self.state {
             State::Cycling { phase, .. } => phase,
@@ -16,7 +16,7 @@ impl Motion {
 
     /// The pose of the last frame.
     pub const fn pose(&self) -> &Pose {
-        &self.stance.pose
+        &self.servo_state.pose
     }
 
     /// True while the servos get no pulses.
@@ -24,9 +24,9 @@ impl Motion {
         matches!(self.state, State::Resting)
     }
 
-    /// The pulses of the last frame, including those of servos that are not awake yet.
+    /// The pulses of the last frame, including servos that are not awake yet.
     pub const fn sent_pulses(&self) -> &Pulses {
-        &self.stance.sent_pulses
+        &self.servo_state.sent_pulses
     }
 
     /// The pace of gaits that was set, in percent of the pace in robot.toml.
@@ -39,8 +39,8 @@ impl Motion {
         self.frame_count
     }
 
-    /// The hazard for which the guard stopped the robot; `None` if the guard has not stopped it, or once another motion
-    /// has begun.
+    /// The hazard because of which the guard stopped the robot; `None` if the guard has not stopped the robot, or once
+    /// another motion has begun.
     pub const fn hazard(&self) -> Option<Hazard> {
         self.hazard
     }

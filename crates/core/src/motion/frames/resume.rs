@@ -1,24 +1,24 @@
-//! The first frames after a reset: the servos wake in the pose in which they are.
+//! The first frames after a reset, in which the servos wake in their current pose.
 //!
-//! A servo does not report its angle. But a robot that rested or held a pose until the reset is still in the pose that
-//! was saved. So its servos can wake there and need not jump to the neutral pose.
+//! A servo does not report its angle. But a robot that rested or held a pose until the reset is still in the saved
+//! pose. Therefore its servos can wake in this pose and need not jump to the neutral pose.
 
 use super::{AWAKE_FRAMES, Motion, WAKE_INTERVAL_FRAMES};
-use crate::memory::restart::Stance;
+use crate::memory::restart::ServoState;
 use crate::motion::state::{State, Target};
 use crate::numbers::gaits::GaitId;
 use crate::numbers::pose::Pose;
 
 impl Motion {
-    /// Wakes the servos one after the other; then the robot stands. They wake in the pose in which the robot rested,
-    /// or, if that is unsafe or beyond the travel, in the neutral one.
+    /// Wakes the servos one after another; then the robot stands. The servos wake in the rest pose, or in the neutral
+    /// pose if the rest pose is unsafe or exceeds the travel.
     #[inline(never)]
     pub fn wake(&mut self, rest_pose: Option<&Pose>) {
         self.begin();
         if let Some(pose) = rest_pose
             && self.may_hold(pose)
         {
-            self.stance.pose = *pose;
+            self.servo_state.pose = *pose;
             self.state = State::Holding {
                 is_commanded: false,
             };
@@ -26,38 +26,38 @@ impl Motion {
         }
     }
 
-    /// Keeps the robot at rest, without pulses. It will later wake in the pose of the stance, if that pose is safe and
-    /// within the travel.
+    /// Keeps the robot at rest, without pulses. The robot will later wake in the pose of `servo_state`, if this pose is
+    /// safe and within the travel.
     #[inline(never)]
-    pub fn resume_rest(&mut self, stance: Option<&Stance>) {
+    pub fn resume_rest(&mut self, servo_state: Option<&ServoState>) {
         self.freeze(State::Resting);
-        if let Some(stance) = stance
-            && self.may_hold(&stance.pose)
+        if let Some(servo_state) = servo_state
+            && self.may_hold(&servo_state.pose)
         {
-            self.stance.pose = stance.pose;
-            self.stance.sent_pulses = stance.sent_pulses;
+            self.servo_state.pose = servo_state.pose;
+            self.servo_state.sent_pulses = servo_state.sent_pulses;
         }
     }
 
-    /// Resumes the pulses of servos that were held until a reset. Returns false if their pose is unsafe or beyond the
-    /// travel. If `will_stand`, the servos wake one after the other, to spare the supply, and then the robot stands;
-    /// otherwise all servos that had pulses get them immediately.
+    /// Resumes the pulses of servos that held a pose until a reset. Returns false if this pose is unsafe or exceeds the
+    /// travel. If `will_stand` is true, the servos wake one after another, to limit the load on the supply, and then
+    /// the robot stands; otherwise all servos that had pulses get them immediately.
     #[inline(never)]
-    pub fn resume(&mut self, stance: &Stance, will_stand: bool) -> bool {
-        if !self.may_hold(&stance.pose) {
+    pub fn resume(&mut self, servo_state: &ServoState, will_stand: bool) -> bool {
+        if !self.may_hold(&servo_state.pose) {
             return false;
         }
-        self.stance.pose = stance.pose;
-        self.stance.sent_pulses = stance.sent_pulses;
+        self.servo_state.pose = servo_state.pose;
+        self.servo_state.sent_pulses = servo_state.sent_pulses;
         self.freeze(State::Holding {
             is_commanded: false,
         });
         if will_stand {
             self.next_target = Some(Target::Gait(GaitId::STAND));
         } else {
-            // The next servo to wake waits for a full interval.
-            let frames_awake = stance.frames_awake.min(AWAKE_FRAMES);
-            self.stance.frames_awake = frames_awake - frames_awake % WAKE_INTERVAL_FRAMES;
+            // The next servo wakes after a full interval.
+            let frames_awake = servo_state.frames_awake.min(AWAKE_FRAMES);
+            self.servo_state.frames_awake = frames_awake - frames_awake % WAKE_INTERVAL_FRAMES;
         }
         self.settle();
         true
@@ -65,6 +65,6 @@ impl Motion {
 
     /// True if a pose is safe and within the travel.
     fn may_hold(&self, pose: &Pose) -> bool {
-        self.hazard_of(pose).is_none()
+        self.first_hazard(pose).is_none()
     }
 }

@@ -1,4 +1,4 @@
-//! Tests of the state table in the module's documentation, row by row, and of the invariants of every frame.
+//! Tests of each row of the state table in the module's documentation, and of the invariants of every frame.
 
 use std::vec::Vec;
 
@@ -17,23 +17,23 @@ mod waking;
 /// Frames until all servos are awake.
 const FRAMES_TO_WAKE: u32 = 20;
 
-/// Frames that suffice for braking, for the longest move of these tests, and for reaching full pace.
+/// Enough frames for braking, for the longest move in these tests, and for accelerating to full pace.
 const TRANSITION_FRAMES: u32 = 150;
 
 impl Motion {
-    /// Returns the motion of [`Sample::asymmetric`], awake and in `stand` at full pace.
+    /// Creates the motion of [`Sample::asymmetric`], awake and in `stand` at full pace.
     fn standing() -> Self {
         Self::awake(Sample::asymmetric())
     }
 
-    /// Returns the motion of a robot that is awake and in `stand` at full pace.
+    /// Creates the motion of a robot that is awake and in `stand` at full pace.
     fn awake(robot: Sample) -> Self {
         let mut motion = Self::new(*robot);
         motion.run(FRAMES_TO_WAKE + 7);
         motion
     }
 
-    /// Returns a motion `frames` frames after the command for a gait.
+    /// Creates a motion `frames` frames after the command for a gait.
     fn in_gait(name: &str, frames: u32) -> Self {
         let mut motion = Self::standing();
         motion.start(name);
@@ -84,16 +84,16 @@ impl Motion {
 
     /// The pulses of the current pose.
     fn held_pulses(&self) -> Pulses {
-        self.stance.pose.pulses(&self.calibration)
+        self.servo_state.pose.pulses(&self.calibration)
     }
 }
 
 /// The sweeps of a safe pose, in 1/65536 turn.
 const SWEEPS: [i16; 4] = [900, -700, 800, -1100];
-/// The sweeps of another safe pose: each servo turns the other way.
+/// The sweeps of another safe pose, in which each servo is turned the other way.
 const OPPOSITE_SWEEPS: [i16; 4] = [-600, 500, -800, 700];
 
-/// Checks that two motions are the same for 100 frames.
+/// Checks that two motions are equal for 100 frames.
 fn assert_same_motion(mut first: Motion, mut second: Motion) {
     for _ in 0..100 {
         assert_eq!(first.tick(), second.tick());
@@ -105,7 +105,7 @@ fn assert_same_motion(mut first: Motion, mut second: Motion) {
 
 // Resting and holding.
 
-fn resting_motion() -> Motion {
+fn make_resting_motion() -> Motion {
     let mut motion = Motion::in_gait("sway", 90);
     motion.rest();
     motion.run(10);
@@ -113,7 +113,7 @@ fn resting_motion() -> Motion {
 }
 
 #[test]
-fn a_held_pose_stays_and_its_activity_is_pose_if_it_was_ordered_else_stop() {
+fn a_held_pose_has_the_activity_pose_if_ordered_and_stop_otherwise() {
     let mut stopped_motion = Motion::in_gait("sway", 90);
     stopped_motion.stop();
     let mut posed_motion = Motion::standing();
@@ -161,7 +161,7 @@ fn a_move_that_arrives_at_a_pose_holds_it() {
 }
 
 #[test]
-fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gains_pace() {
+fn a_move_that_arrives_at_a_gait_starts_at_phase_0_and_accelerates() {
     for name in GAIT_NAMES {
         let mut motion = Motion::in_gait("swing", 90);
         motion.stop();
@@ -187,7 +187,7 @@ fn a_move_that_arrives_at_a_gait_cycles_from_phase_0_and_gains_pace() {
 
 #[test]
 fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
-    // First `stand` brakes for seven frames. The move takes 24 frames, its braking at most seven.
+    // First, `stand` brakes for seven frames. The move takes 24 frames, and its braking at most seven.
     const FAR_SWEEPS: [i16; 4] = [2900, -2400, 2600, -3300];
     for frames in 8..24 {
         let mut motion = Motion::standing();
@@ -201,9 +201,9 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
             pace = pace.saturating_sub(147);
             assert!(motion.is_moving() && motion.next_target.is_some());
             assert_eq!(motion.pace(), pace);
-            // The pose is still on the line if every servo has covered the same share of its distance.
-            let share_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR_SWEEPS[n]);
-            assert!((share_of(0) - share_of(3)).abs() < 0.002);
+            // The pose is still on the line if every servo has covered the same fraction of its distance.
+            let fraction_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR_SWEEPS[n]);
+            assert!((fraction_of(0) - fraction_of(3)).abs() < 0.002);
         }
         motion.tick();
         assert!(motion.next_target.is_none());
@@ -265,7 +265,7 @@ fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
 }
 
 #[test]
-fn the_last_of_several_commands_counts() {
+fn the_last_of_several_commands_determines_the_motion() {
     let mut motion = Motion::in_gait("sway", 90);
     motion.start("swing");
     motion.run(2);

@@ -1,4 +1,4 @@
-//! Compares the tables of the couplers with triangles in floating point.
+//! Compares the couplers' tables with triangles in floating point.
 
 use proptest::prelude::*;
 
@@ -12,8 +12,8 @@ use crate::sample::bounds::{self, MIN_KNOWN_MARGIN};
 const MAX_COUPLER: i16 = 32_511;
 
 /// Computes the rise and the skew of couplers of these lengths directly from the triangle. `tips_sq` is the square of
-/// half the distance of the crank tips. Returns `None` if the couplers do not meet.
-fn exact_shape(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
+/// half the distance between the crank tips. Returns `None` if the couplers do not meet.
+fn compute_exact_shape(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     let distance = 2.0 * f64::from(tips_sq).sqrt();
     let foot = (distance * distance + left * left - right * right) / (2.0 * distance);
     let height_sq = left * left - foot * foot;
@@ -23,8 +23,8 @@ fn exact_shape(left: f64, right: f64, tips_sq: u32) -> Option<[f64; 2]> {
     })
 }
 
-/// Returns the type-2 margin for a rise, from `2 a b sin = rise s`.
-fn type2_of(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
+/// Computes the type-2 margin from a rise, according to `2 a b sin = rise s`.
+fn compute_type2(left: f64, right: f64, tips_sq: u32, rise: f64) -> f64 {
     2.0 * rise * f64::from(tips_sq) / (left * right)
 }
 
@@ -37,7 +37,7 @@ proptest! {
         second_length in MIN_COUPLER_STEPS..=MAX_COUPLER,
         length_variant in 0u8..4,
         is_exchanged: bool,
-        share in (0.0..1.0f64, 0u8..3),
+        fraction in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal lengths, nearly equal ones, or any.
         let second_length = match length_variant {
@@ -47,36 +47,36 @@ proptest! {
         };
         let (left, right) = if is_exchanged { (second_length, first_length) } else { (first_length, second_length) };
         // Evenly distributed over the range, or dense at one of its ends.
-        let share = match share {
-            (share, 0) => share,
-            (share, 1) => share.powi(4),
-            (share, _) => 1.0 - share.powi(4),
+        let fraction = match fraction {
+            (fraction, 0) => fraction,
+            (fraction, 1) => fraction.powi(4),
+            (fraction, _) => 1.0 - fraction.powi(4),
         };
         let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
-        let tips_sq = folded_sq + (f64::from(reach_sq - folded_sq) * share) as u32;
+        let tips_sq = folded_sq + (f64::from(reach_sq - folded_sq) * fraction) as u32;
         let sample = SampleCouplers::new(left, right);
         let shape = sample.couplers().shape_at(tips_sq);
-        let bound = bounds::ShapeError::of(left, right, [f64::from(tips_sq); 2]);
+        let bound = bounds::ShapeError::compute(left, right, [f64::from(tips_sq); 2]);
         let (left, right) = (f64::from(left), f64::from(right));
-        // A loop that just fails to close may close once its lengths are rounded.
-        let [rise, skew] = exact_shape(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
+        // A loop that just fails to close may close when its lengths are rounded.
+        let [rise, skew] = compute_exact_shape(left, right, tips_sq).unwrap_or([0.0, f64::NAN]);
         let Some(shape) = shape else {
-            prop_assert!(type2_of(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "no shape for a rise of {rise}");
+            prop_assert!(compute_type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN, "no shape for a rise of {rise}");
             return Ok(());
         };
         let errors = [
             f64::from(shape.rise) / 1024.0 - rise,
             f64::from(shape.skew) / 1024.0 - skew,
         ];
-        if type2_of(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
+        if compute_type2(left, right, tips_sq, rise) < MIN_KNOWN_MARGIN {
             // A rise above the largest entry of a table is cut off, and below the peak the table holds the largest
-            // rise. No such value may give a margin above the threshold.
+            // rise. No such value may result in a margin above the threshold.
             let min_rise = f64::from(shape.rise) / 1024.0 - bound.rise;
-            prop_assert!(type2_of(left, right, tips_sq, min_rise) < MIN_KNOWN_MARGIN, "rise {errors:?}, {bound:?}");
+            prop_assert!(compute_type2(left, right, tips_sq, min_rise) < MIN_KNOWN_MARGIN, "rise {errors:?}, {bound:?}");
             return Ok(());
         }
         prop_assert!(errors[0].abs() <= bound.rise, "rise {errors:?}, {bound:?}");
-        // The rounding of the floating-point reference.
+        // The rounding error of the floating-point reference.
         let tolerance = 1e-9;
         prop_assert!(skew.is_nan() || errors[1].abs() <= bound.skew + tolerance, "skew {errors:?}, {bound:?}");
         // Rounding never changes the sign of a skew.
@@ -97,7 +97,7 @@ proptest! {
 }
 
 #[test]
-fn table_entries_are_rounded_to_nearest_except_that_the_falling_rise_is_rounded_down() {
+fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
     for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
         let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
         let tables = [
@@ -106,7 +106,7 @@ fn table_entries_are_rounded_to_nearest_except_that_the_falling_rise_is_rounded_
             folded_rise_table(left, right),
             skew_table(left, right),
         ];
-        let exact_rise_at = |tips_sq: u64| {
+        let exact_rise = |tips_sq: u64| {
             let [r, n, s] = [reach_sq.into(), folded_sq.into(), tips_sq].map(|sq: u64| sq as f64);
             (1024.0 * ((r - s) * (s - n)).sqrt() / s).min(32_767.0)
         };
@@ -118,7 +118,7 @@ fn table_entries_are_rounded_to_nearest_except_that_the_falling_rise_is_rounded_
             let tips_sq = argument_at(reach_sq, index);
             if is_within_range(tips_sq) && tips_sq >= peak_sq(left, right).into() {
                 assert!(
-                    (0.0..1.0).contains(&(exact_rise_at(tips_sq) - falling_entry)),
+                    (0.0..1.0).contains(&(exact_rise(tips_sq) - falling_entry)),
                     "rise {index}"
                 );
             }
@@ -131,14 +131,14 @@ fn table_entries_are_rounded_to_nearest_except_that_the_falling_rise_is_rounded_
             let tips_sq = u64::from(reach_sq).saturating_sub(argument_at(reach_sq / 4, index));
             if is_within_range(tips_sq) {
                 assert!(
-                    (stretched_entry - exact_rise_at(tips_sq)).abs() <= 0.51,
+                    (stretched_entry - exact_rise(tips_sq)).abs() <= 0.51,
                     "stretched {index}"
                 );
             }
             let tips_sq = u64::from(folded_sq) + argument_at(folded_sq, index);
             if is_within_range(tips_sq) {
                 assert!(
-                    (folded_entry - exact_rise_at(tips_sq)).abs() <= 0.51,
+                    (folded_entry - exact_rise(tips_sq)).abs() <= 0.51,
                     "folded {index}"
                 );
             }
@@ -155,12 +155,13 @@ fn couplers_that_differ_by_a_few_steps_keep_the_rise_accurate() {
                 .couplers()
                 .shape_at(tips_sq)
                 .expect("the loop closes");
-            let [rise, _] = exact_shape(12_800.0, 12_800.0 + f64::from(extra_steps), tips_sq)
-                .expect("the loop closes");
+            let [rise, _] =
+                compute_exact_shape(12_800.0, 12_800.0 + f64::from(extra_steps), tips_sq)
+                    .expect("the loop closes");
             let error = f64::from(shape.rise) / 1024.0 - rise;
             assert!(
                 error.abs() <= 0.002 * rise.max(1.0),
-                "{extra_steps}: {error} of {rise}"
+                "{extra_steps} steps: error {error} of {rise}"
             );
         }
     }

@@ -4,7 +4,7 @@ use std::string::String;
 use std::vec::Vec;
 
 use crc::{CRC_32_ISO_HDLC, Crc};
-use lizard_avr::{Flash, Plain};
+use lizard_avr::{Flash, Pod};
 
 use super::seal::add_seal;
 use super::{
@@ -13,7 +13,7 @@ use super::{
 };
 use crate::numbers::bars::Bars;
 use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::NeededTravel;
+use crate::numbers::calibration::SweepRange;
 use crate::numbers::cells::Cells;
 use crate::numbers::couplers::{self, Couplers};
 use crate::numbers::curve::Table;
@@ -27,26 +27,26 @@ use crate::numbers::units::{Angle, Scale};
 /// The hash function whose result identifies a robot.
 static ROBOT_HASH: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
-/// The data of a robot, from which a section is made.
+/// The data of a robot from which a section is made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Content {
     /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
     pub name: String,
-    /// The hash of the servos' pins, pulses and neutral angles; saved settings belong to it.
+    /// The hash of the servos' pins, pulses and neutral angles, with which saved settings are stored.
     pub servo_hash: u32,
     /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
-    /// The Arduino number of the pin where the servos' rail is measured; `None` if it is not measured.
+    /// The Arduino number of the pin where the servos' rail is measured; `None` if the rail is not measured.
     pub rail_pin: Option<u8>,
     /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml, 10 to 100.
     pub slow_pace: u8,
     /// The servos' angles in the neutral pose.
     pub neutral_angles: [Angle; 4],
-    /// The pulse widths and the travel of the servos.
+    /// The calibration of the servos.
     pub calibration: [Calibration; 4],
-    /// The range of sweeps that the gaits need of each servo.
-    pub needed_travel: [NeededTravel; 4],
-    /// The smallest margins that are allowed.
+    /// The range of each servo's sweeps that the gaits need.
+    pub needed_travel: [SweepRange; 4],
+    /// The smallest allowed margins.
     pub limits: Limits,
     /// The slew limit of a move.
     pub slew: Slew,
@@ -54,13 +54,13 @@ pub struct Content {
     pub supplies: Supplies,
     /// The bars of head and tail.
     pub ends: [FiveBarLengths; 2],
-    /// The sliders left and right.
+    /// The left and the right slider.
     pub sliders: [Slider; 2],
-    /// The gaits, `stand` first, then the routines. A routine gives its first step by the index in `steps`.
+    /// The gaits, `stand` first, then the routines. The first step of a routine is given as an index into `steps`.
     pub gaits: Vec<Gait>,
     /// The steps of the routines.
     pub steps: Vec<Step>,
-    /// The names of gaits and routines, one after the other.
+    /// The names of gaits and routines, one after another.
     pub names: Vec<u8>,
     /// The waveforms of the gaits.
     pub waves: Vec<Wave>,
@@ -68,7 +68,7 @@ pub struct Content {
     pub maps: [Map; 4],
 }
 
-/// The lengths of the five-bar of head or tail, in steps of their scale.
+/// The lengths of an end's five-bar, in steps of their scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FiveBarLengths {
     /// The scale of the lengths; the margins do not depend on it.
@@ -88,26 +88,26 @@ pub struct FiveBarLengths {
 pub struct Map {
     /// The row number of the first row.
     pub first_row: i8,
-    /// The first and the last column of each row; in a row without certified cells, the first is greater than the
-    /// last.
+    /// The first and the last column of each row; in a row without certified cells, the first column is greater than
+    /// the last.
     pub rows: Vec<[i8; 2]>,
 }
 
 impl Map {
-    /// Returns the map in the form that the guard reads.
+    /// Converts the map to the form that the guard reads.
     pub fn cells(&self) -> Cells<'_> {
         Cells::new(self.first_row, Flash::from(self.rows.as_slice()))
     }
 }
 
 impl FiveBarLengths {
-    /// Computes the bars, and the factors that follow from them.
+    /// Computes the bars and the factors derived from them.
     pub fn bars(&self) -> Bars {
         let [left, right] = self.cranks;
         Bars::new([self.base, left, right], self.couplers, self.scale)
     }
 
-    /// Computes the tables that the couplers need: rise, stretched rise, folded rise, skew.
+    /// Computes the tables that the couplers require: rise, stretched rise, folded rise, skew.
     fn tables(&self) -> [Option<Table>; CURVE_COUNT] {
         let [left, right] = self.couplers;
         [
@@ -122,8 +122,8 @@ impl FiveBarLengths {
 }
 
 impl Content {
-    /// Computes the size of the section in bytes, which may exceed the flash of a board. [`Content::section_bytes`] may
-    /// append a few bytes, so that the checksum detects every likely change.
+    /// Computes the length of the section in bytes, which may exceed [`super::REGION_BYTES`].
+    /// [`Content::section_bytes`] may append a few bytes, so that the checksum detects every likely change.
     pub fn section_length(&self) -> usize {
         let mut curves = Vec::new();
         self.append_curves(&mut curves);
@@ -137,10 +137,10 @@ impl Content {
             + rows * size_of::<[i8; 2]>()
     }
 
-    /// Makes the bytes of the section, which may exceed the flash of a board, see [`super::SPACE_BYTES`].
+    /// Makes the bytes of the section, whose length may exceed [`super::REGION_BYTES`].
     ///
     /// # Panics
-    /// Panics if a map has more than 255 rows, or the section more than 65 535 bytes.
+    /// Panics if a map has more than 255 rows, or if the section has more than 65 535 bytes.
     pub fn section_bytes(&self) -> Vec<u8> {
         let [head, tail] = &self.ends;
         let mut bytes_after_numbers = Vec::new();
@@ -155,8 +155,8 @@ impl Content {
             let first_step = &mut routine.channels[0].offset;
             *first_step = to_u16(steps_offset + usize::from(*first_step) * size_of::<Step>());
         }
-        let gait_bytes: Vec<u8> = gaits.iter().flat_map(Plain::bytes).copied().collect();
-        let steps = self.steps.iter().flat_map(Plain::bytes).copied();
+        let gait_bytes: Vec<u8> = gaits.iter().flat_map(Pod::bytes).copied().collect();
+        let steps = self.steps.iter().flat_map(Pod::bytes).copied();
         let gait_and_step_bytes: Vec<u8> = gait_bytes.into_iter().chain(steps).collect();
         let mut append_part = |count: usize, bytes: &[u8]| {
             let offset = usize::from(AFTER_NUMBERS_OFFSET) + bytes_after_numbers.len();
@@ -166,14 +166,14 @@ impl Content {
                 count: to_u16(count),
             }
         };
-        let wave_bytes: Vec<u8> = self.waves.iter().flat_map(Plain::bytes).copied().collect();
+        let wave_bytes: Vec<u8> = self.waves.iter().flat_map(Pod::bytes).copied().collect();
         let rows: Vec<[i8; 2]> = self.maps.iter().flat_map(|map| map.rows.clone()).collect();
         let row_bytes: Vec<u8> = rows
             .as_flattened()
             .iter()
             .map(|column| *column as u8)
             .collect();
-        // The rows are the last part, because the hash does not cover them.
+        // The rows are the last part, because the hash does not include them.
         let parts = [
             append_part(self.gaits.len(), &gait_and_step_bytes),
             append_part(self.waves.len(), &wave_bytes),
@@ -201,7 +201,7 @@ impl Content {
         };
 
         let mut digest = ROBOT_HASH.digest();
-        // The hash does not include the maps: they only save time and change no decision.
+        // The hash does not include the maps, because they save time but change no decision.
         let mut without_maps = numbers;
         without_maps.parts[Part::Rows as usize] = PartRange {
             address: 0,
@@ -227,8 +227,8 @@ impl Content {
         add_seal([header.bytes(), numbers.bytes(), &bytes_after_numbers].concat())
     }
 
-    /// Appends the tables of head and tail to the bytes after the numbers, equal ones only once. Returns the address of
-    /// each; 0 for a table that is not needed.
+    /// Appends the tables of head and tail to the bytes after the numbers, equal tables only once. Returns the address
+    /// of each table; 0 for a missing table.
     fn append_curves(&self, bytes_after_numbers: &mut Vec<u8>) -> [[u16; CURVE_COUNT]; 2] {
         let mut written_tables: Vec<(Table, u16)> = Vec::new();
         self.ends.each_ref().map(|end| {

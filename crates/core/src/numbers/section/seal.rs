@@ -1,13 +1,14 @@
 //! Sealing a section: adding its length and its checksum.
 //!
-//! A 16-bit checksum misses one change in 65 536. Two kinds of change are likely: a write that ended early, at any of
+//! A 16-bit checksum misses one change in 65 536. Two kinds of changes are likely: a write that ended early, at any of
 //! thousands of bytes, so that erased flash follows the written bytes; and a flipped bit of the length. The checksum
-//! must not miss any of them. So `add_seal` tries all these changes, and appends a byte if the checksum would miss one.
+//! must detect all these changes. Therefore `add_seal` tests all of them, and appends a byte if the checksum would miss
+//! one.
 
 use core::mem::offset_of;
 use std::vec::Vec;
 
-use super::{CRC_RANGE_START, Header, SPACE_BYTES};
+use super::{CRC_RANGE_START, Header, REGION_BYTES};
 use crate::numbers::checksum::Checksum;
 
 /// A byte of erased flash.
@@ -15,7 +16,7 @@ const ERASED_BYTE: u8 = 0xff;
 
 /// The offset of the length in the header.
 const LENGTH_OFFSET: usize = offset_of!(Header, length);
-/// The offset of the checksum in the header; the checksum covers all bytes after it.
+/// The offset of the checksum in the header; the checksum covers all bytes after itself.
 const CRC_OFFSET: usize = offset_of!(Header, crc);
 
 /// Writes the correct checksum into a section, whether its content is valid or not.
@@ -23,12 +24,12 @@ const CRC_OFFSET: usize = offset_of!(Header, crc);
 /// # Panics
 /// Panics if the section is shorter than a header.
 pub fn write_checksum(section: &mut [u8]) {
-    let crc = Checksum::of(&section[CRC_RANGE_START..]).0;
+    let crc = Checksum::compute(&section[CRC_RANGE_START..]).0;
     section[CRC_OFFSET..CRC_RANGE_START].copy_from_slice(&crc.to_le_bytes());
 }
 
-/// Adds length and checksum to a section. Appends bytes until the checksum detects every write that ended early and
-/// every flipped bit of the length.
+/// Adds the length and the checksum to a section. Appends bytes until the checksum detects every write that ended early
+/// and every flipped bit of the length.
 ///
 /// # Panics
 /// Panics if the section is longer than 65 535 bytes.
@@ -38,7 +39,7 @@ pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
         section[LENGTH_OFFSET..CRC_OFFSET].copy_from_slice(&length.to_le_bytes());
         write_checksum(&mut section);
         let checked_bytes = &section[CRC_RANGE_START..];
-        let sums = prefix_checksums(checked_bytes);
+        let sums = compute_prefix_checksums(checked_bytes);
         if !has_undetected_prefix(checked_bytes, &sums) && !has_undetected_length(length, &sums) {
             return section;
         }
@@ -47,7 +48,7 @@ pub(super) fn add_seal(mut section: Vec<u8>) -> Vec<u8> {
 }
 
 /// Computes the checksums of all prefixes of the bytes, from the empty prefix to all bytes.
-fn prefix_checksums(bytes: &[u8]) -> Vec<Checksum> {
+fn compute_prefix_checksums(bytes: &[u8]) -> Vec<Checksum> {
     let mut sum = Checksum::EMPTY;
     let mut sums = Vec::with_capacity(bytes.len() + 1);
     sums.push(sum);
@@ -58,8 +59,8 @@ fn prefix_checksums(bytes: &[u8]) -> Vec<Checksum> {
     sums
 }
 
-/// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all bytes. Prefixes that lack
-/// only bytes equal to erased flash do not count, since losing those changes nothing.
+/// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all bytes. Excludes prefixes
+/// without only those last bytes that equal erased flash, because such a cut changes nothing.
 fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     // A prefix with this checksum, followed by erased bytes, has the checksum of all bytes.
     let mut needed_sum = sums[bytes.len()];
@@ -74,7 +75,7 @@ fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     false
 }
 
-/// Returns the checksum before `byte` was added: the inverse of [`Checksum::with_byte`].
+/// Returns the checksum before `byte` was added, which is the inverse of [`Checksum::with_byte`].
 const fn without_last_byte(sum: Checksum, byte: u8) -> Checksum {
     // The low half depends only on the previous high half and the byte.
     let low = sum.0 as u8;
@@ -85,8 +86,8 @@ const fn without_last_byte(sum: Checksum, byte: u8) -> Checksum {
     Checksum((previous_high as u16) << 8 | previous_low)
 }
 
-/// True if the section has the same checksum for its length with one flipped bit. Erased flash follows the section, and
-/// no board accepts more than [`SPACE_BYTES`] bytes.
+/// True if the checksum is the same for the section's length with one flipped bit. Erased flash follows the section,
+/// and a board accepts at most [`REGION_BYTES`] bytes.
 fn has_undetected_length(length: u16, sums: &[Checksum]) -> bool {
     let section_sum = sums[usize::from(length) - CRC_RANGE_START];
     let differs_by_one_bit = |other_length: u16| (other_length ^ length).is_power_of_two();
@@ -96,7 +97,7 @@ fn has_undetected_length(length: u16, sums: &[Checksum]) -> bool {
     });
     let mut sum = section_sum;
     has_undetected_shorter_length
-        || (length..SPACE_BYTES).any(|last_index| {
+        || (length..REGION_BYTES).any(|last_index| {
             sum = sum.with_byte(ERASED_BYTE);
             differs_by_one_bit(last_index + 1) && sum == section_sum
         })
@@ -108,37 +109,36 @@ mod tests {
 
     use super::*;
 
-    /// The reference implementation of [`has_undetected_prefix`]: computes the checksum of each cut section from its
-    /// first byte on.
+    /// The reference implementation of [`has_undetected_prefix`], which computes the checksum of each cut section from
+    /// its first byte on.
     fn has_prefix_with_sum(bytes: &[u8]) -> bool {
-        let sum = Checksum::of(bytes);
+        let sum = Checksum::compute(bytes);
         (0..bytes.len()).any(|end| {
             let mut cut_bytes = bytes.to_vec();
             cut_bytes[end..].fill(ERASED_BYTE);
-            cut_bytes != bytes && Checksum::of(&cut_bytes) == sum
+            cut_bytes != bytes && Checksum::compute(&cut_bytes) == sum
         })
     }
 
-    /// The reference implementation of [`has_undetected_length`]: computes the checksums from the bytes that the flash
-    /// would hold.
+    /// The reference implementation of [`has_undetected_length`], which computes the checksums from the bytes in flash.
     fn has_other_length_with_sum(section: &[u8]) -> bool {
-        let sum = Checksum::of(&section[CRC_RANGE_START..]);
+        let sum = Checksum::compute(&section[CRC_RANGE_START..]);
         let mut flash = section.to_vec();
-        flash.resize(SPACE_BYTES.into(), ERASED_BYTE);
+        flash.resize(REGION_BYTES.into(), ERASED_BYTE);
         let lengths = (0..16).map(|bit| section.len() ^ 1 << bit);
         let mut lengths =
             lengths.filter(|length| (CRC_RANGE_START + 1..=flash.len()).contains(length));
-        lengths.any(|length| Checksum::of(&flash[CRC_RANGE_START..length]) == sum)
+        lengths.any(|length| Checksum::compute(&flash[CRC_RANGE_START..length]) == sum)
     }
 
-    /// Returns the two bytes that change the checksum `from` into `to`.
-    fn bytes_between(from: Checksum, to: Checksum) -> [u8; 2] {
+    /// Finds the two bytes that change the checksum `from` to `to`.
+    fn find_bytes_between(from: Checksum, to: Checksum) -> [u8; 2] {
         let pairs = (0..=u16::MAX).map(u16::to_le_bytes);
         let mut matching_pairs =
             pairs.filter(|[low, high]| from.with_byte(*low).with_byte(*high) == to);
         matching_pairs
             .next()
-            .expect("two bytes change any checksum into any other")
+            .expect("two bytes can change any checksum to any other")
     }
 
     #[test]
@@ -164,28 +164,28 @@ mod tests {
                 {
                     continue;
                 }
-                // For a shorter length, the checksum at that length; for a longer one, a checksum that the erased
+                // For a shorter length, the checksum at this length; for a longer length, a checksum that the erased
                 // bytes do not change.
                 let add_erased = |start| {
                     (length..other_length)
                         .fold(start, |sum: Checksum, _| sum.with_byte(ERASED_BYTE))
                 };
                 let target = match other_length < length {
-                    true => Some(Checksum::of(&bytes[CRC_RANGE_START..other_length])),
+                    true => Some(Checksum::compute(&bytes[CRC_RANGE_START..other_length])),
                     false => (0..=u16::MAX)
                         .map(Checksum)
                         .find(|sum| add_erased(*sum) == *sum),
                 };
                 let Some(target) = target else { continue };
-                bytes.extend(bytes_between(
-                    Checksum::of(&bytes[CRC_RANGE_START..]),
+                bytes.extend(find_bytes_between(
+                    Checksum::compute(&bytes[CRC_RANGE_START..]),
                     target,
                 ));
                 assert!(
                     has_other_length_with_sum(&bytes),
                     "{length} and {other_length}"
                 );
-                let sums = prefix_checksums(&bytes[CRC_RANGE_START..]);
+                let sums = compute_prefix_checksums(&bytes[CRC_RANGE_START..]);
                 assert!(
                     has_undetected_length(length as u16, &sums),
                     "{length} and {other_length}"
@@ -209,16 +209,16 @@ mod tests {
         ) {
             let mut bytes = bytes;
             bytes.extend(std::vec![ERASED_BYTE; erased_count]);
-            prop_assert_eq!(has_undetected_prefix(&bytes, &prefix_checksums(&bytes)), has_prefix_with_sum(&bytes));
-            // Two more bytes are chosen so that this prefix has the checksum of all bytes.
+            prop_assert_eq!(has_undetected_prefix(&bytes, &compute_prefix_checksums(&bytes)), has_prefix_with_sum(&bytes));
+            // Two more bytes are chosen such that this prefix has the checksum of all bytes.
             let end = end.min(bytes.len());
             let mut cut_bytes = bytes.clone();
             cut_bytes[end..].fill(ERASED_BYTE);
-            let target = Checksum::of(&cut_bytes).with_byte(ERASED_BYTE).with_byte(ERASED_BYTE);
-            bytes.extend(bytes_between(Checksum::of(&bytes), target));
-            prop_assert_eq!(has_undetected_prefix(&bytes, &prefix_checksums(&bytes)), has_prefix_with_sum(&bytes));
+            let target = Checksum::compute(&cut_bytes).with_byte(ERASED_BYTE).with_byte(ERASED_BYTE);
+            bytes.extend(find_bytes_between(Checksum::compute(&bytes), target));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &compute_prefix_checksums(&bytes)), has_prefix_with_sum(&bytes));
             let differs_from_cut = cut_bytes[end..].iter().chain(&[ERASED_BYTE; 2]).ne(&bytes[end..]);
-            prop_assert_eq!(has_undetected_prefix(&bytes, &prefix_checksums(&bytes)), differs_from_cut || has_prefix_with_sum(&bytes));
+            prop_assert_eq!(has_undetected_prefix(&bytes, &compute_prefix_checksums(&bytes)), differs_from_cut || has_prefix_with_sum(&bytes));
         }
 
         #[test]
@@ -229,7 +229,7 @@ mod tests {
             let length = u16::from_le_bytes([section[LENGTH_OFFSET], section[LENGTH_OFFSET + 1]]);
             let crc = u16::from_le_bytes([section[CRC_OFFSET], section[CRC_OFFSET + 1]]);
             prop_assert_eq!(usize::from(length), section.len());
-            prop_assert_eq!(crc, Checksum::of(&section[CRC_RANGE_START..]).0);
+            prop_assert_eq!(crc, Checksum::compute(&section[CRC_RANGE_START..]).0);
             prop_assert!(section.len() <= bytes.len() + 3);
             prop_assert!(!has_prefix_with_sum(&section[CRC_RANGE_START..]));
             prop_assert!(!has_other_length_with_sum(&section));

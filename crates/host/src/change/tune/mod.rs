@@ -1,4 +1,4 @@
-//! `lizard tune`: searches for gaits that walk faster while the servos turn no faster.
+//! `lizard tune`: searches for faster gaits at the same servo speed.
 
 mod report;
 
@@ -13,19 +13,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
-use crate::shared::suggestion::suggestion_text;
+use crate::shared::suggestion::format_suggestion;
 
-/// Search for a gait that walks faster with the same servo rate
+/// Search for a faster gait at the same servo speed
 ///
-/// Takes a gait of robot.toml that goes straight ahead or turns on the spot, and searches
-/// for a wave or a held gait that goes farther in a second while its fastest servo turns no
-/// faster. Each candidate is checked against robot.toml's limits and judged by the
-/// contact model with SG-90 servos on random robots and floors: 95 % of them exceed its
-/// score. Finally the best one is compared with the given gait on other random robots,
-/// and its table for robot.toml is printed. The same seed gives the same result on every
-/// machine.
+/// Takes a gait from robot.toml that goes straight ahead or turns on the spot, and searches
+/// for a faster wave or held gait whose fastest servo turns no faster. Each candidate is
+/// checked against robot.toml's limits and simulated with SG-90 servos and the contact model
+/// on random robots and floors; its score is the speed that 95 % of them exceed. Finally, the
+/// command compares the best candidate with the given gait on other random robots, and prints
+/// the new gait's table for robot.toml. The same seed gives the same result on every machine.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard tune
@@ -33,19 +32,19 @@ use crate::shared::suggestion::suggestion_text;
   lizard tune --rate 200 --name gentle >> robot.toml
   lizard tune --rounds 60 --seed 2 --json
 
-Without --json, everything except the table is a comment, so the output may be appended to
-a robot.toml as it is.")]
+Without --json, everything except the table is a comment, so the output can be appended to
+a robot.toml unchanged.")]
 pub struct Args {
-    /// The gait to improve; it goes straight ahead or turns on the spot
+    /// The gait to improve; it must go straight ahead or turn on the spot
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "walk")]
     gait: String,
-    /// Fastest turn of a servo, deg/s [default: as in that gait]
+    /// Highest servo speed, deg/s [default: the given gait's]
     #[arg(long, value_name = "DEG_PER_S", allow_negative_numbers = true)]
     rate: Option<f64>,
-    /// The name for the gait that is found
+    /// Name of the new gait
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", default_value = "tuned")]
     name: String,
-    /// Rounds of the search, 40 trials each
+    /// Number of search rounds, 40 trials each
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 25, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
     /// Number of random robots and floors for the comparison
@@ -96,7 +95,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Searches for a gait and compares it with the given one; `None` if this process computed only a part of the search.
 fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
-    let gait = gait_to_surpass(robot, &args.gait)?;
+    let gait = find_gait(robot, &args.gait)?;
     check_name(robot, &args.name)?;
     let tuning = Tuning::new(
         robot,
@@ -116,15 +115,15 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
     Ok(best.map(|best| tuning.compare(&best, args.robots as usize)))
 }
 
-/// Returns the gait of this name that the search has to surpass.
-fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
+/// Returns the gait called `name`, the start of the search.
+fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     robot.gait(name).ok_or_else(|| {
         let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
         let names: Vec<&str> = moving_gaits.map(|gait| gait.name()).collect();
         Failure::Input(format!(
-            "robot.toml has no gait `{name}` to surpass; --gait takes one of {}{}",
+            "--gait {name}: unknown gait; allowed values: {}{}",
             names.join(", "),
-            suggestion_text(name, names)
+            format_suggestion(name, names)
         ))
     })
 }
@@ -133,7 +132,7 @@ fn gait_to_surpass<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, 
 fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     let refuse = |reason: String| Err(Failure::Input(format!("--name {name}: {reason}")));
     if robot.gait(name).is_some() {
-        return refuse("robot.toml already has a gait of this name".to_owned());
+        return refuse("robot.toml already has a gait with this name".to_owned());
     }
     let gait_toml = format!("[gait.{name:?}]\nperiod = 1.0\nwaveform = \"still\"\n");
     match robot.with_gait(&gait_toml) {
@@ -145,18 +144,18 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
     }
 }
 
-/// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is
-/// searched independently, so it can be a piece of its own; the trials of a round are distributed over all cores.
+/// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is a
+/// separate piece of the search; the trials of a round are distributed over all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
     let rounds = args.rounds as usize;
-    let kind_count = args.spread.own_piece_count(GaitKind::ALL.len());
-    let bar = progress_bar(
+    let kind_count = args.spread.count_own_pieces(GaitKind::ALL.len());
+    let bar = create_progress_bar(
         kind_count * trial_count(rounds),
         "{bar:40} {pos}/{len} gaits, {eta}",
     );
     let search_kind = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = GaitKind::ALL[index];
-        let mut search = tuning.search(kind);
+        let mut search = tuning.start_search(kind);
         for _ in 0..=rounds {
             let trial_scores = search.trials().par_iter().map(|parameters| {
                 bar.inc(1);
@@ -169,7 +168,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     };
     let pieces = args
         .spread
-        .all_pieces(args, GaitKind::ALL.len(), search_kind)?;
+        .run_pieces(args, GaitKind::ALL.len(), search_kind)?;
     bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(None);
@@ -188,7 +187,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     best.map(Some).ok_or_else(|| {
         let rate = tuning.rate();
         Failure::Impossible(format!(
-            "no gait was found that robot.toml's limits allow at {rate:.0} deg/s; more --rounds may find one"
+            "found no gait within robot.toml's limits at {rate:.0} deg/s; try more --rounds"
         ))
     })
 }
@@ -217,15 +216,15 @@ mod tests {
         Ok(comparison.expect("one process computes all parts"))
     }
 
-    /// Checks the figures of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
+    /// Checks the output of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
     #[test]
-    fn a_short_search_surpasses_walk_at_no_higher_rate_and_prints_what_the_docs_quote() {
+    fn short_search_beats_walk_at_the_same_rate_and_matches_the_docs() {
         let comparison = run_tune("--rounds 1").expect("the search finds a gait");
         let (walk, tuned) = (&comparison.gait, &comparison.tuned);
         assert!(tuned.rate <= walk.rate, "{tuned:?}");
         assert!(tuned.speeds[0] > 1.15 * walk.speeds[0], "{comparison:?}");
         assert!(comparison.faster_count >= 195, "{comparison:?}");
-        // The printed text may be appended to a robot.toml, and its gait walks as predicted.
+        // The printed text can be appended to a robot.toml, and its gait moves as predicted.
         let mut printed = Vec::new();
         report::print(&comparison, &mut printed).expect("writing to a vector succeeds");
         let printed = String::from_utf8(printed).expect("the output is UTF-8");
@@ -249,26 +248,29 @@ mod tests {
     }
 
     #[test]
-    fn an_invalid_argument_is_refused_with_the_reason() {
+    fn reports_why_an_argument_is_invalid() {
         for (arguments, reason) in [
             (
                 "--gait run",
-                "no gait `run` to surpass; --gait takes one of walk, trot, crawl",
+                "--gait run: unknown gait; allowed values: walk, trot, crawl",
             ),
-            ("--gait stand", "the gait `stand` goes nowhere"),
+            ("--gait stand", "the gait `stand` does not move the robot"),
             ("--gait look", "undecided"),
-            ("--gait arc-left", "goes ahead and turns"),
+            ("--gait arc-left", "walks along a curve"),
             (
                 "--rate 900",
-                "--rate 900: from 10 to 310 deg/s, which is limits.gait_slew",
+                "--rate 900: must be between 10 and 310 deg/s (limits.gait_slew",
             ),
-            ("--rate -5", "--rate -5: from 10 to 310 deg/s"),
-            ("--rate nan", "--rate NaN: from 10"),
+            ("--rate -5", "--rate -5: must be between 10 and 310 deg/s"),
+            ("--rate nan", "--rate NaN: must be between 10"),
             (
                 "--name walk",
-                "--name walk: robot.toml already has a gait of this name",
+                "--name walk: robot.toml already has a gait with this name",
             ),
-            ("--name Fast", "--name Fast: is not a gait name: it must be"),
+            (
+                "--name Fast",
+                "--name Fast: is not a gait name: it must consist of",
+            ),
             ("--name status", "--name status: "),
             ("--name a.b", "--name a.b: is not a gait name"),
             ("--seed -1", "invalid value '-1' for '--seed <N>'"),

@@ -18,7 +18,7 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     let (gait, tuned) = (&comparison.gait.name, &comparison.tuned.name);
     writeln!(
         out,
-        "# {unit} with servos of at most {:.1} deg/s; the last three on {robot_count} random robots and floors\n#",
+        "# {unit} at servo speeds up to {:.1} deg/s; the last three columns: {robot_count} random robots and floors\n#",
         comparison.rate
     )?;
     let name_width = [gait, tuned]
@@ -43,14 +43,14 @@ pub fn print(comparison: &Comparison, out: &mut impl Write) -> io::Result<()> {
     if comparison.is_better() {
         writeln!(
             out,
-            "# {tuned} is faster than {gait} on {faster_count} of {robot_count}, and by {:.0} % where 5 % are slower.",
+            "# {tuned} is faster than {gait} on {faster_count} of {robot_count} robots; its 5 % quantile is {:.0} % higher.",
             100.0 * comparison.gain()
         )?;
     } else {
         writeln!(
             out,
-            "# No gait of these kinds was found that surpasses {gait} on the slow ones; this is the best,\n\
-             # faster on {faster_count} of {robot_count}:"
+            "# The search found no gait with a higher 5 % quantile than {gait}. The best one is\n\
+             # faster on {faster_count} of {robot_count} robots:"
         )?;
     }
     writeln!(out, "# At random: {}.\n", SPREAD_TEXT.replace('\n', "\n# "))?;

@@ -14,8 +14,8 @@ use crate::shared::files;
 
 /// Save the robot's calibration to a file
 ///
-/// Writes trims, limits, signs and scales of the servos, `boot` and `deadman` as TOML.
-/// Opening the port resets the board, so these are the values that were saved last.
+/// Writes the servos' trims, limits, signs and scales, `boot` and `deadman` as TOML.
+/// Opening the port resets the board, so these are the last saved values.
 #[derive(clap::Args, Debug)]
 pub struct BackupArgs {
     /// The file to write; an existing file is replaced
@@ -24,10 +24,10 @@ pub struct BackupArgs {
     connect: ConnectionArgs,
 }
 
-/// Send a calibration from a file to the robot, and save it there
+/// Send a calibration from a file to the robot, and save it in the board
 ///
-/// The robot checks it: if it refuses any value, nothing is saved and the robot keeps its
-/// old calibration.
+/// The robot checks the calibration. If it refuses any value, nothing is saved and the robot
+/// keeps its old calibration.
 #[derive(clap::Args, Debug)]
 pub struct RestoreArgs {
     /// A file that `lizard calibrate backup` wrote
@@ -39,15 +39,15 @@ pub struct RestoreArgs {
 /// Runs `lizard calibrate backup`.
 ///
 /// # Errors
-/// Fails if there is no board, it does not answer, or the file cannot be written.
+/// Fails if there is no board, the board does not answer, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connect.into_finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
-    let calibration =
-        block_on(read_settings(&mut board.link)).map_err(|error| board.failure(&error.into()))?;
+    let calibration = block_on(read_settings(&mut board.link))
+        .map_err(|error| board.to_failure(&error.into()))?;
     files::write(&args.file, calibration.to_toml().as_bytes())?;
     println!(
-        "the calibration of {} is in {}",
+        "saved the calibration of {} to {}",
         board.name,
         args.file.display()
     );
@@ -67,15 +67,14 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     send_calibration(&calibration, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
     println!(
-        "{} has accepted and saved the calibration of {}",
+        "{} has accepted and saved the calibration from {}",
         board.name,
         args.file.display()
     );
     Ok(())
 }
 
-/// Sends a calibration to a robot, reads it back and saves it; if that fails, sends the robot its old
-/// settings.
+/// Sends a calibration to a robot, reads it back and saves it; if saving fails, restores the robot's old settings.
 ///
 /// # Errors
 /// Fails if the robot refuses the calibration or reports a different one, or if the connection breaks.
@@ -94,28 +93,28 @@ pub fn send_calibration<P: Read + Write>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{calibration_of, connect_paper_robot};
+    use super::super::double::{connect_paper_robot, read_calibration};
     use super::*;
 
     #[test]
-    fn a_backup_is_in_effect_again_after_restore_and_load() {
+    fn restored_backup_is_active_after_load() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
         link.command("boot walk").expect("the line is accepted");
-        let saved = calibration_of(&mut link);
+        let saved = read_calibration(&mut link);
         let saved = Calibration::parse(&saved.to_toml(), "a.toml").expect("the backup is valid");
         link.command("factory").expect("the line is accepted");
         send_calibration(&saved, &mut link).expect("the calibration is accepted and saved");
         link.command("factory").expect("the line is accepted");
         link.command("load").expect("a calibration was saved");
-        assert!(calibration_of(&mut link).is_equivalent_to(&saved));
+        assert!(read_calibration(&mut link).is_equivalent_to(&saved));
     }
 
     #[test]
-    fn a_refused_calibration_keeps_the_active_settings_and_saves_nothing() {
+    fn refused_calibration_changes_and_saves_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
-        let before = calibration_of(&mut link);
+        let before = read_calibration(&mut link);
         let mut calibration = before.clone();
         calibration.servos[0].trim = 5.0;
         calibration.servos[2].scale = 99.0;
@@ -126,7 +125,7 @@ mod tests {
             "the robot refuses `scale 3 99.00`: 3 scale must be 5..20; nothing was saved, and the \
              robot keeps its old settings"
         );
-        assert!(calibration_of(&mut link).is_equivalent_to(&before));
+        assert!(read_calibration(&mut link).is_equivalent_to(&before));
         let load = link.ask("load").expect("the robot answers").answer;
         assert!(load.starts_with("err 9"), "{load}");
     }

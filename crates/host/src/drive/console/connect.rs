@@ -13,26 +13,25 @@ use crate::{Failure, RobotFile};
 /// The arguments that select the board to connect to.
 #[derive(clap::Args, Debug)]
 pub struct ConnectionArgs {
-    /// The board's serial port [default: the one that has a UNO, or the only one]
+    /// The board's serial port [default: the port with a UNO, or the only port]
     port: Option<String>,
     /// Use a simulated UNO instead, in real time
     #[arg(long, conflicts_with = "port")]
     sim: bool,
-    /// With --sim: the firmware: an ELF that has this robot in it [default: the one inside this
-    /// program]
+    /// With --sim: the firmware, an ELF that contains this robot [default: the built-in firmware]
     #[arg(long, value_name = "FILE", requires = "sim")]
     elf: Option<PathBuf>,
-    /// With --sim: the robot, a file or a name as for `lizard sim` [default: robot.toml in
-    /// this folder or one above it, else the one this program was built with]
+    /// With --sim: the robot, a file or a built-in name as for `lizard sim` [default: robot.toml
+    /// in this folder or the nearest folder above it, else the built-in robot.toml]
     #[arg(long, value_name = "FILE", requires = "sim")]
     robot: Option<PathBuf>,
 }
 
-/// A finder of the board's port. Unless the user named a port, each `open` searches again, because
-/// a board that is plugged in again may get another port.
+/// A finder of the board's port. Unless the user named a port, each `open` searches again, because a board may get
+/// another port when it is plugged in again.
 #[derive(Debug)]
 pub struct BoardFinder {
-    /// The port that the user named, or that of the simulated board.
+    /// The port that the user named, or the simulated board's port.
     port: Option<String>,
     /// The subcommand with the arguments before the port, for messages.
     command: &'static str,
@@ -40,7 +39,7 @@ pub struct BoardFinder {
     simulated_board: Option<simulated_uno::BackgroundPort>,
 }
 
-/// An open port, to which a board is connected.
+/// An open port with a connected board.
 pub struct Connection {
     /// The serial link to the board.
     pub link: Link<Box<dyn SerialPort>>,
@@ -49,8 +48,8 @@ pub struct Connection {
 }
 
 impl ConnectionArgs {
-    /// Makes the finder for these arguments; for `--sim`, also starts the simulated UNO. `command` is the
-    /// subcommand with the arguments before the port, for messages.
+    /// Creates the finder for these arguments; with `--sim`, also starts the simulated UNO. `command` is the subcommand
+    /// with the arguments before the port, for messages.
     ///
     /// # Errors
     /// Fails if the simulated UNO has no robot, firmware or pseudo terminal, or is not built in.
@@ -79,9 +78,8 @@ fn simulate_board(
     let image = crate::shared::firmware::select_firmware(elf, robot_file, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::simulate::sim::supplies::connect(&mut uno, &robot);
-    let port = Port::new().map_err(|error| {
-        Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
-    })?;
+    let port = Port::new()
+        .map_err(|error| Failure::Impossible(format!("cannot open a pseudo terminal: {error}")))?;
     let board = port.in_background(uno, |uno| {
         uno.take_edges();
         uno.take_marks();
@@ -117,9 +115,9 @@ impl BoardFinder {
             }
             Some(port) => (port.clone(), port.clone()),
             None => {
-                let port = find::choose_port(&find::usb_ports(), self.command)
+                let port = find::choose_port(&find::list_usb_ports(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
-                // The product name comes from the board, so it is made safe to print.
+                // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))
             }
         };
@@ -129,7 +127,7 @@ impl BoardFinder {
         })
     }
 
-    /// Opens the port, prints its name on standard error, and waits for the banner. Returns the banner too; `None` if
+    /// Opens the port, prints its name on standard error, and waits for the banner. Also returns the banner; `None` if
     /// the board was not reset.
     ///
     /// # Errors
@@ -141,7 +139,7 @@ impl BoardFinder {
         Ok((board, banner))
     }
 
-    /// True if the board is simulated, so that it ends with this program.
+    /// True if the board is simulated; it then exists only as long as this program runs.
     pub fn is_simulated(&self) -> bool {
         #[cfg(all(feature = "simulator", target_os = "linux"))]
         let is_simulated = self.simulated_board.is_some();
@@ -157,11 +155,11 @@ impl Connection {
     /// # Errors
     /// Fails if no lizard answers; the message names the port.
     pub fn greet(&mut self) -> Result<Option<String>, Failure> {
-        self.link.greet().map_err(|error| self.failure(&error))
+        self.link.greet().map_err(|error| self.to_failure(&error))
     }
 
     /// Converts the error to a failure whose message names the port.
-    pub fn failure(&self, error: &LinkError) -> Failure {
+    pub fn to_failure(&self, error: &LinkError) -> Failure {
         Failure::Impossible(format!("{}: {error}", self.name))
     }
 }

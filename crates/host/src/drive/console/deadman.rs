@@ -1,18 +1,18 @@
-//! The robot's `deadman` while a person drives.
+//! The robot's `deadman` setting while a person drives.
 //!
-//! A robot that is out of range would keep walking. So while a person drives it, `deadman` is
-//! set: the robot ends a gait by itself if it has received no line for that time. When the gait
-//! has ended, and when the program ends, the robot's own setting is restored.
+//! A robot that is out of range would keep walking. While a person drives it, `deadman` is therefore set: the robot
+//! ends a gait by itself if it receives no line for that time. When the gait or the program ends, the robot's own
+//! setting is restored.
 
 use std::time::Duration;
 
 use lizard_core::console::word::Word;
 
-/// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers: a robot that
-/// has this value got it from a program that ended without restoring the setting.
+/// The `deadman` while a person drives, ms, unless the robot's own is shorter. Users set round numbers; a robot with
+/// this value therefore got it from a program that ended without restoring the setting.
 const DRIVING_DEADMAN_MS: u16 = 901;
-/// Interval between the lines that keep the robot walking: short enough that two of three may be lost, even if the
-/// robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
+/// Interval between the lines that keep the robot walking. It is so short that two of three lines may be lost, even if
+/// the robot's own setting is somewhat shorter than [`DRIVING_DEADMAN_MS`].
 pub(super) const LINE_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A line that reads or sets `deadman`.
@@ -31,23 +31,23 @@ pub(super) enum DeadmanLine {
 /// The robot's own `deadman`, and its replacement while a person drives.
 #[derive(Debug, Default)]
 pub(super) struct Deadman {
-    /// The robot's own setting, ms, once it is read.
+    /// The robot's own setting, ms; `None` until it is read.
     own_ms: Option<u16>,
     /// True while `deadman` has its value for driving, or is about to get it.
     pub(super) is_overridden: bool,
 }
 
 impl Deadman {
-    /// Returns the lines to send before and after a line that the user entered.
-    pub(super) fn lines_around(
+    /// Returns the lines to send before and after a user's line, and records if they override the setting.
+    pub(super) fn plan_lines(
         &mut self,
         line: &str,
     ) -> (&'static [DeadmanLine], &'static [DeadmanLine]) {
         let line = line.to_ascii_lowercase();
         let word = line.split_whitespace().next().unwrap_or_default();
         if matches!(word, "cal" | "save") && self.is_overridden {
-            // `cal` shows the setting and `save` stores it, so the robot's own value is restored for that line. The
-            // driving value is set again afterwards, because the robot may have started to walk since its last status.
+            // `cal` shows the setting and `save` stores it; both therefore need the robot's own value. The driving
+            // value is set again afterwards, because the robot may have started to walk since its last status.
             return (&[DeadmanLine::RestoreForOneLine], &[DeadmanLine::Set]);
         }
         // Only a gait or a routine makes the robot walk; their names are not among the console's words.
@@ -62,7 +62,7 @@ impl Deadman {
     }
 
     /// Returns the text of the line to send; [`DeadmanLine::Restore`] also marks the setting as restored.
-    pub(super) fn console_line(&mut self, deadman_line: DeadmanLine) -> String {
+    pub(super) fn apply_line(&mut self, deadman_line: DeadmanLine) -> String {
         let own_ms = self.own_ms.unwrap_or(0);
         let ms = match deadman_line {
             DeadmanLine::Read => return "cal".to_owned(),
@@ -77,8 +77,8 @@ impl Deadman {
         format!("deadman {ms}")
     }
 
-    /// Reads a line of the answer to `cal`; returns false if the line cannot belong to that answer.
-    pub(super) fn read_cal_line(&mut self, line: &str) -> bool {
+    /// Parses a line of the answer to `cal`; returns false if the line cannot belong to that answer.
+    pub(super) fn parse_cal_line(&mut self, line: &str) -> bool {
         if let Some(ms) = line
             .strip_prefix("# deadman ")
             .and_then(|ms| ms.parse().ok())
@@ -90,8 +90,8 @@ impl Deadman {
             .any(|start| line.starts_with(start))
     }
 
-    /// Updates the remembered setting of the robot after it has accepted a line that the user sent.
-    pub(super) fn note_accepted_line(&mut self, line: &str) {
+    /// Updates the record of the robot's own setting after the robot has accepted a user's line.
+    pub(super) fn record_accepted_line(&mut self, line: &str) {
         let line = line.to_ascii_lowercase();
         match line.split_whitespace().collect::<Vec<_>>()[..] {
             ["deadman", ms] => self.own_ms = ms.parse().ok(),

@@ -13,6 +13,6 @@ pub enum DialogueError {
     Link(#[from] LinkError),
     /// The terminal, standard input or standard output failed.
     Io(#[from] io::Error),
-    /// The file of the session could not be written.
+    /// The session's file could not be written.
     File(#[from] Failure),
 }

@@ -1,5 +1,5 @@
-//! A test double of a board: the firmware's own console behind a connection, without a chip. Simulated time advances
-//! when there is nothing left to read, much faster than real time.
+//! A test double of a board: the firmware's console behind a connection, without a chip. Simulated time advances when
+//! there is nothing left to read, much faster than real time.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -14,7 +14,7 @@ use super::link::{Link, Timeouts};
 /// The firmware's core on a virtual board, and its output.
 pub struct ConsoleDouble {
     running_robot: RunningRobot,
-    /// The robot's output that has not been read yet.
+    /// The robot's unread output.
     output: VecDeque<u8>,
     /// All text that the link has sent to the robot.
     pub sent_text: String,
@@ -28,7 +28,7 @@ pub fn connect_paper_robot() -> Link<ConsoleDouble> {
 /// The robot.toml of the paper's robot.
 pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 
-/// Connects to the robot of this robot.toml and reads its banner.
+/// Connects to the robot described by `robot_toml` and reads its banner.
 pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
     let robot = Robot::parse(robot_toml).expect("the robot.toml is valid");
     let mut link = Link::new(ConsoleDouble::power_on(&robot), Timeouts::default());
@@ -36,8 +36,8 @@ pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
     link
 }
 
-/// Returns the active calibration of a connected robot.
-pub fn calibration_of(link: &mut Link<ConsoleDouble>) -> Calibration {
+/// Reads the active calibration of a connected robot.
+pub fn read_calibration(link: &mut Link<ConsoleDouble>) -> Calibration {
     block_on(lizard_calibrate::read_settings(link)).expect("the robot answers")
 }
 

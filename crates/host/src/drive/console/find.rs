@@ -1,8 +1,8 @@
-//! Finds the serial port of the board if the user has not named it.
+//! Finds the board's serial port if the user has not named it.
 
 use serialport::{SerialPortInfo, SerialPortType};
 
-/// USB vendor IDs of the chips on UNOs and their copies: Arduino's two, and that of WCH, the maker of the CH340.
+/// USB vendor IDs of the chips on UNOs and their clones: Arduino's IDs, and the ID of WCH, the maker of the CH340.
 const UNO_VENDOR_IDS: [u16; 3] = [ARDUINO_VENDOR_IDS[0], ARDUINO_VENDOR_IDS[1], 0x1a86];
 /// Arduino's USB vendor IDs.
 pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
@@ -10,31 +10,31 @@ pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
 /// A USB serial port.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct UsbPort {
-    /// The name of the port, such as /dev/ttyACM0 or COM3.
+    /// The port's name, such as /dev/ttyACM0 or COM3.
     pub name: String,
-    /// The vendor ID of its USB chip.
+    /// The USB chip's vendor ID.
     pub vendor_id: u16,
-    /// The product ID of its USB chip.
+    /// The USB chip's product ID.
     pub product_id: u16,
     /// The product name that the chip reports.
     pub product_name: Option<String>,
 }
 
-/// The reason why no port could be chosen.
+/// An error in the choice of a port.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum FindError {
     /// There is no port.
     #[error(
-        "no board found: this machine has no USB serial port. Connect the UNO by a cable that \
+        "no board found: this machine has no USB serial port. Connect the UNO with a cable that \
          carries data (some only charge), or name its port: lizard {command} /dev/ttyACM0; \
-         --sim takes a simulated UNO"
+         --sim uses a simulated UNO"
     )]
     NoPort {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
     },
     /// There is more than one port.
-    #[error("several boards found: {}. Say which one: lizard {command} {}", join_names(.ports), .ports[0].name)]
+    #[error("several boards found: {}. Select one: lizard {command} {}", join_names(.ports), .ports[0].name)]
     SeveralPorts {
         /// The subcommand, with the arguments before the port.
         command: &'static str,
@@ -43,23 +43,23 @@ pub enum FindError {
     },
 }
 
-/// Returns the USB serial ports of this machine, sorted by name. Other ports, such as a mainboard's, are used only if
+/// Returns this machine's USB serial ports, sorted by name. Other ports, such as a mainboard's, are used only if
 /// the user names them.
-pub fn usb_ports() -> Vec<UsbPort> {
+pub fn list_usb_ports() -> Vec<UsbPort> {
     let mut ports: Vec<UsbPort> = serialport::available_ports()
         .unwrap_or_default()
         .into_iter()
-        .filter_map(usb_port_of)
+        .filter_map(to_usb_port)
         .collect();
     ports.sort_by(|a, b| a.name.cmp(&b.name));
     ports
 }
 
-fn usb_port_of(port: SerialPortInfo) -> Option<UsbPort> {
+fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
     let SerialPortType::UsbPort(usb) = port.port_type else {
         return None;
     };
-    // macOS lists each port twice; opening the one that begins with /dev/tty. would wait for a modem's carrier.
+    // macOS lists each port twice; opening the port called /dev/tty.* would wait for a modem's carrier.
     if port.port_name.starts_with("/dev/tty.") {
         return None;
     }
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn the_only_uno_among_other_devices_is_chosen() {
+    fn only_uno_among_other_devices_is_chosen() {
         assert_eq!(
             choose_from(&[
                 ("ttyUSB0", 0x0403),
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn the_only_port_is_chosen_whichever_chip_it_has() {
+    fn only_port_is_chosen_with_any_chip() {
         assert_eq!(
             choose_from(&[("ttyUSB0", 0x0403)]),
             Ok("/dev/ttyUSB0".to_owned())
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn no_port_and_several_ports_are_reported_with_the_remedy() {
+    fn errors_for_no_port_and_several_ports_name_the_remedy() {
         let message = choose_from(&[]).expect_err("the choice must fail without a port");
         assert!(
             message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
@@ -169,7 +169,7 @@ mod tests {
                 ("ttyUSB1", 0x0403)
             ]),
             Err(
-                "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Say which one: \
+                "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
                  lizard console /dev/ttyACM0"
                     .to_owned()
             )

@@ -14,7 +14,7 @@ fn history_path() -> Option<PathBuf> {
     Some(folder.join("lizard/history"))
 }
 
-/// Loads the lines, the oldest first; returns an empty list if there is no such file.
+/// Loads the lines, the oldest first; returns an empty list if the file does not exist.
 pub fn load() -> Vec<String> {
     let text = history_path().and_then(|path| std::fs::read_to_string(path).ok());
     let text = text.unwrap_or_default();

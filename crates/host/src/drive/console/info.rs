@@ -1,4 +1,4 @@
-//! `lizard info`: the firmware, robot, calibration and fault of a board.
+//! `lizard info`: reports a board's firmware, robot, calibration and fault.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -16,9 +16,9 @@ use super::link::{BANNER_START, Link, LinkError};
 use crate::Failure;
 use crate::shared::json;
 
-/// Say what a board has: firmware, robot, calibration, fault
+/// Report a board's firmware, robot, calibration and fault
 ///
-/// Only asks: nothing is written to the board. Opening the port resets a UNO, and its gait ends.
+/// Does not change the board. Opening the port resets a UNO, which ends its gait.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     /// Print one JSON object
@@ -28,31 +28,31 @@ pub struct Args {
     connect: ConnectionArgs,
 }
 
-/// The answers of a board, with the field names of `--json`.
+/// A board's answers; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 struct BoardInfo {
     port: String,
-    /// The firmware's version; null if the board was not reset and so has not sent its banner.
+    /// The firmware's version; null if the board was not reset and sent no banner.
     firmware: Option<String>,
-    /// The robot's name and hash; null if the board has no robot or has not sent its banner.
+    /// The robot's name and hash; null if the board has no robot or sent no banner.
     robot: Option<RobotIdentity>,
     gait: String,
     fault: Option<String>,
-    /// Supply voltage of the board, V; null if it is not measured.
+    /// The board's supply voltage, V; null if it is not measured.
     vcc: Option<f64>,
-    /// Voltage of the servos' rail, V; null if it is not measured.
+    /// The voltage of the servo rail, V; null if it is not measured.
     rail: Option<f64>,
-    /// Null on a board without a robot.
+    /// The calibration; null on a board without a robot.
     calibration: Option<CalibrationInfo>,
 }
 
-/// A calibration, with the field names of its file.
+/// A calibration; the field names are the keys of its file.
 #[derive(Debug, Serialize)]
 struct CalibrationInfo {
     boot: String,
     /// The time without a line after which the robot ends its gait, ms; 0 for never.
     deadman: u16,
-    /// The settings of each servo, by its name.
+    /// Each servo's settings, by servo name.
     servo: BTreeMap<&'static str, ServoSettings>,
 }
 
@@ -66,31 +66,31 @@ impl From<Calibration> for CalibrationInfo {
     }
 }
 
-/// Asks a board about itself and prints its answers.
+/// Runs `lizard info`.
 ///
 /// # Errors
-/// Fails if there is no board, or none that answers as a lizard does.
+/// Fails if there is no board, or if the board does not answer like a lizard.
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connect.into_finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;
-    let result = BoardInfo::ask(board.name.clone(), banner.as_deref(), &mut board.link);
-    let answers = result.map_err(|error| board.failure(&error))?;
-    json::print_json_or_text(args.json, &answers, || answers.text())
+    let result = BoardInfo::read(board.name.clone(), banner.as_deref(), &mut board.link);
+    let answers = result.map_err(|error| board.to_failure(&error))?;
+    json::print_json_or_text(args.json, &answers, || answers.to_text())
 }
 
 impl BoardInfo {
-    fn ask<P: Read + Write>(
+    fn read<P: Read + Write>(
         port: String,
         banner: Option<&str>,
         link: &mut Link<P>,
     ) -> Result<Self, LinkError> {
-        let status = wait_for_voltages(link)?;
+        let status = read_status_with_voltages(link)?;
         let calibration = match block_on(read_settings(link)) {
             Ok(calibration) => Some(calibration.into()),
             Err(error) if error.is_refusal() => None,
             Err(error) => return Err(error.into()),
         };
-        let (firmware, robot) = banner.map_or((None, None), firmware_and_robot);
+        let (firmware, robot) = banner.map_or((None, None), parse_firmware_and_robot);
         Ok(Self {
             port,
             firmware,
@@ -103,7 +103,7 @@ impl BoardInfo {
         })
     }
 
-    fn text(&self) -> String {
+    fn to_text(&self) -> String {
         let mut text = String::new();
         let mut write_row = |name: &str, value: String| {
             _ = writeln!(text, "{name:<12}{value}");
@@ -113,7 +113,7 @@ impl BoardInfo {
             "firmware",
             match &self.firmware {
                 Some(version) => format!("lizard {version}"),
-                None => "not said: the board was not reset".to_owned(),
+                None => "unknown: the board was not reset".to_owned(),
             },
         );
         write_row(
@@ -121,7 +121,7 @@ impl BoardInfo {
             match (&self.robot, &self.firmware) {
                 (Some(robot), _) => format!("{} {}", robot.name, robot.hash),
                 (None, Some(_)) => "none: lizard flash --only-robot writes one".to_owned(),
-                (None, None) => "not said: the board was not reset".to_owned(),
+                (None, None) => "unknown: the board was not reset".to_owned(),
             },
         );
         write_row("gait", self.gait.clone());
@@ -155,20 +155,20 @@ impl BoardInfo {
     }
 }
 
-/// Asks for the status. A robot that has just been reset reports no voltage until its analogue-to-digital converter
-/// has run, so the question is repeated for up to a second.
-fn wait_for_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+/// Reads the status. A robot that was just reset reports no voltage until its analogue-to-digital converter has run;
+/// the request is therefore repeated for up to a second.
+fn read_status_with_voltages<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     for _ in 0..9 {
-        let status = ask_status(link)?;
+        let status = read_status(link)?;
         if status.vcc.is_some() || status.pose.is_none() {
             return Ok(status);
         }
         link.pause(Duration::from_millis(100))?;
     }
-    ask_status(link)
+    read_status(link)
 }
 
-fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
+fn read_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> {
     let answer = link.command("status")?.answer;
     Status::parse(&answer).ok_or_else(|| {
         let line = "status".to_owned();
@@ -176,9 +176,11 @@ fn ask_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError> 
     })
 }
 
-/// Returns the firmware's version and the robot that a banner names; the version alone for an old firmware, which had
-/// its robot compiled in.
-pub(in crate::drive) fn firmware_and_robot(line: &str) -> (Option<String>, Option<RobotIdentity>) {
+/// Parses the firmware's version and the robot in a banner; only the version for an old firmware with a compiled-in
+/// robot.
+pub(in crate::drive) fn parse_firmware_and_robot(
+    line: &str,
+) -> (Option<String>, Option<RobotIdentity>) {
     match Banner::parse(line) {
         Some(Banner { version, robot }) => (Some(version), robot),
         None => {
@@ -191,20 +193,20 @@ pub(in crate::drive) fn firmware_and_robot(line: &str) -> (Option<String>, Optio
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER_TOML, calibration_of, connect_paper_robot};
+    use super::super::double::{PAPER_TOML, connect_paper_robot, read_calibration};
     use super::*;
 
     #[test]
-    fn the_report_shows_firmware_robot_and_calibration_and_changes_nothing() {
+    fn report_shows_the_board_and_changes_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
-        let before = calibration_of(&mut link);
+        let before = read_calibration(&mut link);
         let paper = lizard_robot::Robot::parse(PAPER_TOML).expect("paper.toml is valid");
         let hash = format!("{:08x}", paper.firmware().hash());
         let banner = format!("# lizard 1.2.3 robot paper {hash}, send help for the commands");
-        let board =
-            BoardInfo::ask("COM3".to_owned(), Some(&banner), &mut link).expect("the robot answers");
-        let text = board.text();
+        let board = BoardInfo::read("COM3".to_owned(), Some(&banner), &mut link)
+            .expect("the robot answers");
+        let text = board.to_text();
         for line in [
             "port        COM3\n".to_owned(),
             "firmware    lizard 1.2.3\n".to_owned(),
@@ -215,14 +217,14 @@ mod tests {
         ] {
             assert!(text.contains(&line), "{line:?} in {text}");
         }
-        let after = calibration_of(&mut link);
+        let after = read_calibration(&mut link);
         assert!(after.is_equivalent_to(&before), "nothing was changed");
     }
 
     #[test]
-    fn an_old_firmware_without_a_robot_in_its_banner_is_named_by_its_version() {
-        let old = firmware_and_robot("# lizard 0.1.0, send help for the commands");
+    fn banner_of_an_old_firmware_has_a_version_and_no_robot() {
+        let old = parse_firmware_and_robot("# lizard 0.1.0, send help for the commands");
         assert_eq!(old, (Some("0.1.0".to_owned()), None));
-        assert_eq!(firmware_and_robot("hello"), (None, None));
+        assert_eq!(parse_firmware_and_robot("hello"), (None, None));
     }
 }

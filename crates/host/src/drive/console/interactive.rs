@@ -1,4 +1,4 @@
-//! `lizard console`: a user's or a script's dialogue with the robot; a script is read from standard input.
+//! `lizard console`: a user's or script's dialogue with the robot; a script is read from standard input.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufWriter, IsTerminal, Write};
@@ -20,19 +20,19 @@ use super::terminal;
 use crate::Failure;
 use crate::drive::clock::Clock;
 
-/// Dialogue with the robot
+/// Open the robot's console
 ///
-/// Finds the board, waits for it to start, and passes lines to it; `help` lists its commands. Esc stops the robot at
-/// once: `stop` goes ahead of whatever waits, and is sent until it is answered. The arrow keys bring back older
+/// Finds the board, waits for it to start, and sends your lines to it; `help` lists its commands. Esc stops the robot
+/// at once: `stop` overtakes all waiting lines, and is repeated until the robot answers. The arrow keys recall older
 /// lines; Ctrl-C, Ctrl-D or `quit` end the program. The line at the bottom shows gait, pose, smallest margin, supply
-/// and faults. For that line, the program asks the robot for its `status` twice a second, so `boot` does not act. While
-/// you drive, `deadman` is set: a robot out of range stops by itself. If standard input is a file or a pipe, its lines
-/// are sent one after another, and the exit code is 1 if the robot refuses one; by radio, the robot stops when they
-/// have ended.
+/// and faults. For this line, the program sends `status` twice a second, so `boot` has no effect. While you drive,
+/// `deadman` is set: a robot out of range stops by itself. If standard input is a file or a pipe, its lines are sent
+/// one after another, and the exit code is 1 if the robot refuses a line; over a radio, the robot stops after the last
+/// line.
 #[derive(clap::Args, Debug)]
 pub struct ConsoleArgs {
-    /// A new file that records the session: commands, answers, the pose of every frame, and faults, as one JSON
-    /// object per line, each with its time in ms; `lizard console replay` draws it
+    /// Record the session in a new file: commands, answers, the pose in every frame, and faults, as one JSON object per
+    /// line with its time in ms; `lizard console replay` draws it
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
@@ -41,16 +41,16 @@ pub struct ConsoleArgs {
 
 type FileRecorder = Recorder<BufWriter<File>>;
 
-/// Longest time that the loop waits for a line of the robot before it checks the keys.
+/// Longest wait for a line from the robot before the keys are checked.
 const ROBOT_READ_TIMEOUT: Duration = Duration::from_millis(10);
-/// Pause before each attempt to open a vanished port again.
+/// Pause before each attempt to reopen a vanished port.
 const RETRY_INTERVAL: Duration = Duration::from_millis(300);
 
 /// Runs `lizard console`.
 ///
 /// # Errors
 /// Fails if there is no board, if the connection or the terminal fails, if a script's line is not accepted, or if the
-/// file of the session exists already or cannot be written.
+/// session's file already exists or cannot be written.
 pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
@@ -62,7 +62,7 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
     let (board, banner) = finder.open_and_greet()?;
     let mut clock = Clock::start();
     let mut dialogue = Dialogue {
-        session: Session::new(clock.now(), true, file.is_some()).driven_by_person(),
+        session: Session::new(clock.now(), true, file.is_some()).with_deadman(),
         clock,
         recorder: None,
         status_line_prefix: "",
@@ -91,27 +91,27 @@ fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failu
     }
 }
 
-/// A session and the file that records it.
+/// A session and its recorder.
 struct Dialogue {
     session: Session,
-    /// The clock of the session, so that a pause of this program does not count as silence of the robot.
+    /// The session's clock, which stops with this program: a suspended program must not take the robot for silent.
     clock: Clock,
     recorder: Option<FileRecorder>,
-    /// Start of the status line: `REC` while the session is recorded.
+    /// Prefix of the status line: `REC` while the session is recorded.
     status_line_prefix: &'static str,
 }
 
 impl Dialogue {
-    /// Sends the next line, if one is due, and reads the lines that have arrived; `show` prints those for the user.
+    /// Sends the next line if one is due, and reads the received lines; `show` prints the lines for the user.
     fn exchange_lines(
         &mut self,
         board: &mut Connection,
         mut show: impl FnMut(&str) -> io::Result<()>,
     ) -> Result<(), DialogueError> {
-        if let Some(line) = self.session.next_line(self.clock.now()) {
+        if let Some(line) = self.session.take_next_line(self.clock.now()) {
             board.link.send(&line)?;
         }
-        // At most 51 lines, since keys are not handled meanwhile.
+        // Reads at most 51 lines, because no keys are handled in the meantime.
         for timeout in std::iter::once(ROBOT_READ_TIMEOUT).chain([Duration::ZERO; 50]) {
             let Some(line) = board.link.read_line(timeout)? else {
                 break;
@@ -137,8 +137,8 @@ impl Dialogue {
         }
     }
 
-    /// Sends the lines of standard input. A port whose opening does not reset the board may be a radio link: then
-    /// `deadman` is set as for a person, and stays set after the last line if the robot is still walking.
+    /// Sends the lines from standard input. A port that does not reset the board when it is opened may be a radio link:
+    /// then `deadman` is set as for a person, and stays set after the last line if the robot is still walking.
     fn run_script(
         mut self,
         mut board: Connection,
@@ -169,13 +169,10 @@ impl Dialogue {
                 }
             }
             let outcome = self.exchange_lines(&mut board, |line| writeln!(out, "{line}"));
-            outcome.map_err(|error| failure_of(error, &board))?;
+            outcome.map_err(|error| to_failure(error, &board))?;
         }
         if self.session.is_driven() {
-            writeln!(
-                out,
-                "(the robot stops by itself now, since nobody drives it any more)"
-            )?;
+            writeln!(out, "(no more lines: the robot now stops by itself)")?;
         }
         if let Some(recorder) = &mut self.recorder {
             recorder.flush()?;
@@ -192,12 +189,12 @@ impl Dialogue {
         let mut screen = Screen::new()?;
         let mut prompt = Prompt::new(history::load());
         screen.print(first_line)?;
-        screen.print("(help lists the commands; Ctrl-D leaves)")?;
+        screen.print("(help lists the commands; Ctrl-D quits)")?;
         let mut board = Some(board);
         let mut fatal_failure = None;
         while !self.handle_keys(&mut screen, &mut prompt)? {
             let Some(connection) = &mut board else {
-                screen.draw("waiting for the board; Ctrl-C leaves", &prompt)?;
+                screen.draw("waiting for the board; Ctrl-C quits", &prompt)?;
                 board = self.reopen(finder, &mut screen)?;
                 continue;
             };
@@ -211,11 +208,11 @@ impl Dialogue {
                     continue;
                 }
                 Err(error) => {
-                    fatal_failure = Some(failure_of(error, connection));
+                    fatal_failure = Some(to_failure(error, connection));
                     break;
                 }
             }
-            let status = self.session.status().map(lizard_robot::Status::status_line);
+            let status = self.session.status().map(lizard_robot::Status::format_line);
             let status = status.unwrap_or_default();
             screen.draw(&format!("{}{status}", self.status_line_prefix), &prompt)?;
         }
@@ -231,7 +228,7 @@ impl Dialogue {
             && board.is_some()
             && !finder.is_simulated()
         {
-            // The terminal may be closed; then nobody can read the message.
+            // The terminal may be closed; a failed message is not an error.
             let _ = writeln!(io::stdout(), "the robot continues its gait");
         }
         if let Some(recorder) = &mut self.recorder {
@@ -274,7 +271,7 @@ impl Dialogue {
         Ok(false)
     }
 
-    /// Opens the board's port again; returns `None` if the board is not back yet.
+    /// Reopens the board's port; returns `None` if the board is still missing.
     fn reopen(
         &mut self,
         finder: &BoardFinder,
@@ -287,27 +284,27 @@ impl Dialogue {
         match board.link.greet() {
             Ok(banner) => {
                 let banner = banner.unwrap_or_default();
-                screen.print(&format!("{} is back: {banner}", board.name))?;
+                screen.print(&format!("{} is connected again: {banner}", board.name))?;
                 let is_recorded = self.recorder.is_some();
-                self.session = Session::new(self.clock.now(), true, is_recorded).driven_by_person();
+                self.session = Session::new(self.clock.now(), true, is_recorded).with_deadman();
                 Ok(Some(board))
             }
             Err(LinkError::Gone) => Ok(None),
-            Err(error) => Err(board.failure(&error)),
+            Err(error) => Err(board.to_failure(&error)),
         }
     }
 }
 
 /// Converts an error of the dialogue into the failure to report to the user.
-fn failure_of(error: DialogueError, board: &Connection) -> Failure {
+fn to_failure(error: DialogueError, board: &Connection) -> Failure {
     match error {
-        DialogueError::Link(error) => board.failure(&error),
+        DialogueError::Link(error) => board.to_failure(&error),
         DialogueError::Io(error) => error.into(),
         DialogueError::File(failure) => failure,
     }
 }
 
-/// Starts a thread that reads the lines of standard input as they arrive; the channel closes at the end of the input.
+/// Starts a thread that reads lines from standard input as they arrive; the channel closes at the end of the input.
 fn read_stdin_lines() -> Receiver<String> {
     let (sender, receiver) = mpsc::channel();
     std::thread::spawn(move || {

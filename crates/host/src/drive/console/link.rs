@@ -1,8 +1,8 @@
 //! A line-based connection to the robot over any stream of bytes.
 //!
 //! An answer may have several lines, the board may be reset or unplugged, and the port may belong to another device.
-//! So after each line the link waits for the one line that begins with `ok` or `err`, and collects the lines that
-//! begin with `#` until then. If no answer arrives in time, the request fails with a message.
+//! After each line, the link therefore waits for a line that begins with `ok` or `err`, and collects the preceding
+//! lines that begin with `#`. If no answer arrives in time, the request fails with a message.
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
@@ -16,20 +16,20 @@ use crate::drive::clock::Deadline;
 /// The beginning of the robot's first line after a reset.
 pub const BANNER_START: &str = "# lizard ";
 /// Largest number of `status` lines sent to a board that was not reset: its autobaud needs up to five lines to find the
-/// port's rate, and a radio may lose some.
+/// port's baud rate, and a radio may lose some.
 const MAX_STATUS_LINES: u32 = 8;
 
 /// The beginning of an answer to `status`.
 const STATUS_ANSWER_START: &str = "ok gait=";
-/// Length to which a received line is truncated: the firmware's lines are shorter, but noise may never end a line.
+/// Length to which a received line is truncated. The firmware's lines are shorter, but noise may contain no line end.
 const MAX_LINE_BYTES: usize = 512;
 
 /// Time limits of a connection.
 #[derive(Debug, Clone, Copy)]
 pub struct Timeouts {
-    /// Time for the banner after the port has been opened. A UNO's boot loader takes more than a second of it.
+    /// Time for the banner after the port was opened. A UNO's boot loader takes more than a second of this time.
     pub banner: Duration,
-    /// Time for an answer. `save` takes the longest, a third of a second.
+    /// Time for an answer. `save` takes longest, a third of a second.
     pub answer: Duration,
 }
 
@@ -42,25 +42,25 @@ impl Default for Timeouts {
     }
 }
 
-/// The reason for a missing or unusable answer.
+/// The cause of a missing or unusable answer.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The port has vanished.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
     /// The robot has not answered this line.
-    #[error("the robot does not answer to `{0}`")]
+    #[error("the robot does not answer `{0}`")]
     NoAnswer(String),
-    /// The device sends lines, but none of a lizard; this is its first line.
+    /// The device sends lines, but is not a lizard; the field is its first line.
     #[error(
-        "this is not a lizard: it says `{0}`, not `# lizard ...`; is it the right port, and has \
-         the board been flashed (lizard flash)?"
+        "this is not a lizard: expected `# lizard ...`, got `{0}`; check the port, and flash the \
+         board if necessary (lizard flash)"
     )]
     OtherDevice(String),
     /// The device sends nothing at all: neither a banner nor an answer.
     #[error(
-        "nothing answers: no banner and no answer to `status`; is it the right port, and has \
-         the board been flashed (lizard flash)?"
+        "no response: no banner and no answer to `status`; check the port, and flash the board \
+         if necessary (lizard flash)"
     )]
     NoOutput,
     /// The robot refuses a line, or its answer is not understood.
@@ -86,20 +86,20 @@ impl From<LinkError> for crate::Failure {
     }
 }
 
-/// A connection to a robot. Reading from `port` must end within some milliseconds, with [`ErrorKind::TimedOut`] if
+/// A connection to a robot. A read from `port` must end within a few milliseconds, with [`ErrorKind::TimedOut`] if
 /// nothing has arrived.
 #[derive(Debug)]
 pub struct Link<P> {
     port: P,
     timeouts: Timeouts,
-    /// The beginning of a line whose end has not arrived yet.
+    /// The partial line at the end of the received bytes.
     partial_line: Vec<u8>,
-    /// The complete lines that have not been read yet.
+    /// The complete, unread lines.
     lines: VecDeque<String>,
 }
 
 impl<P: Read + Write> Link<P> {
-    /// Makes a connection over an open port.
+    /// Creates a connection over an open port.
     pub fn new(port: P, timeouts: Timeouts) -> Self {
         Self {
             port,
@@ -109,11 +109,11 @@ impl<P: Read + Write> Link<P> {
         }
     }
 
-    /// Waits for the banner and returns it. A board that was not reset when the port was opened sends none. So it is
-    /// asked for its status until its autobaud has found the port's rate and it answers; then the result is `None`.
+    /// Waits for the banner and returns it. A board that was not reset when the port was opened sends no banner. It
+    /// gets `status` lines until its autobaud has found the port's baud rate and it answers; the result is then `None`.
     ///
     /// # Errors
-    /// Fails if nothing answers, or if another device does.
+    /// Fails if nothing answers, or if another device answers.
     pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
         let mut deadline = Deadline::after(self.timeouts.banner);
         let mut first_line = None;
@@ -181,7 +181,7 @@ impl<P: Read + Write> Link<P> {
         self.read_line_before(&mut Deadline::after(wait))
     }
 
-    /// Waits for `duration`, and discards the lines that arrive meanwhile.
+    /// Waits for `duration` and discards the lines that arrive in the meantime.
     ///
     /// # Errors
     /// Fails if the port is gone.
@@ -230,11 +230,10 @@ impl<P: Read + Write> Link<P> {
         let bytes = std::mem::take(&mut self.partial_line);
         let text = String::from_utf8_lossy(&bytes);
         let text = text.trim_end_matches('\r');
-        // A reset cuts off the board's current line, and the banner follows directly. The part before the banner is
-        // discarded.
+        // A reset cuts off the board's current line, and the banner follows directly. The partial line is discarded.
         let text = &text[text.find(BANNER_START).unwrap_or(0)..];
         if !text.is_empty() {
-            // A terminal executes control characters, so they are replaced: noise must not reach it.
+            // Control characters are replaced because a terminal would execute them.
             let replace_control = |c: char| if c.is_control() { '\u{fffd}' } else { c };
             self.lines
                 .push_back(text.chars().map(replace_control).collect());
@@ -254,7 +253,7 @@ impl<P: Read + Write> Console for Link<P> {
     }
 }
 
-/// Converts an error of the operating system, which for an open port nearly always means that the port is gone.
+/// Converts an operating system error, which for an open port nearly always means that the port is gone.
 fn to_link_error(error: io::Error) -> LinkError {
     if is_port_gone(&error) {
         LinkError::Gone
@@ -263,7 +262,7 @@ fn to_link_error(error: io::Error) -> LinkError {
     }
 }
 
-/// True if an error of the operating system means that the board was unplugged.
+/// True if an operating system error means that the board was unplugged.
 pub(crate) fn is_port_gone(error: &io::Error) -> bool {
     // EIO, ENXIO and ENODEV: Linux returns them for a USB port whose board was unplugged.
     matches!(error.raw_os_error(), Some(5 | 6 | 19))
@@ -281,7 +280,7 @@ pub(crate) fn is_port_gone(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A port that plays back scripted output: each write releases the next piece, and at `None` the port vanishes.
+    /// A port with scripted output: each write releases the next piece, and at `None` the port vanishes.
     struct Script {
         pieces: VecDeque<Option<&'static str>>,
         ready_bytes: VecDeque<u8>,
@@ -290,7 +289,7 @@ mod tests {
     }
 
     impl Script {
-        fn link(pieces: &[Option<&'static str>]) -> Link<Self> {
+        fn connect(pieces: &[Option<&'static str>]) -> Link<Self> {
             let mut script = Self {
                 pieces: pieces.iter().copied().collect(),
                 ready_bytes: VecDeque::new(),
@@ -323,7 +322,7 @@ mod tests {
                 }
                 return Err(ErrorKind::TimedOut.into());
             }
-            // Small pieces, like those of a serial port.
+            // Returns small pieces, like a serial port.
             let count = buffer.len().min(3);
             self.ready_bytes.read(&mut buffer[..count])
         }
@@ -344,11 +343,11 @@ mod tests {
     const BANNER_LINE: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn a_banner_directly_after_a_cut_off_line_is_found() {
+    fn finds_a_banner_directly_after_a_partial_line() {
         for cut_line in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
             let bytes = format!("{cut_line}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
-            let mut link = Script::link(&[Some(bytes)]);
+            let mut link = Script::connect(&[Some(bytes)]);
             let banner = link.greet().expect("the robot greets");
             assert_eq!(
                 banner.as_deref(),
@@ -359,8 +358,8 @@ mod tests {
     }
 
     #[test]
-    fn the_banner_is_found_after_the_noise_of_opening_the_port() {
-        let mut link = Script::link(&[Some(
+    fn finds_the_banner_after_noise() {
+        let mut link = Script::connect(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
         let banner = link.greet().expect("the device is a lizard");
@@ -368,31 +367,33 @@ mod tests {
     }
 
     #[test]
-    fn a_board_that_was_not_reset_is_recognized_by_its_status() {
-        let mut link = Script::link(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
+    fn recognizes_a_board_without_reset_by_its_status() {
+        let mut link =
+            Script::connect(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
         assert_eq!(link.greet().expect("the device is a lizard"), None);
         assert_eq!(link.port.sent_text, "status\n");
     }
 
     #[test]
-    fn the_error_quotes_another_device_or_says_that_nothing_answers() {
-        let message_of = |pieces: &[Option<&'static str>]| {
-            let error = Script::link(pieces)
+    fn error_quotes_another_device_or_reports_silence() {
+        let greet_error = |pieces: &[Option<&'static str>]| {
+            let error = Script::connect(pieces)
                 .greet()
                 .expect_err("the device must be refused");
             error.to_string()
         };
-        let other_device_message = message_of(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let other_device_message = greet_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         assert!(
-            other_device_message.starts_with("this is not a lizard: it says `start`"),
+            other_device_message
+                .starts_with("this is not a lizard: expected `# lizard ...`, got `start`"),
             "{other_device_message}"
         );
-        assert!(message_of(&[]).starts_with("nothing answers"));
+        assert!(greet_error(&[]).starts_with("no response"));
     }
 
     #[test]
-    fn the_answer_is_the_first_line_that_is_not_a_note() {
-        let mut link = Script::link(&[
+    fn answer_is_the_first_line_that_is_not_a_note() {
+        let mut link = Script::connect(&[
             Some(BANNER_LINE),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
         ]);
@@ -403,8 +404,9 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_names_the_line_and_the_reason() {
-        let mut link = Script::link(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
+    fn refusal_names_the_line_and_the_reason() {
+        let mut link =
+            Script::connect(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
         link.greet().expect("the device is a lizard");
         let error = link
             .command("trim 1 50")
@@ -417,15 +419,15 @@ mod tests {
 
     #[test]
     fn silence_and_a_vanished_port_are_different_errors() {
-        let mut link = Script::link(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
+        let mut link = Script::connect(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
         link.greet().expect("the device is a lizard");
         assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }
 
     #[test]
-    fn an_endless_line_is_truncated_and_control_characters_are_replaced() {
-        let mut link = Script::link(&[]);
+    fn endless_line_is_truncated_and_control_characters_are_replaced() {
+        let mut link = Script::connect(&[]);
         for _ in 0..2000 {
             link.push_byte(b'a');
         }

@@ -1,8 +1,7 @@
-//! The commands for a board on USB: `lizard console`, `info` and `calibrate`, and the session, link and terminal
-//! that they use.
+//! The commands for a board on USB (`lizard console`, `info` and `calibrate`), and their session, link and terminal.
 //!
-//! The logic is separate from the terminal and the serial port, so the tests need neither: they use the firmware's core
-//! on this machine and scripted input.
+//! The logic is separate from the terminal and the serial port. The tests therefore use the firmware's core on this
+//! machine and scripted input.
 
 pub mod backup;
 pub mod calibrate;

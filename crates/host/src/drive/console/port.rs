@@ -1,4 +1,4 @@
-//! Opens a serial port, and explains why it cannot be opened.
+//! Opens a serial port and reports errors with their remedies.
 
 use std::io;
 use std::path::Path;
@@ -8,18 +8,18 @@ use serialport::{ErrorKind, SerialPort};
 
 use super::find;
 
-/// Bit rate of the console, baud.
-pub const BAUD: u32 = 115_200;
-/// Longest time that a read waits for a byte; also the interval between two checks of whether a port is still in use.
+/// The console's baud rate.
+pub const BAUD_RATE: u32 = 115_200;
+/// Longest wait for a byte; also the interval between two checks for another program at the port.
 const READ_TIMEOUT: Duration = Duration::from_millis(5);
 /// Longest wait for another program that is about to close the port.
 const MAX_CLOSING_TIME: Duration = Duration::from_secs(1);
 
-/// The reason why a port cannot be opened.
+/// An error in opening a port.
 #[derive(Debug, thiserror::Error)]
 pub enum PortError {
     /// The port does not exist.
-    #[error("there is no {name}; USB serial ports of this machine: {ports}")]
+    #[error("{name} does not exist; USB serial ports of this machine: {ports}")]
     Missing {
         /// The port's name, as the user gave it.
         name: String,
@@ -27,16 +27,16 @@ pub enum PortError {
         ports: String,
     },
     /// Another program has the port open.
-    #[error("{name} is open in {holder}; close that program, then try again")]
+    #[error("{name} is open in {holder}; close that program and try again")]
     Busy {
-        /// The port that is busy.
+        /// The busy port.
         name: String,
         /// The program that has it open.
         holder: String,
     },
     /// The user has no permission.
     #[error(
-        "you may not open {0}: it belongs to a group, on Debian dialout. As root: \
+        "no permission to open {0}: join its group (on Debian, dialout). As root: \
          usermod -aG dialout <user>, then log in again"
     )]
     Forbidden(String),
@@ -44,7 +44,7 @@ pub enum PortError {
     #[error("{0} is not a serial port")]
     NotAPort(String),
     /// Any other error.
-    #[error("{name} cannot be opened: {error}")]
+    #[error("cannot open {name}: {error}")]
     Other {
         /// The port's name, as the user gave it.
         name: String,
@@ -63,7 +63,7 @@ impl From<PortError> for crate::Failure {
     }
 }
 
-/// Opens a port for this program alone. Opening it resets a UNO.
+/// Opens a port for this program alone. This resets a UNO.
 ///
 /// # Errors
 /// Fails if the port is missing, busy, forbidden or not a serial port.
@@ -78,7 +78,9 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     if let Some(holder) = find_persistent_holder(name) {
         return Err(busy_error(holder));
     }
-    let result = serialport::new(name, BAUD).timeout(READ_TIMEOUT).open();
+    let result = serialport::new(name, BAUD_RATE)
+        .timeout(READ_TIMEOUT)
+        .open();
     result.map_err(|error| match error.kind() {
         ErrorKind::Io(io::ErrorKind::PermissionDenied) => PortError::Forbidden(name.to_owned()),
         ErrorKind::Io(io::ErrorKind::NotFound) => missing_port_error(name),
@@ -91,7 +93,7 @@ pub fn open(name: &str) -> Result<Box<dyn SerialPort>, PortError> {
     })
 }
 
-/// True if this user may open a port. Does not open it, since that would reset a UNO.
+/// True if this user may open a port. Does not open the port, which would reset a UNO.
 #[cfg(target_os = "linux")]
 pub(in crate::drive) fn may_open(name: &str) -> bool {
     use rustix::fs::{Access, access};
@@ -105,7 +107,7 @@ pub(in crate::drive) fn may_open(_: &str) -> bool {
 }
 
 fn missing_port_error(name: &str) -> PortError {
-    let ports = find::usb_ports();
+    let ports = find::list_usb_ports();
     let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
     PortError::Missing {
         name: name.to_owned(),
@@ -118,7 +120,7 @@ fn missing_port_error(name: &str) -> PortError {
 }
 
 /// Returns the program that keeps the port open. Waits up to [`MAX_CLOSING_TIME`] for a program that is about to close
-/// it, such as a console that is quitting or a simulated board that discards unread bytes.
+/// the port, such as a quitting console or a simulated board that discards unread bytes.
 fn find_persistent_holder(name: &str) -> Option<String> {
     let start = Instant::now();
     loop {
@@ -130,8 +132,8 @@ fn find_persistent_holder(name: &str) -> Option<String> {
     }
 }
 
-/// Returns another program that has the port open, as far as `/proc` shows: processes of other users are not visible.
-/// Two programs that share a port take bytes from each other.
+/// Returns another program that has the port open, because two programs that share a port take bytes from each other.
+/// `/proc` does not show the processes of other users.
 pub(in crate::drive) fn find_holder(name: &str) -> Option<String> {
     let port = std::fs::canonicalize(name).ok()?;
     let own_id = std::process::id().to_string();
@@ -156,7 +158,7 @@ fn is_not_terminal(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     #[cfg(target_os = "linux")]
-    use lizard_time_limit::LIMIT;
+    use lizard_time_limit::TIME_LIMIT;
 
     use super::*;
 
@@ -165,9 +167,9 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_port_and_a_file_that_is_not_a_port_have_different_errors() {
+    fn missing_port_and_ordinary_file_have_different_errors() {
         let message = open_error("/dev/no-such-port").to_string();
-        assert!(message.starts_with("there is no /dev/no-such-port; USB serial ports"));
+        assert!(message.starts_with("/dev/no-such-port does not exist; USB serial ports"));
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         assert_eq!(
@@ -179,7 +181,7 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn opening_waits_for_a_program_that_is_about_to_close_the_port() {
+    fn open_waits_for_a_program_that_is_about_to_close_the_port() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         let mut process = std::process::Command::new("sleep")
@@ -188,13 +190,15 @@ mod tests {
             .spawn()
             .expect("`sleep` starts");
         let message = open_error(&name).to_string();
-        LIMIT.wait_for_exit(&mut process).expect("the process ends");
+        TIME_LIMIT
+            .wait_for_exit(&mut process)
+            .expect("the process ends");
         assert_eq!(message, format!("{name} is not a serial port"));
     }
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn a_port_that_another_program_has_open_is_refused_with_that_programs_name() {
+    fn error_names_the_program_that_has_the_port_open() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
         let mut process = std::process::Command::new("sleep")
@@ -204,11 +208,13 @@ mod tests {
             .expect("`sleep` starts");
         let message = open_error(&name).to_string();
         process.kill().expect("the process can be killed");
-        LIMIT.wait_for_exit(&mut process).expect("the process ends");
+        TIME_LIMIT
+            .wait_for_exit(&mut process)
+            .expect("the process ends");
         let id = process.id();
         assert_eq!(
             message,
-            format!("{name} is open in sleep (process {id}); close that program, then try again")
+            format!("{name} is open in sleep (process {id}); close that program and try again")
         );
     }
 }

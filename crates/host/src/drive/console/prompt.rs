@@ -27,12 +27,12 @@ pub struct Prompt {
     history: Vec<String>,
     /// The index of the shown line in the history; the history's length if the line being typed is shown.
     shown_index: usize,
-    /// The unfinished line, while an older one is shown.
+    /// The unfinished line, while an older line is shown.
     draft: String,
 }
 
 impl Prompt {
-    /// Makes an empty input line with a history, the oldest line first.
+    /// Creates an empty input line with a history, the oldest line first.
     pub fn new(history: Vec<String>) -> Self {
         Self {
             shown_index: history.len(),
@@ -41,7 +41,7 @@ impl Prompt {
         }
     }
 
-    /// Handles a key, and returns its effect.
+    /// Handles a key and returns its effect.
     pub fn press_key(&mut self, key: KeyEvent) -> PromptEvent {
         if key.kind == KeyEventKind::Release {
             return PromptEvent::Edited;
@@ -119,7 +119,7 @@ impl Prompt {
         self.input = Input::new(line.clone());
     }
 
-    /// The text typed so far.
+    /// Returns the text typed so far.
     pub fn text(&self) -> &str {
         self.input.value()
     }
@@ -134,7 +134,7 @@ impl Prompt {
         )
     }
 
-    /// The history of lines, the oldest first.
+    /// Returns the history, the oldest line first.
     pub fn history(&self) -> &[String] {
         &self.history
     }
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_edited_in_its_middle_before_it_is_sent() {
+    fn line_can_be_edited_in_its_middle() {
         let mut prompt = Prompt::default();
         for c in "wal 5".chars() {
             press(&mut prompt, KeyCode::Char(c));
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn the_arrows_bring_back_older_lines_and_then_the_draft() {
+    fn arrows_recall_older_lines_and_the_draft() {
         let mut prompt = Prompt::new(vec!["stand".to_owned()]);
         type_line(&mut prompt, "walk");
         type_line(&mut prompt, "walk");
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn control_c_control_d_on_an_empty_line_and_quit_leave() {
+    fn control_c_control_d_and_quit_leave() {
         let mut prompt = Prompt::default();
         assert_eq!(press_control(&mut prompt, 'c'), PromptEvent::Leave);
         assert_eq!(press_control(&mut prompt, 'd'), PromptEvent::Leave);
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn a_long_line_scrolls_with_its_cursor() {
+    fn long_line_scrolls_with_its_cursor() {
         let mut prompt = Prompt::default();
         prompt.paste("0123456789");
         let (shown, cursor) = prompt.view(6);

@@ -1,4 +1,4 @@
-//! The file of a recorded session: one JSON object per line, with the time in ms.
+//! The file of a recorded session: one JSON object per line, with its time in ms.
 
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -16,7 +16,7 @@ use crate::shared::{files, json};
 /// The value of `format` in the first line. The number increases when a key changes its meaning.
 pub const FORMAT: &str = "lizard record 1";
 
-/// A line of the file.
+/// A line in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     /// Milliseconds since the session began.
@@ -32,26 +32,26 @@ pub struct Entry {
 pub enum Event {
     /// The session began; always the first line.
     Begin {
-        /// The format of the file: [`FORMAT`].
+        /// The file's format: [`FORMAT`].
         format: String,
-        /// The port of the board.
+        /// The board's port.
         port: String,
         /// The robot's first line; `None` if the board was not reset.
         banner: Option<String>,
     },
     /// A line that the user sent.
     Sent(String),
-    /// The robot's answer to a line of the user.
+    /// The robot's answer to a user's line.
     Answer(String),
-    /// A line of the robot that begins with `#`, other than a pose.
+    /// A line from the robot that begins with `#`, except a pose.
     Note(String),
-    /// An answer to the program's own `status`.
+    /// The robot's answer to the program's own `status`.
     Status(String),
-    /// A pose that the robot reports because of `watch`.
+    /// A pose that the robot reports after `watch`.
     Pose {
         /// Frames since power-on, 50 per second.
         frame: u64,
-        /// Servo angles in degrees, chassis frame, A1 to A4.
+        /// Servo angles A1 to A4 in the chassis frame, degrees.
         angles: [f64; 4],
     },
     /// The port has vanished.
@@ -76,19 +76,19 @@ pub fn create(path: &Path) -> Result<Recorder<BufWriter<File>>, Failure> {
     match File::create_new(path) {
         Ok(file) => Ok(Recorder::new(name, BufWriter::new(file), Instant::now())),
         Err(error) if error.kind() == ErrorKind::AlreadyExists => Err(Failure::Input(format!(
-            "{name} already exists; name a new file for the session"
+            "{name} already exists; choose another file for the session"
         ))),
         Err(error) => Err(files::write_failure(path, &error)),
     }
 }
 
 impl<W: Write> Recorder<W> {
-    /// Makes a recorder of a session that begins at `start`; `name` is the file's name for messages.
+    /// Creates a recorder for a session that begins at `start`; `name` is the file's name for messages.
     pub fn new(name: String, out: W, start: Instant) -> Self {
         Self { name, out, start }
     }
 
-    /// Writes an event, and flushes it into the file at once unless it is a pose.
+    /// Writes an event and flushes it to the file, unless it is a pose.
     ///
     /// # Errors
     /// Fails if writing fails; the message names the file.
@@ -100,7 +100,7 @@ impl<W: Write> Recorder<W> {
         if is_pose { Ok(()) } else { self.flush() }
     }
 
-    /// Flushes all lines into the file.
+    /// Flushes all lines to the file.
     ///
     /// # Errors
     /// Fails as [`Recorder::write`] does.
@@ -114,7 +114,7 @@ impl<W: Write> Recorder<W> {
 }
 
 impl Event {
-    /// Returns the event of a line that begins with `#`: a pose or a note.
+    /// Converts a line that begins with `#` to an event: a pose or a note.
     pub fn from_note(line: &str) -> Self {
         match parse_pose_report(line) {
             Some((frame, angles)) => Self::Pose { frame, angles },
@@ -122,10 +122,10 @@ impl Event {
         }
     }
 
-    /// Returns the event with its text made safe for a terminal, since a file may contain anything.
+    /// Escapes control characters in the event's text, which would be unsafe on a terminal.
     #[cfg(feature = "simulator")]
     #[must_use]
-    pub fn with_escaped_controls(self) -> Self {
+    pub fn escape_controls(self) -> Self {
         match self {
             Self::Begin {
                 format,
@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_event_is_a_line_of_json_with_its_time() {
+    fn each_event_is_one_line_of_json_with_its_time() {
         let start = Instant::now();
         let mut out = Vec::new();
         let mut recorder = Recorder::new("a".to_owned(), &mut out, start);
@@ -194,16 +194,16 @@ mod tests {
     }
 
     #[test]
-    fn an_existing_file_is_not_overwritten() {
+    fn create_refuses_an_existing_file() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let message = create(file.path())
             .expect_err("an existing file must be refused")
             .to_string();
-        assert!(message.ends_with("already exists; name a new file for the session"));
+        assert!(message.ends_with("already exists; choose another file for the session"));
     }
 
     #[test]
-    fn a_failed_write_is_reported_with_the_name_of_the_file() {
+    fn write_error_names_the_file() {
         let small_buffer: &mut [u8] = &mut [0; 10];
         let mut recorder = Recorder::new("a.jsonl".to_owned(), small_buffer, Instant::now());
         let event = Event::Sent("walk".to_owned());

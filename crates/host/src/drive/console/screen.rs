@@ -14,10 +14,10 @@ const PROMPT_SIGN: &str = "> ";
 /// A terminal that reports single keys. Dropping it restores the terminal.
 pub struct Screen {
     out: Stdout,
-    /// Numbers of columns that the two lines at the bottom take, the second up to the cursor; `None` while they
-    /// are not drawn.
+    /// Numbers of columns of the status line, and of the input line up to the cursor; `None` while the lines are not
+    /// drawn.
     drawn_columns: Option<[usize; 2]>,
-    /// The latest drawing: status line, visible part of the input, cursor's column in it, terminal width.
+    /// The latest drawing: status line, visible part of the input, the cursor's column in this part, terminal width.
     last_drawing: Option<(String, String, usize, u16)>,
 }
 
@@ -66,7 +66,7 @@ impl Screen {
         self.out.flush()
     }
 
-    /// Draws the two lines at the bottom, if they have changed.
+    /// Draws the two lines at the bottom if they have changed.
     ///
     /// # Errors
     /// Fails if writing fails.
@@ -98,11 +98,11 @@ impl Screen {
         self.out.flush()
     }
 
-    /// Erases the two lines and puts the cursor at their beginning.
+    /// Erases the two lines and moves the cursor to their beginning.
     fn erase(&mut self) -> io::Result<()> {
         if let Some(columns) = self.drawn_columns.take() {
             let (width, _) = terminal::size()?;
-            let row_count = rows_above_cursor(columns, width.into());
+            let row_count = count_rows_above_cursor(columns, width.into());
             queue!(self.out, cursor::MoveToPreviousLine(row_count as u16))?;
         }
         queue!(
@@ -113,9 +113,9 @@ impl Screen {
     }
 }
 
-/// Returns the number of rows from the first of the two lines down to the cursor, given the columns that each takes. A
-/// terminal that was made narrower has wrapped the lines into more rows.
-fn rows_above_cursor([status, cursor]: [usize; 2], width: usize) -> usize {
+/// Counts the rows from the first of the two lines down to the cursor, from the columns of each line. A terminal that
+/// was made narrower wraps the lines into more rows.
+fn count_rows_above_cursor([status, cursor]: [usize; 2], width: usize) -> usize {
     let width = width.max(1);
     status.div_ceil(width).max(1) + cursor / width
 }
@@ -133,25 +133,29 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_that_a_narrower_terminal_has_wrapped_are_counted_as_it_shows_them() {
+    fn wrapped_lines_count_as_several_rows() {
+        assert_eq!(count_rows_above_cursor([99, 12], 100), 1, "the drawn width");
         assert_eq!(
-            rows_above_cursor([99, 12], 100),
+            count_rows_above_cursor([99, 12], 200),
             1,
-            "the width at which they were drawn"
+            "a wider terminal"
         );
-        assert_eq!(rows_above_cursor([99, 12], 200), 1, "a wider terminal");
         assert_eq!(
-            rows_above_cursor([99, 12], 50),
+            count_rows_above_cursor([99, 12], 50),
             2,
             "the status takes two rows"
         );
         assert_eq!(
-            rows_above_cursor([99, 60], 50),
+            count_rows_above_cursor([99, 60], 50),
             3,
             "the input line takes two rows, too"
         );
-        assert_eq!(rows_above_cursor([99, 60], 33), 4);
-        assert_eq!(rows_above_cursor([0, 0], 1), 1);
-        assert_eq!(rows_above_cursor([0, 0], 0), 1, "a terminal without a size");
+        assert_eq!(count_rows_above_cursor([99, 60], 33), 4);
+        assert_eq!(count_rows_above_cursor([0, 0], 1), 1);
+        assert_eq!(
+            count_rows_above_cursor([0, 0], 0),
+            1,
+            "a terminal without a size"
+        );
     }
 }

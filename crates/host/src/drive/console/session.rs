@@ -1,12 +1,9 @@
-//! The dialogue with the robot: the next line to send, the lines to show, and the events to
-//! record.
+//! The dialogue with the robot: the next line to send, the lines to show, and the events to record.
 //!
-//! The robot answers each line once and in order, and prints other lines in between. For the
-//! screen's status line, the console sends `status` twice a second, and more often while a person drives;
-//! these answers are not shown, and a user's line waits for at most one of them. `stop` waits for
-//! none: it is sent at once, and repeated until the robot answers it, since a link may lose a line
-//! or its answer. The caller of a script has to know if a line was refused, so failed lines are
-//! counted.
+//! The robot answers each line once and in order, and prints other lines in between. For the screen's status line, the
+//! console sends `status` twice a second, and more often while a person drives; the answers are not shown, and a user's
+//! line waits for at most one of them. `stop` does not wait: it is sent at once and repeated until the robot answers,
+//! because a link may lose a line or its answer. Failed lines are counted for the exit code of a script.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -25,32 +22,32 @@ const STATUS_INTERVAL: Duration = Duration::from_millis(500);
 const ANSWER_TIMEOUT: Duration = Duration::from_millis(2000);
 /// Longest wait for the answer to the program's own `status`.
 const STATUS_TIMEOUT: Duration = Duration::from_millis(600);
-/// Interval between two `stop` lines while none is answered.
+/// Interval between two unanswered `stop` lines.
 const STOP_INTERVAL: Duration = Duration::from_millis(250);
-/// Time after a `stop` within which answers to earlier `stop` lines may arrive.
+/// Time after a `stop` during which answers to earlier `stop` lines may arrive.
 const LATE_ANSWER_TIME: Duration = Duration::from_millis(500);
-/// Time without an answer to `stop` after which the user is told.
+/// Time without an answer to `stop` before the user is informed.
 const SILENCE_TIMEOUT: Duration = Duration::from_millis(800);
 
 /// A line that waits for its answer.
 #[derive(Debug)]
 enum Request {
-    /// A line that the user entered.
+    /// A user's line.
     Line(String),
-    /// A `status` that this program sends by itself.
+    /// The program's own `status`.
     Status,
-    /// A `watch` that this program sends by itself.
+    /// The program's own `watch`.
     Watch,
-    /// A line about `deadman` that this program sends by itself.
+    /// The program's own line about `deadman`.
     Deadman(String),
 }
 
 /// A line that waits to be sent.
 #[derive(Debug)]
 enum QueuedLine {
-    /// A line that the user entered.
+    /// A user's line.
     Line(String),
-    /// A line about `deadman` that this program sends by itself.
+    /// The program's own line about `deadman`.
     Deadman(deadman::DeadmanLine),
 }
 
@@ -62,7 +59,7 @@ impl Request {
         }
     }
 
-    /// True if an answer can belong to the request: after `ok`, it has to begin with the request's word.
+    /// True if an answer can belong to the request: after `ok`, it must begin with the request's word.
     fn is_answered_by(&self, answer: &str) -> bool {
         let line = match self {
             Self::Line(line) | Self::Deadman(line) => line.to_ascii_lowercase(),
@@ -79,27 +76,27 @@ impl Request {
     }
 }
 
-/// A `stop` that the robot has not answered yet.
+/// An unanswered `stop`.
 #[derive(Debug)]
 struct UnansweredStop {
-    /// Time at which the user asked to stop.
-    requested_at: Instant,
-    /// Time at which `stop` is sent again.
-    next_send: Instant,
-    /// Number of times that `stop` was sent.
+    /// Time of the user's request.
+    request_time: Instant,
+    /// Time of the next `stop` line.
+    next_send_time: Instant,
+    /// Number of `stop` lines sent.
     sent_count: u32,
-    /// True once the user has been told that no answer arrives.
+    /// True once the user has been informed of the missing answer.
     is_reported: bool,
 }
 
 /// The state of a dialogue with the robot.
 #[derive(Debug)]
 pub struct Session {
-    /// The request that waits for its answer, and the time at which it was sent.
+    /// The unanswered request and the time when it was sent.
     pending_request: Option<(Request, Instant)>,
-    /// The `stop` that is being repeated until the robot answers it.
+    /// The `stop` that is repeated until the robot answers.
     unanswered_stop: Option<UnansweredStop>,
-    /// True from a missing answer until the next answer, so that the user is told only once.
+    /// True from a missing answer until the next answer, so that the user is informed only once.
     is_silent: bool,
     /// The time until which answers to repeated `stop` lines may arrive.
     late_answers_until: Instant,
@@ -107,19 +104,19 @@ pub struct Session {
     queue: VecDeque<QueuedLine>,
     /// The robot's `deadman` and its replacement; `None` unless a person drives.
     deadman: Option<Deadman>,
-    /// True if the program asks for the status repeatedly.
+    /// True if the program requests the status repeatedly.
     polls_status: bool,
     /// The time at which the next `status` is due.
     next_status_time: Instant,
-    /// True while the program asks for poses by `watch`; false once the user sends a `watch`.
+    /// True while the program requests poses with `watch`; false after a `watch` from the user.
     watches_poses: bool,
-    /// True if the program has to send `watch` next.
+    /// True if `watch` is the next line to send.
     is_watch_due: bool,
-    /// The latest status.
+    /// The robot's latest status.
     status: Option<Status>,
-    /// The events since they were last taken.
+    /// The events since the last call of `take_events`.
     events: Vec<Event>,
-    /// Number of the user's lines that were sent or have failed, each `stop` included.
+    /// Number of the user's lines that were sent or failed, including each `stop`.
     user_line_count: usize,
     /// Number of the user's lines that were refused, not answered or not sent.
     failed_count: usize,
@@ -128,8 +125,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// Starts a dialogue. If `polls_status` is true, it asks for the status repeatedly; if `watches_poses` is true, for
-    /// every pose.
+    /// Starts a dialogue. Requests the status repeatedly if `polls_status` is true, and every pose if `watches_poses`
+    /// is true.
     pub fn new(now: Instant, polls_status: bool, watches_poses: bool) -> Self {
         Self {
             pending_request: None,
@@ -150,21 +147,20 @@ impl Session {
         }
     }
 
-    /// Marks the dialogue as one with a person. The robot could walk out of range, so `deadman`
-    /// is set while it walks.
+    /// Makes the dialogue set `deadman` while the robot walks, because a person could drive it out of range.
     #[must_use]
-    pub fn driven_by_person(mut self) -> Self {
+    pub fn with_deadman(mut self) -> Self {
         self.deadman = Some(Deadman::default());
         self
     }
 
-    /// Queues a line that the user entered.
+    /// Queues a user's line.
     pub fn queue(&mut self, line: &str) {
         if line.split_whitespace().next() == Some("watch") {
             self.watches_poses = false;
         }
         let (before, after) = match &mut self.deadman {
-            Some(deadman) => deadman.lines_around(line),
+            Some(deadman) => deadman.plan_lines(line),
             None => (&[][..], &[][..]),
         };
         self.queue
@@ -174,48 +170,48 @@ impl Session {
             .extend(after.iter().copied().map(QueuedLine::Deadman));
     }
 
-    /// Returns the line that restores the robot's own `deadman` before the program ends, so that
-    /// the robot continues its gait; `None` if `deadman` is not set.
+    /// Returns the line that restores the robot's own `deadman` before the program ends, so that the robot continues
+    /// its gait; `None` if `deadman` is not set.
     pub fn restore_deadman(&mut self) -> Option<String> {
         let deadman = self
             .deadman
             .as_mut()
             .filter(|deadman| deadman.is_overridden)?;
-        Some(deadman.console_line(deadman::DeadmanLine::Restore))
+        Some(deadman.apply_line(deadman::DeadmanLine::Restore))
     }
 
-    /// Makes the next `status` due at once; queued lines still go first.
+    /// Makes the next `status` due at once; queued lines still come first.
     pub fn request_status(&mut self, now: Instant) {
         self.next_status_time = now;
     }
 
-    /// True while `deadman` is set because the robot walks, or is about to.
+    /// True while `deadman` is set because the robot walks or is about to walk.
     pub fn is_driven(&self) -> bool {
         self.deadman
             .as_ref()
             .is_some_and(|deadman| deadman.is_overridden)
     }
 
-    /// Stops the robot. Queued lines are dropped, since they could start it again.
+    /// Stops the robot. Queued lines are dropped, because they could start it again.
     pub fn stop(&mut self, now: Instant) {
         self.queue.clear();
         self.user_line_count += 1;
         self.events.push(Event::Sent("stop".to_owned()));
         self.unanswered_stop.get_or_insert(UnansweredStop {
-            requested_at: now,
-            next_send: now,
+            request_time: now,
+            next_send_time: now,
             sent_count: 0,
             is_reported: false,
         });
     }
 
-    /// Returns the line to send now; `None` if no line is due, or if an answer has to come first.
-    pub fn next_line(&mut self, now: Instant) -> Option<String> {
+    /// Takes the line to send now; `None` if no line is due, or if an answer must come first.
+    pub fn take_next_line(&mut self, now: Instant) -> Option<String> {
         if let Some(stop) = &mut self.unanswered_stop {
-            if now < stop.next_send {
+            if now < stop.next_send_time {
                 return None;
             }
-            stop.next_send = now + STOP_INTERVAL;
+            stop.next_send_time = now + STOP_INTERVAL;
             stop.sent_count += 1;
             self.late_answers_until = now + LATE_ANSWER_TIME;
             return Some("stop".to_owned());
@@ -253,7 +249,7 @@ impl Session {
                 }
                 QueuedLine::Deadman(deadman_line) => {
                     if let Some(deadman) = &mut self.deadman {
-                        let line = deadman.console_line(deadman_line);
+                        let line = deadman.apply_line(deadman_line);
                         return Some((Request::Deadman(line.clone()), line));
                     }
                 }
@@ -262,8 +258,8 @@ impl Session {
         None
     }
 
-    /// Drops the queued lines, since the robot has not confirmed its `deadman`: out of range, it would
-    /// keep walking. Returns the message to the user.
+    /// Drops the queued lines, because the robot has not confirmed its `deadman` and would keep walking out of range.
+    /// Returns the message to the user.
     fn drop_queued_lines(&mut self) -> Option<String> {
         for queued in std::mem::take(&mut self.queue) {
             if let QueuedLine::Line(line) = queued {
@@ -274,11 +270,11 @@ impl Session {
         if let Some(deadman) = &mut self.deadman {
             deadman.is_overridden = false;
         }
-        let message = "(not sent: the robot has not confirmed that it stops when it hears nothing)";
+        let message = "(not sent: the robot has not confirmed its `deadman` setting)";
         Some(message.to_owned())
     }
 
-    /// Queues the line that restores the robot's own `deadman`, once the robot does not walk and is not about to.
+    /// Queues the line that restores the robot's own `deadman` if the robot neither walks nor is about to walk.
     fn end_driving(&mut self) {
         let is_walking = self.status.as_ref().is_some_and(Status::is_moving);
         if let Some(deadman) = &self.deadman
@@ -303,14 +299,14 @@ impl Session {
         }
         if let (Some((Request::Deadman(_), _)), Some(deadman)) =
             (&self.pending_request, &mut self.deadman)
-            && deadman.read_cal_line(line)
+            && deadman.parse_cal_line(line)
         {
             return None;
         }
         if line.starts_with('#') {
             self.events.push(Event::from_note(line));
             if line.starts_with(BANNER_START) {
-                // The board was reset, so it will not answer the request.
+                // The board was reset and will not answer the request.
                 self.pending_request = None;
                 self.is_watch_due = self.watches_poses;
                 self.deadman = self.deadman.take().map(|_| Deadman::default());
@@ -341,7 +337,7 @@ impl Session {
             }
             Some((Request::Line(sent_line), _)) => {
                 if let Some(deadman) = &mut self.deadman {
-                    deadman.note_accepted_line(&sent_line);
+                    deadman.record_accepted_line(&sent_line);
                 }
             }
             _ => {}
@@ -350,7 +346,7 @@ impl Session {
         visible_line
     }
 
-    /// True if a `stop` that was sent as a normal line, such as one of a script, waits for its answer.
+    /// True if a `stop` that was sent as a normal line, for example from a script, is unanswered.
     fn is_stop_pending(&self) -> bool {
         matches!(&self.pending_request, Some((Request::Line(line), _)) if line == "stop")
     }
@@ -361,9 +357,9 @@ impl Session {
             return false;
         };
         if stop.sent_count == 1 {
-            self.late_answers_until = stop.requested_at;
+            self.late_answers_until = stop.request_time;
         }
-        // Answers come in order, so the answer to the line before `stop` has been lost.
+        // Answers come in order; the answer to the line before `stop` is therefore lost.
         if let Some((Request::Line(sent_line), _)) = self.pending_request.take() {
             self.record_failure(sent_line, "no answer");
         }
@@ -376,10 +372,13 @@ impl Session {
         let elapsed_since = |start: Instant| now.saturating_duration_since(start);
         if let Some(stop) = &mut self.unanswered_stop
             && !stop.is_reported
-            && elapsed_since(stop.requested_at) >= SILENCE_TIMEOUT
+            && elapsed_since(stop.request_time) >= SILENCE_TIMEOUT
         {
             stop.is_reported = true;
-            return Some("(no answer: it may go on; stop is sent until it answers)".to_owned());
+            return Some(
+                "(no answer: the robot may still move; stop is repeated until it answers)"
+                    .to_owned(),
+            );
         }
         let is_overdue =
             |(request, start): &mut (Request, Instant)| elapsed_since(*start) >= request.timeout();
@@ -407,7 +406,7 @@ impl Session {
     /// Succeeds if the robot accepted all lines.
     ///
     /// # Errors
-    /// Fails if a line was refused, not answered or not sent; the message names the first one.
+    /// Fails if a line was refused, not answered or not sent; the message names the first such line.
     pub fn check_all_accepted(&self) -> Result<(), Failure> {
         let Some((line, reason)) = &self.first_failure else {
             return Ok(());
@@ -423,7 +422,7 @@ impl Session {
         self.pending_request.is_none() && self.unanswered_stop.is_none() && self.queue.is_empty()
     }
 
-    /// The latest status.
+    /// Returns the robot's latest status.
     pub fn status(&self) -> Option<&Status> {
         self.status.as_ref()
     }
@@ -434,7 +433,7 @@ impl Session {
     }
 }
 
-/// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or its flash holds no robot.
+/// True if a line refuses `stop` because there are no pulses to stop: the robot rests, or the flash has no robot.
 /// The whole line must match: a line cut off by a radio may be the beginning of an older answer.
 fn is_stop_refusal(line: &str) -> bool {
     let is_refusal = |code: u8, reason: Text| {

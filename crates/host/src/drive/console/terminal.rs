@@ -1,11 +1,11 @@
-//! The terminal: detects that it was closed, and suspends the program.
+//! Detects a closed terminal, and suspends the program.
 
 use std::io::{self, IsTerminal};
 use std::sync::Once;
 use std::thread;
 use std::time::Duration;
 
-/// True if the terminal still exists. Reading a closed terminal would return keys forever.
+/// True if the terminal still exists. A closed terminal would return keys forever.
 pub fn is_open() -> bool {
     io::stdin().is_terminal()
 }
@@ -15,9 +15,9 @@ const CHECK_INTERVAL: Duration = Duration::from_millis(200);
 /// Number of consecutive checks without a terminal after which the program exits.
 const MAX_CLOSED_CHECKS: u32 = 10;
 
-/// Starts a thread that ends the program two seconds after its terminal was closed, if it has not ended by itself: a
-/// wait for a key never returns if the terminal is closed meanwhile. A recorded session may then lose its last poses;
-/// other files exist only once they are complete.
+/// Starts a thread that ends the program two seconds after its terminal was closed, because a wait for a key never
+/// returns if the terminal is closed during the wait. A recorded session may then lose its last poses; other files
+/// exist only once they are complete.
 pub fn exit_when_closed() {
     let watch_terminal = || {
         let mut closed_check_count = 0;
@@ -32,8 +32,7 @@ pub fn exit_when_closed() {
     ONCE.call_once(|| drop(thread::Builder::new().spawn(watch_terminal)));
 }
 
-/// Suspends this program until the shell resumes it, as Ctrl-Z does. The terminal must
-/// have been restored before.
+/// Suspends this program until the shell resumes it, as Ctrl-Z does. The terminal must be restored first.
 ///
 /// # Errors
 /// Fails if the operating system refuses.

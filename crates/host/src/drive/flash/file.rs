@@ -1,4 +1,4 @@
-//! The sources of an image: a file, or the firmware inside this program.
+//! The sources of an image: a file, or the built-in firmware.
 
 use std::path::Path;
 
@@ -15,19 +15,19 @@ impl From<ImageError> for Failure {
     }
 }
 
-/// Makes the image of a robot: the code inside this program, followed by this robot's section of numbers.
+/// Builds a robot's image: the built-in code, followed by this robot's section of numbers.
 ///
 /// # Errors
-/// Never fails for a valid robot; a test makes the image of each robot in robots/.
-pub fn image(robot: &Robot) -> Result<Image, ImageError> {
+/// Never fails for a valid robot; a test builds the image of each robot in robots/.
+pub fn build_image(robot: &Robot) -> Result<Image, ImageError> {
     Image::firmware(CODE_HEX, &robot.section())
 }
 
-/// Makes the image of a robot's section alone, without the code.
+/// Builds an image with only the robot's section, without the code.
 ///
 /// # Errors
 /// Never fails: flash has room for any robot's section.
-pub fn robot_only_image(robot: &Robot) -> Result<Image, ImageError> {
+pub fn build_robot_image(robot: &Robot) -> Result<Image, ImageError> {
     Image::robot_alone(robot.section())
 }
 
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_robots_section_follows_the_same_code_or_stands_alone() {
+    fn images_of_all_robots_contain_their_section_with_and_without_the_code() {
         let code = Image::from_hex(CODE_HEX).expect("the code is Intel HEX");
         let code = code.bytes();
         assert_eq!(Mark::find(code), Some(Mark::THIS_FIRMWARE));
@@ -59,22 +59,22 @@ mod tests {
         for file in std::fs::read_dir(folder).expect("the folder robots/ is readable") {
             let path = file.expect("the folder is readable").path();
             let robot = Robot::load(&path).expect("the robot.toml is valid");
-            let image = image(&robot).expect("the image fits the flash");
+            let image = build_image(&robot).expect("the image fits the flash");
             let (code_area, section) = image.bytes().split_at(START_ADDRESS.into());
             let (code_in_image, gap) = code_area.split_at(code.len());
             assert!(code_in_image == code, "{}", path.display());
             assert!(gap.iter().all(|byte| *byte == BLANK));
             assert!(section == robot.section(), "{}", path.display());
-            let robot_image = robot_only_image(&robot).expect("the image fits the flash");
+            let robot_image = build_robot_image(&robot).expect("the image fits the flash");
             assert!(robot_image.bytes() == section);
-            assert_eq!(robot_image.end(), image.end());
+            assert_eq!(robot_image.end_address(), image.end_address());
             robot_count += 1;
         }
         assert!(robot_count >= 4, "{robot_count} robots");
     }
 
     #[test]
-    fn the_error_names_a_file_that_is_not_an_image() {
+    fn error_names_a_file_that_is_not_an_image() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         std::fs::write(file.path(), "[servo]\n").expect("the file can be written");
         let message = read_hex_image(file.path())

@@ -1,7 +1,7 @@
 //! `lizard flash`: writes the firmware to a UNO or a Nano through the board's own boot loader.
 //!
 //! [`lizard_upload`] writes the pages in an order in which a pulled cable is never dangerous; this module chooses the
-//! port, makes the image and reports to the user.
+//! port, builds the image and reports to the user.
 
 pub mod file;
 mod serial_board;
@@ -20,43 +20,43 @@ use serde::Serialize;
 use crate::drive::console::find::{self, FindError, UsbPort};
 use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
-use crate::drive::console::port::BAUD;
+use crate::drive::console::port::BAUD_RATE;
 use crate::shared::json;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::{Failure, RobotFile};
 use serial_board::SerialBoard;
 
 /// Write the firmware with your robot to a UNO or a Nano on USB
 ///
-/// The firmware is inside this program and needs no compiler; the robot is that of
-/// robot.toml. Says what the board has, writes the pages that differ, reads them back, starts the
-/// firmware and prints its first line. The EEPROM, and the calibration in it, is left as it is.
-/// A new board takes about ten seconds; with --only-robot, it takes about one.
+/// Writes the built-in firmware, which needs no compiler, and the robot from robot.toml.
+/// Reports the board's contents, writes the pages that differ, verifies them, starts the
+/// firmware and prints its first line. The EEPROM with the calibration stays unchanged.
+/// A new board takes about ten seconds; with --only-robot, about one.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The board's serial port [default: the one that has a UNO, or the only one]
+    /// The board's serial port [default: the port with a UNO, or the only port]
     port: Option<String>,
     /// The board's model [default: detected from its boot loader and its USB chip]
     #[arg(long, value_enum)]
     board: Option<Model>,
-    /// Write only the robot, where the board has a firmware that reads it: a new gait, another
-    /// length
+    /// Write only the robot, for example with a new gait; the board's firmware must be able to
+    /// read it
     #[arg(long)]
     only_robot: bool,
-    /// Write this Intel HEX file instead, whatever it contains
+    /// Write this Intel HEX file instead, with any contents
     #[arg(long, value_name = "FILE", conflicts_with_all = ["path", "only_robot"])]
     image: Option<PathBuf>,
-    /// Print one JSON object when the firmware has answered; all else goes to standard error
+    /// Print one JSON object when the firmware has answered; everything else goes to standard error
     #[arg(long)]
     json: bool,
     #[command(flatten)]
     robot: RobotFile,
 }
 
-/// The result of an upload, with the field names of `--json`.
+/// The result of an upload; the field names are the JSON keys.
 #[derive(Serialize)]
 struct FlashReport {
-    /// The name of the port.
+    /// The port's name.
     port: String,
     bytes_written: usize,
     /// Bytes that were already correct.
@@ -70,15 +70,15 @@ struct FlashReport {
 /// Runs `lizard flash`.
 ///
 /// # Errors
-/// Fails if the image cannot be made or read, no board is found, the upload fails, or the firmware does not answer
-/// afterwards. After a failed upload, the message says what the flash holds.
+/// Fails if the image cannot be built or read, no board is found, the upload fails, or the firmware does not answer
+/// afterwards. After a failed upload, the message describes the contents of the flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => file::read_hex_image(path)?,
-        None if args.only_robot => file::robot_only_image(&args.robot.load()?)?,
-        None => file::image(&args.robot.load()?)?,
+        None if args.only_robot => file::build_robot_image(&args.robot.load()?)?,
+        None => file::build_image(&args.robot.load()?)?,
     };
-    let ports = find::usb_ports();
+    let ports = find::list_usb_ports();
     let (port, board_name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
@@ -91,7 +91,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         may_be_nano: may_be_nano(&ports, &port),
     };
     let board = SerialBoard::open(&port)?;
-    eprintln!("lizard: calling the boot loader of the board at {board_name}");
+    eprintln!("lizard: contacting the boot loader of the board at {board_name}");
     let port_failure = |message: String| Failure::Impossible(format!("{board_name}: {message}"));
     let (board, page_counts) = write_image(board, &image, target, args.json)
         .map_err(|error| port_failure(error.to_string()))?;
@@ -100,7 +100,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
     })?;
-    let (firmware, robot) = info::firmware_and_robot(&banner);
+    let (firmware, robot) = info::parse_firmware_and_robot(&banner);
     let report = FlashReport {
         port,
         bytes_written: page_counts.written * PAGE_BYTES,
@@ -117,7 +117,7 @@ fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
         Failure::Impossible(match error {
             // The usual message suggests a simulated board; `flash` needs a real one.
             FindError::NoPort { .. } => "no board found: this machine has no USB serial port. \
-                 Connect the UNO by a cable that carries data (some only charge), or name its \
+                 Connect the UNO with a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
                 .to_owned(),
             error => error.to_string(),
@@ -125,15 +125,15 @@ fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     })
 }
 
-/// True if the USB chip of a port may be that of a Nano: Nanos, unlike UNOs, never have one of Arduino's own USB chips.
+/// True if the port may be a Nano's port: unlike UNOs, Nanos never have one of Arduino's own USB chips.
 fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
-    // The name may be a symbolic link, such as those of /dev/serial/by-id.
+    // The name may be a symbolic link, for example in /dev/serial/by-id.
     let target = std::fs::canonicalize(name).unwrap_or_else(|_| name.into());
     let port = ports.iter().find(|port| target == Path::new(&port.name));
     port.is_some_and(|port| !port.has_arduino_vendor_id())
 }
 
-/// Writes an image to the board, with a progress bar and a summary. Returns the board, whose firmware is starting, and
+/// Writes an image to the board, with a progress bar and a summary. Returns the board with its starting firmware, and
 /// the number of pages that were written and kept.
 fn write_image(
     board: SerialBoard,
@@ -146,7 +146,7 @@ fn write_image(
         true => eprintln!("{line}"),
         false => _ = writeln!(io::stdout(), "{line}"),
     };
-    let bar = progress_bar(0, "{msg} {wide_bar} {percent} %");
+    let bar = create_progress_bar(0, "{msg} {wide_bar} {percent} %");
     let mut loader = Loader::new(board);
     let start = Instant::now();
     let mut report = |event: Event<'_>| match event {
@@ -157,9 +157,9 @@ fn write_image(
             next_kind,
         } => bar.suspend(|| match (called_kind.baud(), next_kind.baud()) {
             (old_baud, new_baud) if old_baud != new_baud => {
-                eprintln!("lizard: no answer at {old_baud} baud; calling again at {new_baud} baud");
+                eprintln!("lizard: no answer at {old_baud} baud; retrying at {new_baud} baud");
             }
-            _ => eprintln!("lizard: {error}; the board is reset for another attempt"),
+            _ => eprintln!("lizard: {error}; resetting the board for another attempt"),
         }),
         Event::Progress(step, done_count, total) => {
             bar.set_message(match step {
@@ -173,36 +173,36 @@ fn write_image(
     };
     let result = block_on(upload(&mut loader, image, target, &mut report));
     bar.finish_and_clear();
-    let page_counts = result.map_err(failure_of)?;
-    print_line(&summary(page_counts, start.elapsed()));
+    let page_counts = result.map_err(to_failure)?;
+    print_line(&format_summary(page_counts, start.elapsed()));
     let mut board = loader.into_board();
-    board.set_baud(BAUD)?;
+    board.set_baud_rate(BAUD_RATE)?;
     Ok((board, page_counts))
 }
 
-/// Returns the failure of an upload, with the option that helps.
-fn failure_of(error: UploadError) -> Failure {
+/// Converts an upload's error to a failure that also names the option that helps.
+fn to_failure(error: UploadError) -> Failure {
     let remedy = match &error {
         UploadError::NoLizard(_) | UploadError::Format { .. } => {
-            ". Without --only-robot both are written"
+            ". Omit --only-robot to write both"
         }
         UploadError::TooLong(error) if error.is_in_doubt() => {
-            ". If it is a UNO, say so: --board uno"
+            ". If the board is a UNO, pass --board uno"
         }
         _ => "",
     };
     Failure::Impossible(format!("{error}{remedy}"))
 }
 
-/// Returns the message about a finished upload.
-fn summary(counts: PageCounts, duration: Duration) -> String {
+/// Formats the message about a finished upload.
+fn format_summary(counts: PageCounts, duration: Duration) -> String {
     let [written, kept] = [counts.written, counts.kept].map(|pages| pages * PAGE_BYTES);
     let seconds = duration.as_secs_f64();
     match written {
-        0 => format!("nothing to write: all {kept} bytes are right; {seconds:.1} s"),
-        _ => format!(
-            "{written} bytes written and verified, {kept} were right already; {seconds:.1} s"
-        ),
+        0 => format!("nothing to write: all {kept} bytes are correct; {seconds:.1} s"),
+        _ => {
+            format!("{written} bytes written and verified, {kept} already correct; {seconds:.1} s")
+        }
     }
 }
 
@@ -218,18 +218,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_summary_counts_bytes() {
-        let summary_of = |written, kept| {
+    fn summary_counts_bytes() {
+        let summarize = |written, kept| {
             let duration = Duration::from_millis(1240);
-            summary(PageCounts { written, kept }, duration)
+            format_summary(PageCounts { written, kept }, duration)
         };
         assert_eq!(
-            summary_of(2, 210),
-            "256 bytes written and verified, 26880 were right already; 1.2 s"
+            summarize(2, 210),
+            "256 bytes written and verified, 26880 already correct; 1.2 s"
         );
         assert_eq!(
-            summary_of(0, 212),
-            "nothing to write: all 27136 bytes are right; 1.2 s"
+            summarize(0, 212),
+            "nothing to write: all 27136 bytes are correct; 1.2 s"
         );
     }
 
@@ -248,13 +248,13 @@ mod tests {
     }
 
     #[test]
-    fn no_board_or_several_are_refused_with_the_remedy() {
-        let message_of = |ports: &[UsbPort]| {
+    fn choice_without_exactly_one_board_names_the_remedy() {
+        let choice_error = |ports: &[UsbPort]| {
             let error =
                 choose_port(ports).expect_err("the choice must fail unless there is one port");
             error.to_string()
         };
-        assert!(message_of(&[]).ends_with("lizard flash /dev/ttyACM0"));
+        assert!(choice_error(&[]).ends_with("lizard flash /dev/ttyACM0"));
         let port = |name: &str| UsbPort {
             name: name.to_owned(),
             vendor_id: 0x2341,
@@ -262,8 +262,8 @@ mod tests {
             product_name: None,
         };
         assert_eq!(
-            message_of(&[port("COM3"), port("COM4")]),
-            "several boards found: COM3, COM4. Say which one: lizard flash COM3"
+            choice_error(&[port("COM3"), port("COM4")]),
+            "several boards found: COM3, COM4. Select one: lizard flash COM3"
         );
     }
 }

@@ -19,7 +19,7 @@ pub struct SerialBoard {
     name: String,
     /// `None` between closing and reopening, and if reopening has failed.
     port: Option<Box<dyn SerialPort>>,
-    /// True from opening the port, which resets a board as well, until the first reset.
+    /// True from opening the port, which also resets a board, until the first reset.
     is_just_opened: bool,
 }
 
@@ -52,11 +52,11 @@ impl SerialBoard {
         Ok(())
     }
 
-    /// Sets the bit rate of the port.
+    /// Sets the port's baud rate.
     ///
     /// # Errors
     /// Fails if the port is gone.
-    pub fn set_baud(&mut self, baud: u32) -> io::Result<()> {
+    pub fn set_baud_rate(&mut self, baud: u32) -> io::Result<()> {
         Ok(self.port()?.set_baud_rate(baud)?)
     }
 
@@ -72,16 +72,16 @@ impl SerialBoard {
         Ok(())
     }
 
-    fn reset_at(&mut self, baud: u32) -> io::Result<()> {
+    fn reset_and_set_baud_rate(&mut self, baud: u32) -> io::Result<()> {
         let was_just_opened = std::mem::take(&mut self.is_just_opened);
         match self.toggle_reset_lines() {
             Ok(()) => {}
             // The pseudo terminal of a simulated board has no reset lines, but opening it resets that board. A port
-            // that has vanished fails here as well, and again when the bit rate is set.
+            // that has vanished also fails here, and again when the baud rate is set.
             Err(_) if was_just_opened => {}
             Err(_) => self.reopen()?,
         }
-        self.set_baud(baud)
+        self.set_baud_rate(baud)
     }
 
     /// Reads the bytes that are available, waiting some milliseconds for them; returns 0 if there are none.
@@ -100,7 +100,7 @@ impl SerialBoard {
 /// The reads block, so the futures are ready when they are first polled.
 impl Board for SerialBoard {
     async fn reset(&mut self, baud: u32) -> Result<(), BoardError> {
-        self.reset_at(baud).map_err(to_board_error)
+        self.reset_and_set_baud_rate(baud).map_err(to_board_error)
     }
 
     async fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
@@ -113,7 +113,7 @@ impl Board for SerialBoard {
         while filled_count < bytes.len() {
             let count = self.read_available(&mut bytes[filled_count..])?;
             filled_count += count;
-            // The deadline is checked only after an empty read, so bytes that have arrived while this program was
+            // The deadline is checked only after an empty read, so that bytes that arrived while this program was
             // suspended are still read.
             if count == 0 && deadline.has_passed() {
                 break;

@@ -1,14 +1,14 @@
 //! The plate and the legs from above.
 //!
-//! The parts are drawn from the lowest to the highest: feet with the leaf springs that carry them, couplers, the plate,
-//! cranks and followers, struts. Bars are thinner than the real parts, so that joints stay visible.
+//! The parts are drawn from the lowest to the highest: feet with their leaf springs, couplers, the plate, cranks and
+//! followers, struts. Bars are thinner than the real parts, so that joints stay visible.
 
 use lizard_kinematics::Vector;
-use lizard_robot::{LegPlace, Plate};
+use lizard_robot::{LegPoints, Plate};
 use svg::node::element::{Circle, Group, Line};
 
 use crate::shared::ink::{
-    DARK, SERVO_COLOURS, circle, line, outlined, rectangle, round_hundredths,
+    DARK, SERVO_COLOURS, add_outline, circle, line, rectangle, round_hundredths,
 };
 
 const PLATE_COLOUR: &str = "#f4f1ea";
@@ -20,22 +20,22 @@ const FOOT_RADIUS_MM: f64 = 6.5;
 /// Width of the plate's drawn edge, mm.
 const RIM_WIDTH_MM: f64 = 0.6;
 
-/// The page onto which the robot is drawn, and the robot's position on the page.
+/// The page of the drawing, and the robot's position on the page.
 pub struct Sheet<Projection> {
     /// The projection from the chassis frame, mm, to the page, pixels.
     pub project: Projection,
     /// Scale of the drawing.
     pub pixels_per_mm: f64,
-    /// Angle by which the robot is turned on the page, deg counter-clockwise.
+    /// The robot's rotation on the page, deg counter-clockwise.
     pub turn_deg: f64,
 }
 
 impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     /// Draws a bar between two points.
-    pub fn draw_bar(&self, from: Vector, to: Vector, colour: &str, width_mm: f64) -> Line {
+    pub fn draw_bar(&self, start: Vector, end: Vector, colour: &str, width_mm: f64) -> Line {
         line(
-            (self.project)(from),
-            (self.project)(to),
+            (self.project)(start),
+            (self.project)(end),
             colour,
             width_mm * self.pixels_per_mm,
         )
@@ -48,15 +48,14 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
 
     /// Draws a disc with an edge.
     pub fn draw_disc(&self, point: Vector, radius_mm: f64, fill: &str) -> Circle {
-        outlined(
+        add_outline(
             circle((self.project)(point), radius_mm * self.pixels_per_mm, fill),
             DARK,
             0.6 * self.pixels_per_mm,
         )
     }
 
-    /// Draws a rectangle that turns with the robot, given by its centre, half its size and the radius of its corners,
-    /// mm.
+    /// Draws a rectangle that turns with the robot, from its centre, half its size and its corner radius, mm.
     fn draw_rectangle(
         &self,
         centre: Vector,
@@ -87,11 +86,11 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         }
     }
 
-    /// Adds the parts of the legs beside and below the plate to `group`.
+    /// Adds the leg parts beside and below the plate to `group`.
     pub fn draw_feet(
         &self,
         mut group: Group,
-        legs: &[LegPlace; 4],
+        legs: &[LegPoints; 4],
         foot_colours: [&str; 4],
     ) -> Group {
         for (servo, leg) in legs.iter().enumerate() {
@@ -104,22 +103,22 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         group
     }
 
-    /// Adds the plate and the servos in it to `group`.
+    /// Adds the plate and its servos to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let centre = Vector::default();
-        let half_size_with_margin = |margin: f64| plate.half_size + Vector::new(margin, margin);
+        let add_margin = |margin: f64| plate.half_size + Vector::new(margin, margin);
         for (margin, colour) in [(RIM_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
-            for [from, to] in plate.arms.as_flattened() {
+            for [start, end] in plate.arms.as_flattened() {
                 group = group.add(self.draw_bar(
-                    *from,
-                    *to,
+                    *start,
+                    *end,
                     colour,
                     2.0 * (plate.arm_half_width + margin),
                 ));
             }
             group = group.add(self.draw_rectangle(
                 centre,
-                half_size_with_margin(margin),
+                add_margin(margin),
                 plate.corner_radius + margin,
                 colour,
             ));
@@ -131,12 +130,12 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
         group
     }
 
-    /// Adds the parts of the legs above the plate, and the servo arms that drive their struts, to `group`.
+    /// Adds the leg parts above the plate, and the servo arms that drive the struts, to `group`.
     pub fn draw_cranks(
         &self,
         mut group: Group,
         shafts: [Vector; 4],
-        legs: &[LegPlace; 4],
+        legs: &[LegPoints; 4],
     ) -> Group {
         for (servo, leg) in legs.iter().enumerate() {
             let [servo_arm_tip, crank_joint] = leg.strut_anchors;
@@ -156,7 +155,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     }
 
     /// Adds the screws that hold the struts to the servo arms. They lie above all other parts.
-    pub fn draw_strut_screws(&self, group: Group, legs: &[LegPlace; 4]) -> Group {
+    pub fn draw_strut_screws(&self, group: Group, legs: &[LegPoints; 4]) -> Group {
         let screws = legs
             .iter()
             .map(|leg| self.draw_joint(leg.strut_anchors[0], 1.2));

@@ -1,5 +1,5 @@
-//! `lizard draw --horns`: the angles at which to press the cranks onto the shafts. A crank fits only on the teeth of
-//! its shaft, so the drawing also shows the error that remains and the trim that corrects it.
+//! `lizard draw --horns`: the angles at which the cranks are pressed onto the shafts. A crank fits only on the teeth of
+//! its shaft, so the drawing also shows the remaining error and the trim that corrects it.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::Robot;
@@ -7,31 +7,31 @@ use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::{Group, Polygon, Polyline};
 
 use crate::shared::ink::{
-    Anchor, DARK, GREY, SERVO_COLOURS, SERVO_PLACES, circle, curve, line, outlined, rectangle,
-    round_hundredths, svg_page, text, text_end, text_middle, text_start,
+    Anchor, DARK, GREY, SERVO_COLOURS, SERVO_PLACES, add_outline, circle, curve, line, rectangle,
+    render_svg, round_hundredths, text, text_end, text_middle, text_start,
 };
 
 /// Width and height of the page, pixels.
 const PAGE_SIZE: (f64, f64) = (700.0, 640.0);
 
-/// The centre of the robot on the page, pixels.
+/// The robot's centre on the page, pixels.
 const ROBOT_CENTRE: (f64, f64) = (196.0, 320.0);
 /// Width and height of the robot's area on the page, pixels.
 const ROBOT_AREA_SIZE: (f64, f64) = (250.0, 476.0);
 
-/// Number of teeth of an SG-90's spline.
+/// Number of teeth on an SG-90's spline.
 const TOOTH_COUNT: usize = 25;
-/// Angle from one tooth to the next, deg.
+/// Angle between neighbouring teeth, deg.
 const TOOTH_PITCH_DEG: f64 = 360.0 / TOOTH_COUNT as f64;
 
-/// The centre of the enlarged spline on the page, pixels.
+/// The enlarged spline's centre on the page, pixels.
 const SPLINE_CENTRE: (f64, f64) = (558.0, 158.0);
 /// Radii of the enlarged spline between the teeth and at their tips, pixels.
 const SPLINE_RADII: (f64, f64) = (52.0, 62.0);
 /// Length of the crank on the enlarged spline, pixels.
 const EXAMPLE_CRANK_LENGTH: f64 = 150.0;
 
-/// The error in the example: the crank sits this many degrees clockwise of its correct angle.
+/// The error in the example: the crank's angle clockwise from its correct angle, deg.
 const EXAMPLE_ERROR_DEG: f64 = 6.0;
 
 /// Width and length of an SG-90 from above, mm.
@@ -46,11 +46,11 @@ pub fn draw_horns(robot: &Robot) -> String {
         group = group.add(draw_crank(robot, servo));
     }
     group = group.add(draw_example(robot)).add(draw_compass_rose());
-    svg_page(PAGE_SIZE, group)
+    render_svg(PAGE_SIZE, group)
 }
 
-/// The ends of the cranks, mm in the chassis frame: the shaft, and the joint with the coupler.
-fn crank_ends(robot: &Robot) -> [(Vector, Vector); 4] {
+/// Returns each crank's ends in the chassis frame, mm: the shaft, and the joint with the coupler.
+fn compute_crank_ends(robot: &Robot) -> [(Vector, Vector); 4] {
     let links = robot.lizard().links;
     let lengths = [links.l1, links.l4, links.l9, links.l6];
     let shafts = robot.lizard().shafts();
@@ -61,82 +61,94 @@ fn crank_ends(robot: &Robot) -> [(Vector, Vector); 4] {
     })
 }
 
-/// Pixels per millimetre at which the robot fits its area.
-fn fitting_scale(robot: &Robot) -> f64 {
+/// Returns the scale at which the robot fits its area, pixels per mm.
+fn compute_scale(robot: &Robot) -> f64 {
     let (mut x, mut y) = (0.0f64, 0.0f64);
-    for (shaft, tip) in crank_ends(robot) {
+    for (shaft, tip) in compute_crank_ends(robot) {
         x = x.max(shaft.x.abs()).max(tip.x.abs());
         y = y.max(shaft.y.abs()).max(tip.y.abs());
     }
     (ROBOT_AREA_SIZE.0 / (2.0 * x)).min(ROBOT_AREA_SIZE.1 / (2.0 * y))
 }
 
-/// Position on the page of a point in the chassis frame.
-fn page_point(point: Vector, scale: f64) -> (f64, f64) {
+/// Returns the position on the page of a point in the chassis frame.
+fn to_page_point(point: Vector, scale: f64) -> (f64, f64) {
     (
         ROBOT_CENTRE.0 + scale * point.x,
         ROBOT_CENTRE.1 - scale * point.y,
     )
 }
 
-/// The point on the page at a distance and in a direction (degrees counter-clockwise) from another point.
-fn point_toward(from: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
+/// Returns the point at a distance and in a direction (degrees counter-clockwise) from another point, on the page.
+fn offset_point(start: (f64, f64), degrees: f64, distance: f64) -> (f64, f64) {
     let (sin, cos) = sin_cos(degrees);
-    (from.0 + distance * cos, from.1 - distance * sin)
+    (start.0 + distance * cos, start.1 - distance * sin)
 }
 
 /// Draws an arc of a circle; angles count counter-clockwise.
-fn draw_arc(centre: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Polyline {
+fn draw_arc(
+    centre: (f64, f64),
+    radius: f64,
+    start_deg: f64,
+    end_deg: f64,
+    colour: &str,
+) -> Polyline {
     const SEGMENT_COUNT: usize = 40;
     let points: Vec<(f64, f64)> = (0..=SEGMENT_COUNT)
         .map(|index| {
             let fraction = index as f64 / SEGMENT_COUNT as f64;
-            point_toward(centre, from_deg + (to_deg - from_deg) * fraction, radius)
+            offset_point(centre, start_deg + (end_deg - start_deg) * fraction, radius)
         })
         .collect();
     curve(&points, colour, 1.6)
 }
 
 /// Draws an arc with an arrowhead at its end.
-fn draw_arrow(centre: (f64, f64), radius: f64, from_deg: f64, to_deg: f64, colour: &str) -> Group {
+fn draw_arrow(
+    centre: (f64, f64),
+    radius: f64,
+    start_deg: f64,
+    end_deg: f64,
+    colour: &str,
+) -> Group {
     const BARB_LENGTH: f64 = 8.0;
-    let tip = point_toward(centre, to_deg, radius);
-    // The direction back along the arc at its end; the barbs lie on both sides of it.
-    let back_deg = if to_deg > from_deg {
-        to_deg - 90.0
+    let tip = offset_point(centre, end_deg, radius);
+    // The backward direction of the arc at its end; the barbs lie on both sides of this direction.
+    let back_deg = if end_deg > start_deg {
+        end_deg - 90.0
     } else {
-        to_deg + 90.0
+        end_deg + 90.0
     };
-    let barb_end = |lean_deg: f64| point_toward(tip, back_deg + lean_deg, BARB_LENGTH);
+    let barb_end = |lean_deg: f64| offset_point(tip, back_deg + lean_deg, BARB_LENGTH);
     Group::new()
-        .add(draw_arc(centre, radius, from_deg, to_deg, colour))
+        .add(draw_arc(centre, radius, start_deg, end_deg, colour))
         .add(curve(&[barb_end(28.0), tip, barb_end(-28.0)], colour, 1.6))
 }
 
 /// Draws the plate, the servos, and an arrow that points to the head.
 fn draw_chassis(robot: &Robot) -> Group {
-    let (scale, crank_ends) = (fitting_scale(robot), crank_ends(robot));
+    let (scale, crank_ends) = (compute_scale(robot), compute_crank_ends(robot));
     let half_width = crank_ends
         .iter()
         .map(|(shaft, _)| shaft.x.abs())
         .fold(0.0, f64::max)
         + 9.0;
     let half_height = crank_ends[0].0.y + 9.0;
-    let corner = page_point(Vector::new(-half_width, half_height), scale);
+    let corner = to_page_point(Vector::new(-half_width, half_height), scale);
     let size = (2.0 * half_width * scale, 2.0 * half_height * scale);
-    let mut group = Group::new().add(outlined(
+    let mut group = Group::new().add(add_outline(
         rectangle(corner, size, "#f4f1ea").set("rx", 12),
         "#b8b0a0",
         1.5,
     ));
     for (servo, (shaft, _)) in crank_ends.into_iter().enumerate() {
-        // The longer part of a servo's case lies on the side of the shaft that faces the centre of the robot.
+        // The longer part of a servo's case lies between the shaft and the robot's centre.
         let upper_y = if shaft.y > 0.0 {
             shaft.y + SHAFT_TO_CASE_END_MM
         } else {
             shaft.y + CASE_SIZE_MM.1 - SHAFT_TO_CASE_END_MM
         };
-        let corner = page_point(Vector::new(shaft.x - CASE_SIZE_MM.0 / 2.0, upper_y), scale);
+        let corner = to_page_point(Vector::new(shaft.x - CASE_SIZE_MM.0 / 2.0, upper_y), scale);
         group = group.add(
             rectangle(
                 corner,
@@ -161,12 +173,12 @@ fn draw_chassis(robot: &Robot) -> Group {
 
 /// Draws a servo's crank with its angle and its name.
 fn draw_crank(robot: &Robot, servo: usize) -> Group {
-    let scale = fitting_scale(robot);
-    let (shaft, tip) = crank_ends(robot)[servo];
-    let (shaft_point, tip_point) = (page_point(shaft, scale), page_point(tip, scale));
+    let scale = compute_scale(robot);
+    let (shaft, tip) = compute_crank_ends(robot)[servo];
+    let (shaft_point, tip_point) = (to_page_point(shaft, scale), to_page_point(tip, scale));
     let angle_deg = robot.servos()[servo].neutral.rem_euclid(360.0);
     let colour = SERVO_COLOURS[servo];
-    // Three lines of text, outside of the robot.
+    // Three lines of text stand outside the robot.
     let first_line_y = if shaft.y > 0.0 {
         tip_point.1 - 56.0
     } else {
@@ -186,7 +198,7 @@ fn draw_crank(robot: &Robot, servo: usize) -> Group {
             line(shaft_point, tip_point, colour, 11.0)
                 .set("id", format!("crank-{}", SERVO_NAMES[servo])),
         )
-        .add(outlined(circle(tip_point, 6.5, "white"), DARK, 2.0))
+        .add(add_outline(circle(tip_point, 6.5, "white"), DARK, 2.0))
         .add(draw_arrow(shaft_point, 22.0, 0.0, angle_deg, DARK))
         .add(circle(shaft_point, 8.0, DARK))
         .add(circle(shaft_point, 3.0, "white"))
@@ -223,13 +235,13 @@ fn draw_example(robot: &Robot) -> Group {
     let fitted_deg = exact_deg - EXAMPLE_ERROR_DEG;
     let servo_number = servo + 1;
     let lines = [
-        format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
-        format!("one a crank is off by {}° at most.", TOOTH_PITCH_DEG / 2.0),
+        format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart: on the best tooth,"),
+        format!("a crank is off by at most {}°.", TOOTH_PITCH_DEG / 2.0),
         String::new(),
-        "Dashed: the angle where it should be.".into(),
-        format!("Grey: it sits {EXAMPLE_ERROR_DEG}° clockwise of that."),
+        "Dashed: the crank's correct angle.".into(),
+        format!("Grey: a crank {EXAMPLE_ERROR_DEG}° further clockwise."),
         format!("trim {servo_number} {EXAMPLE_ERROR_DEG}"),
-        "turns it there: + counter-clockwise,".into(),
+        "corrects it: + counter-clockwise,".into(),
         "\u{2212} clockwise, seen from above.".into(),
     ];
     let mut group = Group::new()
@@ -237,22 +249,22 @@ fn draw_example(robot: &Robot) -> Group {
         .add(
             line(
                 SPLINE_CENTRE,
-                point_toward(SPLINE_CENTRE, fitted_deg, EXAMPLE_CRANK_LENGTH),
+                offset_point(SPLINE_CENTRE, fitted_deg, EXAMPLE_CRANK_LENGTH),
                 GREY,
                 13.0,
             )
             .set("stroke-opacity", 0.5)
-            .set("id", "sits"),
+            .set("id", "fitted-crank"),
         )
         .add(
             line(
                 SPLINE_CENTRE,
-                point_toward(SPLINE_CENTRE, exact_deg, EXAMPLE_CRANK_LENGTH),
+                offset_point(SPLINE_CENTRE, exact_deg, EXAMPLE_CRANK_LENGTH),
                 SERVO_COLOURS[servo],
                 3.0,
             )
             .set("stroke-dasharray", "9 5")
-            .set("id", "should"),
+            .set("id", "exact-crank"),
         )
         .add(draw_arrow(
             SPLINE_CENTRE,
@@ -264,7 +276,7 @@ fn draw_example(robot: &Robot) -> Group {
         .add(circle(SPLINE_CENTRE, 6.0, DARK))
         .add(text_end(
             "trim",
-            point_toward(SPLINE_CENTRE, exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0),
+            offset_point(SPLINE_CENTRE, exact_deg + 4.0, EXAMPLE_CRANK_LENGTH + 16.0),
             14.0,
         ))
         // The angle between two teeth is marked where the drawing has room.
@@ -284,14 +296,14 @@ fn draw_example(robot: &Robot) -> Group {
 fn draw_spline(degrees: f64) -> Polygon {
     let corners: Vec<String> = (0..4 * TOOTH_COUNT)
         .map(|corner| {
-            // Two corners at a tooth's tip, two between teeth.
+            // A tooth has two corners at its tip; two more lie between the teeth.
             let radius = if corner % 4 < 2 {
                 SPLINE_RADII.1
             } else {
                 SPLINE_RADII.0
             };
-            let degrees_of_corner = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
-            let (x, y) = point_toward(SPLINE_CENTRE, degrees_of_corner, radius);
+            let corner_degrees = degrees + TOOTH_PITCH_DEG / 4.0 * (corner as f64 - 0.5);
+            let (x, y) = offset_point(SPLINE_CENTRE, corner_degrees, radius);
             format!("{},{}", round_hundredths(x), round_hundredths(y))
         })
         .collect();
@@ -308,13 +320,13 @@ fn draw_tooth_mark(degrees: f64) -> Group {
     let (inner_radius, outer_radius) = (SPLINE_RADII.1 + 3.0, SPLINE_RADII.1 + 26.0);
     let draw_ray = |degrees| {
         line(
-            point_toward(SPLINE_CENTRE, degrees, inner_radius),
-            point_toward(SPLINE_CENTRE, degrees, outer_radius),
+            offset_point(SPLINE_CENTRE, degrees, inner_radius),
+            offset_point(SPLINE_CENTRE, degrees, outer_radius),
             DARK,
             1.2,
         )
     };
-    let text_point = point_toward(
+    let text_point = offset_point(
         SPLINE_CENTRE,
         degrees + TOOTH_PITCH_DEG / 2.0,
         outer_radius + 3.0,
@@ -342,7 +354,7 @@ fn draw_compass_rose() -> Group {
     let caption = (centre.0, centre.1 - 84.0);
     let mut group = Group::new()
         .add(text_middle("angles, seen from above", caption, 14.0))
-        .add(outlined(circle(centre, 46.0, "none"), GREY, 1.2))
+        .add(add_outline(circle(centre, 46.0, "none"), GREY, 1.2))
         .add(draw_arrow(centre, 30.0, 0.0, 70.0, DARK));
     for (degrees, label, anchor, offset) in [
         (0.0, "0° right", Anchor::Start, (8.0, 5.0)),
@@ -350,7 +362,7 @@ fn draw_compass_rose() -> Group {
         (180.0, "180°", Anchor::End, (-8.0, 5.0)),
         (270.0, "270°", Anchor::Middle, (0.0, 19.0)),
     ] {
-        let end = point_toward(centre, degrees, 52.0);
+        let end = offset_point(centre, degrees, 52.0);
         let point = (end.0 + offset.0, end.1 + offset.1);
         group = group
             .add(line(centre, end, GREY, 1.2))

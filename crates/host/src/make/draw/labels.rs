@@ -1,4 +1,4 @@
-//! The labels of the view from above.
+//! Labels of the view from above.
 
 use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::servo::SERVO_NAMES;
@@ -26,7 +26,7 @@ impl View<'_> {
                 PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE,
                 PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE,
             );
-            let near_shaft = self.page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
+            let shaft_point = self.to_page_point(shaft + Vector::new(side * 3.5, sign * 2.0));
             let name_text = format!(
                 "{} · {}",
                 SERVO_NAMES[servo],
@@ -37,7 +37,7 @@ impl View<'_> {
             let start = (x + 6.0 * -side, y - 4.0);
             group = group
                 .add(
-                    line(start, near_shaft, SERVO_COLOURS[servo], 1.2)
+                    line(start, shaft_point, SERVO_COLOURS[servo], 1.2)
                         .set("stroke-dasharray", "3 4"),
                 )
                 .add(
@@ -54,21 +54,22 @@ impl View<'_> {
         let solution = self.solution;
         let head = solution.head_point();
         let tail = solution.tail_point();
-        let coordinate_text = |name: &str, position: Point| {
+        let format_point = |name: &str, position: Point| {
             format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
         };
-        let (x, y) = self
-            .page_point(head + Vector::new(0.0, SKIN_REACH_MM * self.size_ratio() + LABEL_GAP_MM));
-        group = group.add(text_middle(&coordinate_text("head", head), (x, y), 18.0));
-        let (x, y) = self.page_point(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
-        group = group.add(text_middle(&coordinate_text("tail", tail), (x, y), 18.0));
+        let (x, y) = self.to_page_point(
+            head + Vector::new(0.0, SKIN_REACH_MM * self.size_ratio() + LABEL_GAP_MM),
+        );
+        group = group.add(text_middle(&format_point("head", head), (x, y), 18.0));
+        let (x, y) = self.to_page_point(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
+        group = group.add(text_middle(&format_point("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
             let anchor = if side < 0.0 {
                 Anchor::End
             } else {
                 Anchor::Start
             };
-            let (x, y) = self.page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
+            let (x, y) = self.to_page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
             let travel_text = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
             } else {
@@ -86,7 +87,7 @@ impl View<'_> {
             } else {
                 Anchor::Start
             };
-            let (x, y) = self.page_point(foot + Vector::new(side * 24.0, -2.0));
+            let (x, y) = self.to_page_point(foot + Vector::new(side * 24.0, -2.0));
             let name = [
                 "front left foot",
                 "front right foot",

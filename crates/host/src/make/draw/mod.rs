@@ -1,4 +1,4 @@
-//! `lizard draw`: the robot from above, its wiring, and the angles at which its cranks are fitted.
+//! `lizard draw`: draws the robot from above, its wiring, and the angles of its cranks.
 
 pub mod body;
 mod horns;
@@ -18,22 +18,22 @@ pub use horns::draw_horns;
 pub use top_view::draw_top_view;
 pub use wiring::draw_wiring;
 
-/// Draw the robot from above as SVG, or its wiring, or its cranks
+/// Draw the robot from above, its wiring, or its cranks, as SVG
 ///
-/// The view from above shows the neutral pose, or the pose given by --theta1 and so on.
-/// --wiring and --horns draw what a builder needs.
+/// The view from above shows the neutral pose, or the pose given by --theta1, --theta4,
+/// --theta8 and --theta5. --wiring and --horns make drawings for building the robot.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The file for the picture [default: standard output, unless that is a terminal]
+    /// Output file for the picture [default: standard output, unless it is a terminal]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Leave out names and dimensions
+    /// Omit names and dimensions
     #[arg(long)]
     plain: bool,
     /// Draw the wiring: servos, supply, board
     #[arg(long, conflicts_with_all = ["plain", "theta1", "horns"])]
     wiring: bool,
-    /// Draw the cranks at the angles at which to fit them, and what a trim corrects
+    /// Draw the angles for fitting the cranks, and the effect of a trim
     #[arg(long, conflicts_with_all = ["plain", "theta1"])]
     horns: bool,
     #[command(flatten)]
@@ -45,12 +45,11 @@ pub struct Args {
 /// Draws the robot.
 ///
 /// # Errors
-/// Fails for a pose that the robot cannot have, or a file that cannot be written.
+/// Fails for an impossible pose, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(
-            "the picture is SVG, which a terminal does not show; --output lizard.svg writes it to \
-             a file"
+            "standard output is a terminal; write the SVG to a file with --output lizard.svg"
                 .to_owned(),
         ));
     }

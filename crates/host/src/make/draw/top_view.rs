@@ -1,11 +1,11 @@
 //! The mechanism from above, head up: chassis, five-bars, sliders and legs.
 
 use lizard_kinematics::{End, Side, Solution, Vector};
-use lizard_robot::{LegPlace, Robot};
+use lizard_robot::{LegPoints, Robot};
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO_COLOURS, circle, outlined, svg_page};
+use crate::shared::ink::{DARK, SERVO_COLOURS, add_outline, circle, render_svg};
 
 /// Width and height of the page, pixels.
 pub(super) const PAGE_SIZE: (f64, f64) = (1000.0, 1110.0);
@@ -17,16 +17,16 @@ const PAGE_MARGIN: (f64, f64) = (80.0, 28.0);
 pub(super) const SKIN_REACH_MM: f64 = 30.0;
 /// Distance from the skin to its label, mm.
 pub(super) const LABEL_GAP_MM: f64 = 6.0;
-/// Half the length of the plate of the paper's robot, for which the skin's coordinates are given, mm.
+/// Half the plate length of the paper's robot, the reference for the skin's coordinates, mm.
 const PAPER_PLATE_HALF_LENGTH_MM: f64 = 80.4;
 
 const SKIN_COLOUR: &str = "#e3ecdc";
 const STEEL_COLOUR: &str = "#555555";
 
-/// A point of the robot: mm, chassis frame.
+/// A point in the chassis frame, mm.
 pub(super) type Point = Vector;
 
-/// Draws the robot at a solved pose, as SVG text; with names, angles and dimensions if `has_labels`.
+/// Draws the robot at a solved pose, as SVG text; with names, angles and dimensions if `has_labels` is true.
 pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
     let view = View::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
@@ -44,10 +44,10 @@ pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> St
     if has_labels {
         group = view.draw_labels(group);
     }
-    svg_page(PAGE_SIZE, group)
+    render_svg(PAGE_SIZE, group)
 }
 
-/// A robot at a solved pose, and the scale at which it is drawn.
+/// A robot at a solved pose, and the drawing's scale.
 pub(super) struct View<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
@@ -79,22 +79,22 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The point on the page for a point in the chassis frame.
-    pub(super) fn page_point(&self, point: Point) -> (f64, f64) {
+    /// Returns the position on the page of a point in the chassis frame.
+    pub(super) fn to_page_point(&self, point: Point) -> (f64, f64) {
         (
             PAGE_SIZE.0 / 2.0 + self.pixels_per_mm * point.x,
             PAGE_SIZE.1 / 2.0 - self.pixels_per_mm * point.y,
         )
     }
 
-    /// The size of the robot's plate relative to that of the paper's robot.
+    /// Returns the size of the robot's plate relative to the plate of the paper's robot.
     pub(super) fn size_ratio(&self) -> f64 {
         self.robot.plate().half_size.y / PAPER_PLATE_HALF_LENGTH_MM
     }
 
     fn sheet(&self) -> Sheet<impl Fn(Point) -> (f64, f64)> {
         Sheet {
-            project: |point| self.page_point(point),
+            project: |point| self.to_page_point(point),
             pixels_per_mm: self.pixels_per_mm,
             turn_deg: 0.0,
         }
@@ -102,12 +102,12 @@ impl<'a> View<'a> {
 
     fn draw_bar(
         &self,
-        from: Point,
-        to: Point,
+        start: Point,
+        end: Point,
         colour: &str,
         width_mm: f64,
     ) -> svg::node::element::Line {
-        self.sheet().draw_bar(from, to, colour, width_mm)
+        self.sheet().draw_bar(start, end, colour, width_mm)
     }
 
     fn draw_joint(&self, point: Point, radius_mm: f64) -> svg::node::element::Circle {
@@ -122,62 +122,61 @@ impl<'a> View<'a> {
         self.robot.lizard().shafts()
     }
 
-    /// Tip of a servo's crank.
+    /// Returns the tip of a servo's crank.
     fn crank_tip(&self, servo: usize) -> Point {
         self.solution.crank_tips()[servo]
     }
 
     /// Draws a lizard's pale outline, so that the mechanism looks like an animal.
     fn draw_skin(&self, group: Group) -> Group {
-        // The coordinates below are in mm for the paper's robot, and are multiplied by `size_ratio`. The head and the
-        // tail of the skin follow their points (`text_near`), and the flanks are fixed to the chassis
-        // (`text_on_chassis`).
+        // The coordinates are in mm for the paper's robot, and are multiplied by `size_ratio`. The skin's head and tail
+        // follow their points (`format_near`); the flanks are fixed to the chassis (`format_on_chassis`).
         let size_ratio = self.size_ratio();
-        let text_near = |point: Point, x: f64, y: f64| {
-            let (x, y) = self.page_point(point + Vector::new(x, y) * size_ratio);
+        let format_near = |point: Point, x: f64, y: f64| {
+            let (x, y) = self.to_page_point(point + Vector::new(x, y) * size_ratio);
             format!("{x:.1} {y:.1}")
         };
-        let text_on_chassis = |x: f64, y: f64| text_near(Vector::default(), x, y);
+        let format_on_chassis = |x: f64, y: f64| format_near(Vector::default(), x, y);
         let head = self.solution.head_point();
         let tail = self.solution.tail_point();
         let commands = [
-            format!("M {}", text_near(head, 0.0, 30.0)),
+            format!("M {}", format_near(head, 0.0, 30.0)),
             format!(
                 "C {} {} {}",
-                text_near(head, 18.0, 30.0),
-                text_near(head, 27.0, 2.0),
-                text_on_chassis(27.0, 84.0)
+                format_near(head, 18.0, 30.0),
+                format_near(head, 27.0, 2.0),
+                format_on_chassis(27.0, 84.0)
             ),
             format!(
                 "C {} {} {}",
-                text_on_chassis(44.0, 50.0),
-                text_on_chassis(44.0, -50.0),
-                text_on_chassis(27.0, -84.0)
+                format_on_chassis(44.0, 50.0),
+                format_on_chassis(44.0, -50.0),
+                format_on_chassis(27.0, -84.0)
             ),
             format!(
                 "C {} {} {}",
-                text_near(tail, 22.0, 0.0),
-                text_near(tail, 6.0, -6.0),
-                text_near(tail, 3.0, -26.0)
+                format_near(tail, 22.0, 0.0),
+                format_near(tail, 6.0, -6.0),
+                format_near(tail, 3.0, -26.0)
             ),
-            format!("L {}", text_near(tail, -3.0, -26.0)),
+            format!("L {}", format_near(tail, -3.0, -26.0)),
             format!(
                 "C {} {} {}",
-                text_near(tail, -6.0, -6.0),
-                text_near(tail, -22.0, 0.0),
-                text_on_chassis(-27.0, -84.0)
+                format_near(tail, -6.0, -6.0),
+                format_near(tail, -22.0, 0.0),
+                format_on_chassis(-27.0, -84.0)
             ),
             format!(
                 "C {} {} {}",
-                text_on_chassis(-44.0, -50.0),
-                text_on_chassis(-44.0, 50.0),
-                text_on_chassis(-27.0, 84.0)
+                format_on_chassis(-44.0, -50.0),
+                format_on_chassis(-44.0, 50.0),
+                format_on_chassis(-27.0, 84.0)
             ),
             format!(
                 "C {} {} {} Z",
-                text_near(head, -27.0, 2.0),
-                text_near(head, -18.0, 30.0),
-                text_near(head, 0.0, 30.0)
+                format_near(head, -27.0, 2.0),
+                format_near(head, -18.0, 30.0),
+                format_near(head, 0.0, 30.0)
             ),
         ];
         let outline = Path::new()
@@ -185,7 +184,7 @@ impl<'a> View<'a> {
             .set("fill", SKIN_COLOUR);
         let draw_eye = |x: f64| {
             circle(
-                self.page_point(head + Vector::new(x, 12.0) * size_ratio),
+                self.to_page_point(head + Vector::new(x, 12.0) * size_ratio),
                 6.5,
                 DARK,
             )
@@ -193,7 +192,7 @@ impl<'a> View<'a> {
         group.add(outline).add(draw_eye(-9.0)).add(draw_eye(9.0))
     }
 
-    /// Draws the slider of a side, a prismatic joint between the arms of the front and the rear servos.
+    /// Draws a side's slider, a prismatic joint between the arms of the front and the rear servo.
     fn draw_slider(&self, mut group: Group, side: Side) -> Group {
         let ([front, rear], slider) = (side.servos(), self.solution.side(side));
         let rear_shaft = self.shafts()[rear];
@@ -218,7 +217,7 @@ impl<'a> View<'a> {
         group
     }
 
-    /// Draws the five-bar of the head or the tail: two cranks, two couplers, and the point that they carry.
+    /// Draws the five-bar of the head or tail: two cranks, two couplers, and the end point.
     fn draw_five_bar(&self, mut group: Group, end: End) -> Group {
         let (servos, point) = (end.servos(), self.solution.point(end));
         for servo in servos {
@@ -230,18 +229,22 @@ impl<'a> View<'a> {
                 .add(self.draw_bar(shaft, tip, SERVO_COLOURS[servo], 4.6))
                 .add(self.draw_joint(tip, 2.3))
                 .add(circle(
-                    self.page_point(shaft),
+                    self.to_page_point(shaft),
                     3.4 * self.pixels_per_mm,
                     DARK,
                 ))
                 .add(circle(
-                    self.page_point(shaft),
+                    self.to_page_point(shaft),
                     1.2 * self.pixels_per_mm,
                     "white",
                 ));
         }
-        group.add(outlined(
-            circle(self.page_point(point), 3.4 * self.pixels_per_mm, "#f0e442"),
+        group.add(add_outline(
+            circle(
+                self.to_page_point(point),
+                3.4 * self.pixels_per_mm,
+                "#f0e442",
+            ),
             DARK,
             2.5,
         ))
@@ -251,10 +254,10 @@ impl<'a> View<'a> {
         self.legs()[servo].foot
     }
 
-    /// The positions of the legs' points at this pose, if no leg lags behind its servo.
-    pub(super) fn legs(&self) -> [LegPlace; 4] {
+    /// Returns the positions of the legs' points at this pose if no leg lags behind its servo.
+    pub(super) fn legs(&self) -> [LegPoints; 4] {
         let angles = self.angles();
-        std::array::from_fn(|leg| self.robot.legs()[leg].place_at(angles[leg], angles[leg]))
+        std::array::from_fn(|leg| self.robot.legs()[leg].points_at(angles[leg], angles[leg]))
     }
 }
 
@@ -264,7 +267,7 @@ mod tests {
     use crate::shared::robot_file::built_in_robot;
     use lizard_kinematics::{Pose, wrap};
 
-    /// Passes the paper's robot at this pose to `check_view`; `None` is the neutral pose.
+    /// Passes the paper's robot at `pose` to `check_view`; `None` is the neutral pose.
     fn with_view(pose: Option<Pose>, check_view: impl Fn(&View)) {
         let robot = built_in_robot("paper");
         let pose = pose.unwrap_or_else(|| robot.neutral_pose());
@@ -296,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn at_neutral_each_foot_is_straight_beside_its_hip() {
+    fn feet_are_beside_the_hips_at_neutral() {
         with_view(None, |view| {
             let feet: Vec<(f64, f64)> = (0..4)
                 .map(|servo| view.foot(servo))
@@ -310,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn a_servo_that_turns_forward_moves_its_foot_forward() {
+    fn forward_turn_moves_the_foot_forward() {
         use lizard_robot::servo::FORWARD_TURN_SIGN;
         with_view(None, |view| {
             for servo in 0..4 {
@@ -325,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_robot_fits_the_page() {
+    fn large_robot_fits_the_page() {
         let robot = built_in_robot("large");
         let solution = robot
             .lizard()
@@ -339,14 +342,14 @@ mod tests {
             .collect::<Vec<_>>();
         joints.extend([solution.head_point(), solution.tail_point()]);
         for joint in joints {
-            let (x, y) = view.page_point(joint);
+            let (x, y) = view.to_page_point(joint);
             assert!((50.0..PAGE_SIZE.0 - 50.0).contains(&x), "{x}");
             assert!((50.0..PAGE_SIZE.1 - 50.0).contains(&y), "{y}");
         }
     }
 
     #[test]
-    fn labels_can_be_left_out() {
+    fn labels_can_be_omitted() {
         with_view(None, |view| {
             assert!(draw_top_view(view.robot, view.solution, true).contains("θ1 = 138.59°"));
             assert!(!draw_top_view(view.robot, view.solution, false).contains("<text"));

@@ -1,10 +1,10 @@
-//! A drawing of an Arduino UNO from above, with its pins where the board has them.
+//! A drawing of an Arduino UNO from above, with the pins at their real positions.
 
 use svg::node::element::{Group, Text};
 
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    Anchor, DARK, GREY, PANEL_COLOUR, circle, outlined, rectangle, round_hundredths, text,
+    Anchor, DARK, GREY, PANEL_COLOUR, add_outline, circle, rectangle, round_hundredths, text,
     text_middle, text_start,
 };
 
@@ -19,19 +19,19 @@ const UPPER_ROW_Y: f64 = 20.0;
 /// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
 const LOWER_ROW_Y: f64 = 1.0;
 
-/// The power header: its first pin, in tenths of an inch from the left edge, and the names
-/// printed beside its pins.
+/// The power header: its first pin's distance from the left edge, tenths of an inch, and the names printed beside its
+/// pins.
 const POWER_HEADER: (f64, [&str; 7]) =
     (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
-/// The pins to the left of D13, among them the analogue reference: the first one, in tenths of an inch from the left
-/// edge, and the names printed beside them.
+/// The pins to the left of D13, including the analogue reference: the first pin's distance from the left edge, tenths
+/// of an inch, and the names printed beside the pins.
 const REFERENCE_HEADER: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
 
-/// Position of D13, from which D12 to D8 are counted, in tenths of an inch from the left edge.
+/// Distance of D13 from the left edge, tenths of an inch; D12 to D8 are counted from D13.
 const D13_X: f64 = 11.4;
-/// Position of D7, from which D6 to D0 are counted, in tenths of an inch from the left edge.
+/// Distance of D7 from the left edge, tenths of an inch; D6 to D0 are counted from D7.
 const D7_X: f64 = 18.0;
-/// Position of A0, from which A1 to A5 are counted, in tenths of an inch from the left edge.
+/// Distance of A0 from the left edge, tenths of an inch; A1 to A5 are counted from A0.
 const A0_X: f64 = 20.0;
 
 /// An Arduino UNO at a position on a page.
@@ -42,35 +42,35 @@ pub struct Uno {
 }
 
 impl Uno {
-    /// The board's lower right corner.
+    /// Returns the board's lower right corner.
     pub fn lower_right_corner(&self) -> (f64, f64) {
-        self.page_point(BOARD_SIZE.0, 0.0)
+        self.to_page_point(BOARD_SIZE.0, 0.0)
     }
 
-    /// Position of a pin by its Arduino number, 0 to 19; 14 to 19 are A0 to A5.
+    /// Returns the position of the pin with Arduino number `number`, 0 to 19; 14 to 19 are A0 to A5.
     pub fn pin_point(&self, number: u8) -> (f64, f64) {
         let pin_number = f64::from(number);
         match number {
-            0..=7 => self.page_point(D7_X + 7.0 - pin_number, UPPER_ROW_Y),
-            8..=13 => self.page_point(D13_X + 13.0 - pin_number, UPPER_ROW_Y),
-            _ => self.page_point(A0_X + pin_number - 14.0, LOWER_ROW_Y),
+            0..=7 => self.to_page_point(D7_X + 7.0 - pin_number, UPPER_ROW_Y),
+            8..=13 => self.to_page_point(D13_X + 13.0 - pin_number, UPPER_ROW_Y),
+            _ => self.to_page_point(A0_X + pin_number - 14.0, LOWER_ROW_Y),
         }
     }
 
-    /// Position of the ground pin beside D13.
+    /// Returns the position of the ground pin beside D13.
     pub fn ground_point(&self) -> (f64, f64) {
-        self.page_point(D13_X - 1.0, UPPER_ROW_Y)
+        self.to_page_point(D13_X - 1.0, UPPER_ROW_Y)
     }
 
-    /// Position of the 5V pin.
+    /// Returns the position of the 5V pin.
     pub fn five_volt_point(&self) -> (f64, f64) {
-        self.page_point(POWER_HEADER.0 + 3.0, LOWER_ROW_Y)
+        self.to_page_point(POWER_HEADER.0 + 3.0, LOWER_ROW_Y)
     }
 
-    /// Draws the board, with the pins of `used_pins` emphasised.
+    /// Draws the board and emphasizes the pins in `used_pins`.
     pub fn draw(&self, used_pins: &[u8]) -> Group {
         let size = (BOARD_SIZE.0 * PIN_PITCH, BOARD_SIZE.1 * PIN_PITCH);
-        let mut group = Group::new().add(outlined(
+        let mut group = Group::new().add(add_outline(
             rectangle(self.upper_left_corner, size, "#dfeaec").set("rx", 8),
             DARK,
             1.5,
@@ -85,7 +85,7 @@ impl Uno {
                 .add(self.draw_label(self.pin_point(number), &name, is_used));
         }
         for (index, name) in REFERENCE_HEADER.1.iter().enumerate() {
-            let point = self.page_point(REFERENCE_HEADER.0 + index as f64, UPPER_ROW_Y);
+            let point = self.to_page_point(REFERENCE_HEADER.0 + index as f64, UPPER_ROW_Y);
             let is_used = point == self.ground_point();
             let mut hole = draw_hole(point, is_used);
             if is_used {
@@ -94,21 +94,21 @@ impl Uno {
             group = group.add(hole).add(self.draw_label(point, name, is_used));
         }
         for (index, name) in POWER_HEADER.1.iter().enumerate() {
-            let point = self.page_point(POWER_HEADER.0 + index as f64, LOWER_ROW_Y);
+            let point = self.to_page_point(POWER_HEADER.0 + index as f64, LOWER_ROW_Y);
             group = group
                 .add(draw_hole(point, false))
                 .add(self.draw_label(point, name, false));
         }
-        let name_point = self.page_point(9.0, 11.2);
+        let name_point = self.to_page_point(9.0, 11.2);
         group.add(text_start("Arduino UNO", name_point, 18.0))
     }
 
     /// Adds the sockets, the chip and the LED to `group`.
     fn draw_components(&self, group: Group) -> Group {
         let draw_block = |x: f64, top: f64, size: (f64, f64), fill| {
-            outlined(
+            add_outline(
                 rectangle(
-                    self.page_point(x, top),
+                    self.to_page_point(x, top),
                     (size.0 * PIN_PITCH, size.1 * PIN_PITCH),
                     fill,
                 ),
@@ -116,18 +116,18 @@ impl Uno {
                 1.2,
             )
         };
-        let led = self.page_point(9.4, 13.6);
+        let led = self.to_page_point(9.4, 13.6);
         group
             .add(draw_block(-2.5, 17.5, (6.4, 4.7), "#c9c9c9"))
-            .add(text_middle("USB", self.page_point(0.7, 14.8), 14.0))
+            .add(text_middle("USB", self.to_page_point(0.7, 14.8), 14.0))
             .add(draw_block(-0.8, 4.8, (5.4, 3.6), "#bdbdbd"))
-            .add(text_middle("7-12 V", self.page_point(1.9, 2.6), 13.0))
+            .add(text_middle("7-12 V", self.to_page_point(1.9, 2.6), 13.0))
             .add(draw_block(11.5, 9.2, (13.0, 3.0), "#8f8f8f"))
             .add(circle(led, 4.5, "#f0e442").set("stroke", DARK))
             .add(text_start("LED", (led.0 + 9.0, led.1 + 5.0), 13.0))
     }
 
-    /// Draws the name of a pin beside it, rotated to read upwards.
+    /// Draws a pin's name beside the pin, rotated to read upwards.
     fn draw_label(&self, pin: (f64, f64), name: &str, is_used: bool) -> Text {
         let is_upper = pin.1 < self.upper_left_corner.1 + BOARD_SIZE.1 * PIN_PITCH / 2.0;
         let (y, anchor) = if is_upper {
@@ -152,8 +152,8 @@ impl Uno {
         }
     }
 
-    /// A point on the page, from its position in tenths of an inch right of and above the board's lower left corner.
-    fn page_point(&self, right: f64, up: f64) -> (f64, f64) {
+    /// Converts a position, in tenths of an inch right of and above the board's lower left corner, to a page position.
+    fn to_page_point(&self, right: f64, up: f64) -> (f64, f64) {
         (
             self.upper_left_corner.0 + right * PIN_PITCH,
             self.upper_left_corner.1 + (BOARD_SIZE.1 - up) * PIN_PITCH,
@@ -161,8 +161,8 @@ impl Uno {
     }
 }
 
-/// Draws a hole of a header.
+/// Draws a header's hole.
 fn draw_hole(centre: (f64, f64), is_used: bool) -> svg::node::element::Circle {
     let fill = if is_used { DARK } else { PANEL_COLOUR };
-    outlined(circle(centre, 4.0, fill), DARK, 1.2)
+    add_outline(circle(centre, 4.0, fill), DARK, 1.2)
 }

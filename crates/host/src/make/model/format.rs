@@ -1,4 +1,4 @@
-//! The format of a model's file, chosen by the file extension.
+//! The format of a model's file, determined by the file extension.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ pub(super) enum Format {
 }
 
 impl Format {
-    /// The format that a file's extension stands for. A file without an extension, such as /dev/stdout, gets MuJoCo's
-    /// format, the only one that has everything in one file.
+    /// Returns the format for a file's extension. A file without an extension, such as /dev/stdout, gets MuJoCo's
+    /// format, the only format with a single file.
     ///
     /// # Errors
     /// Fails for any other extension.
@@ -30,7 +30,7 @@ impl Format {
             Some("urdf") => Ok(Self::Urdf),
             Some("sdf") => Ok(Self::Sdf),
             Some(_) => Err(Failure::Input(format!(
-                "{}: the ending decides the format; it is .xml for MuJoCo, .urdf for ROS, .sdf for Gazebo",
+                "{}: unknown file extension; allowed values: .xml (MuJoCo), .urdf (ROS), .sdf (Gazebo)",
                 path.display()
             ))),
         }
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_file_extension_decides_the_format() {
+    fn file_extension_determines_the_format() {
         for (path, format) in [
             ("out/a.xml", Format::Mjcf),
             ("/dev/stdout", Format::Mjcf),

@@ -1,4 +1,4 @@
-//! `lizard model`: writes a model of the robot for physics engines and for ROS.
+//! `lizard model`: writes a model of the robot for physics engines and ROS.
 
 mod format;
 mod long_foot;
@@ -12,20 +12,21 @@ use lizard_robot::Robot;
 use crate::shared::files;
 use crate::{Failure, RobotFile};
 use format::Format;
-use long_foot::LongFoot;
+use long_foot::FootOffset;
 
-/// Write the robot for MuJoCo (.xml), ROS (.urdf) or Gazebo (.sdf): bodies, masses, joints, meshes
+/// Write a model for MuJoCo (.xml), ROS (.urdf) or Gazebo (.sdf): bodies, masses, joints, meshes
 ///
-/// Each format has the shapes of all parts, their masses and inertias, hinges and slides, and servos
-/// with the travel, the torque and the rate of `[servo]`. All joints are 0 at neutral.
+/// Each format has the shapes, masses and inertias of all parts, hinges and slides, and servos with
+/// travel, torque and rate from `[servo]`. All joints are 0 at neutral.
 ///
-/// MuJoCo's has everything in one file: also a floor, motors, sensors, and constraints that close
-/// the loops. With --drive the firmware runs on the simulated UNO, and the file gets a keyframe for
-/// each frame of its pulses, which `tools/physics/view.py` plays (docs/judges.md).
+/// A MuJoCo model is a single file, which also has a floor, motors, sensors, and constraints that
+/// close the loops. With --drive, the firmware runs on the simulated UNO, and the file gets a keyframe
+/// for each frame of its pulses, which `tools/physics/view.py` plays (docs/judges.md).
 ///
-/// URDF and SDF name meshes, which are written into a folder beside the file, `robot-meshes` for
-/// robot.urdf. SDF closes the loops by joints. URDF cannot: its legs follow the servos, its couplers and
-/// sliders are free, and the frames `closing_..._1` and `closing_..._2` are to coincide (docs/models.md).
+/// URDF and SDF refer to meshes, which are written to a folder beside the file, `robot-meshes` for
+/// robot.urdf. SDF closes the loops with joints. URDF cannot: its legs follow the servos, its couplers
+/// and sliders are free, and the frames `closing_..._1` and `closing_..._2` must coincide
+/// (docs/models.md).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard model out/robot.urdf
@@ -34,34 +35,32 @@ use long_foot::LongFoot;
   lizard model out/walk.xml --drive walk
   lizard model out/rocks.xml --drive walk --long-foot LF=0.6")]
 pub struct Args {
-    /// The file to write: .xml, .urdf or .sdf; an existing file is replaced
+    /// Output file: .xml, .urdf or .sdf; an existing file is replaced
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// The folder of the meshes as URDF or SDF should name it, such as package://my_robot/meshes
+    /// Address of the meshes' folder in the URDF or SDF, such as package://my_robot/meshes
     /// [default: relative to FILE]
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "ADDRESS")]
     mesh_address: Option<String>,
-    /// Also write the servo angles of three cycles of this gait, from the firmware's
-    /// pulses; for MuJoCo
+    /// Also write the servo angles of three cycles of this gait, from the firmware's pulses;
+    /// only for MuJoCo
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "GAIT")]
     drive: Option<String>,
-    /// The firmware for --drive: an ELF that has this robot in it [default: the one inside this
-    /// program]
+    /// The firmware for --drive, an ELF that contains this robot [default: the built-in firmware]
     #[arg(long, value_name = "FILE", requires = "drive")]
     elf: Option<PathBuf>,
-    /// Make the foot LF, RF, RH or LH longer by this many mm; a negative number makes it
-    /// shorter
+    /// Lengthen the foot LF, RF, RH or LH by MM; a negative number shortens it
     #[arg(long, value_name = "LEG=MM")]
-    long_foot: Vec<LongFoot>,
+    long_foot: Vec<FootOffset>,
     #[command(flatten)]
     robot: RobotFile,
 }
 
-/// Makes the model and writes it.
+/// Builds the model and writes it.
 ///
 /// # Errors
 /// Fails for an invalid robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
-/// is missing or has another robot, or a file that cannot be written.
+/// is missing or contains another robot, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let format = Format::from_path(&args.file)?;
     check_options(&args, format)?;
@@ -69,16 +68,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let assembly = Assembly::new(&robot);
     assembly.check_dimensions()?;
     let neutral = robot.lizard().solve(&robot.neutral_pose())?;
-    let mut scene = Scene::of(&assembly);
+    let mut scene = Scene::for_assembly(&assembly);
     for (excess, error) in scene
         .excess_lengths
         .iter_mut()
-        .zip(long_foot::length_errors(&args.long_foot)?)
+        .zip(long_foot::order_by_leg(&args.long_foot)?)
     {
         *excess += error;
     }
-    scene.course = drive_course(&args, &robot)?;
-    let pieces = Pieces::of(&assembly, &scene)?;
+    scene.course = record_drive(&args, &robot)?;
+    let pieces = Pieces::compute(&assembly, &scene)?;
     let folder = mesh_folder_name(&args.file);
     let address = match &args.mesh_address {
         Some(address) => address.trim_end_matches('/'),
@@ -86,18 +85,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let address = format!("{address}/");
     let text = match format {
-        Format::Mjcf => pieces.mjcf(&neutral, &scene),
-        Format::Urdf => pieces.urdf(&neutral, &scene, &address),
-        Format::Sdf => pieces.sdf(&neutral, &scene, &address),
+        Format::Mjcf => pieces.format_mjcf(&neutral, &scene),
+        Format::Urdf => pieces.format_urdf(&neutral, &scene, &address),
+        Format::Sdf => pieces.format_sdf(&neutral, &scene, &address),
     };
-    // Checked before the meshes are written: otherwise a failure would leave meshes without a model.
+    // The check comes before the meshes are written, because a later failure would leave meshes without a model.
     files::check_replaceable(&args.file)?;
     let mut summary_suffix = String::new();
     if let Some(course) = &scene.course {
         summary_suffix = format!(", and {} frames of `{}`", course.frames.len(), course.gait);
     }
     if format != Format::Mjcf {
-        let meshes = pieces.meshes(&scene);
+        let meshes = pieces.make_meshes(&scene);
         let folder = args.file.with_file_name(folder);
         for mesh in &meshes {
             files::write(&folder.join(&mesh.path), &mesh.bytes)?;
@@ -105,7 +104,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         summary_suffix = format!(", and {} meshes in {}", meshes.len(), folder.display());
     }
     files::write(&args.file, text.as_bytes())?;
-    // A stream such as /dev/stdout must contain only the model, not the message.
+    // A stream such as /dev/stdout must contain only the model, without the message.
     if !args.file.is_file() {
         return Ok(());
     }
@@ -118,19 +117,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
 fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     let message = match (format, &args.drive, &args.mesh_address) {
         (Format::Mjcf, _, Some(_)) => {
-            "--mesh-address is for .urdf and .sdf; MuJoCo's file has the meshes in it"
+            "--mesh-address requires .urdf or .sdf; a MuJoCo file contains the meshes"
         }
         (Format::Urdf | Format::Sdf, Some(_), _) => {
-            "--drive is for MuJoCo's file, .xml; URDF and SDF have no keyframes"
+            "--drive requires a MuJoCo file (.xml); URDF and SDF have no keyframes"
         }
         _ => return Ok(()),
     };
     Err(Failure::Input(message.to_owned()))
 }
 
-/// The course of the servo angles for `--drive`; `None` without this option.
+/// Records the servo angles for `--drive`; `None` without this option.
 #[cfg(feature = "simulator")]
-fn drive_course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
+fn record_drive(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
     let gait = args.drive.as_deref();
     let course = gait.map(|gait| {
         crate::simulate::course::record_course(robot, &args.robot, gait, args.elf.as_deref())
@@ -139,16 +138,16 @@ fn drive_course(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
 }
 
 #[cfg(not(feature = "simulator"))]
-fn drive_course(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
+fn record_drive(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
     match args.drive {
         None => Ok(None),
         Some(_) => Err(Failure::Input(
-            "--drive needs the simulator, which this program was built without".to_owned(),
+            "--drive is missing: this program was built without the simulator".to_owned(),
         )),
     }
 }
 
-/// The name of the folder for the meshes, which lies beside the model's file.
+/// Returns the name of the meshes' folder beside the model's file.
 fn mesh_folder_name(file: &Path) -> String {
     let name = file.file_stem().unwrap_or_default().to_string_lossy();
     format!("{name}-meshes")

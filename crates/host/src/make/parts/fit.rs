@@ -1,28 +1,28 @@
-//! `lizard fit`: proves how close the robot's parts can come to each other.
+//! `lizard fit`: proves lower bounds of the distances between the robot's parts.
 
 use std::io::{self, Write};
 
-use lizard_parts::{Answer, Assembly, BuildProblem, FAR_MM, NearestPair, Proof, Questions};
+use lizard_parts::{Assembly, BuildError, FAR_MM, NearestPair, Proof, ProofTasks, TaskResult};
 use lizard_robot::servo::SERVO_NAMES;
 use serde::{Deserialize, Serialize};
 
 use crate::Failure;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Prove that no two parts meet at any pose that the guard accepts
 ///
 /// Servos, screws, nuts, springs, board and battery are parts, too. The proof covers all
-/// poses, not samples: the servos' angles are divided into regions, and in each region
-/// either the guard refuses every pose, or no two parts can come closer than is printed.
-/// Clearances up to 2 mm are measured. docs/fit.md says what is proved and what is not.
+/// poses, not samples: the servo angles are divided into regions. In each region, either the
+/// guard refuses every pose, or no two parts can come closer than the printed distance.
+/// Clearances up to 2 mm are measured. docs/fit.md describes the scope of the proof.
 /// The exit code is 1 if two parts overlap or come closer than 0.2 mm.
 #[derive(clap::Args, Debug, Serialize, Deserialize)]
 #[command(after_help = "Examples:
   lizard fit
   lizard fit --robot robots/unequal.toml --all")]
 pub struct Args {
-    /// Print every pair for which less than 1.8 mm is proved, not only the closest ten
+    /// Print every pair with a proved distance below 1.8 mm, not only the closest ten
     #[arg(long)]
     all: bool,
     /// Print one JSON object
@@ -41,36 +41,36 @@ impl Spreadable for Args {
     }
 }
 
-/// Two parts as `--json` prints them.
+/// Two parts in the `--json` output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct Pair<'a> {
     first: &'a str,
     second: &'a str,
-    /// Proved lower bound of the distance, mm; below 0 the parts may overlap.
+    /// Proved lower bound of the distance, mm; the parts may overlap if it is negative.
     proved: f64,
-    /// The least distance found at a pose that the guard accepts, mm; null if none is found.
+    /// The smallest distance found at an accepted pose, mm; null if none was found.
     seen: Option<f64>,
     /// The pose at which `seen` was found: A1 to A4, deg; null if `seen` is null.
     pose: Option<[f64; 4]>,
-    /// The pose (A1 to A4, deg) near which `proved` could not be raised; null if `proved` is close to `seen`.
+    /// The pose (A1 to A4, deg) that limits `proved`; null if `proved` is close to `seen`.
     doubt: Option<[f64; 4]>,
 }
 
-/// The proof as `--json` prints it.
+/// The proof in the `--json` output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct Report<'a> {
     fits: bool,
-    /// The reason why the parts do not fit; null if they do.
+    /// The reason for a misfit; null if the parts fit.
     reason: Option<String>,
     /// The closest pairs of parts that must stay apart.
     apart: Vec<Pair<'a>>,
     /// The closest pairs of parts that are designed to touch.
     meeting: Vec<Pair<'a>>,
-    /// The ranges of A1 to A4 over all poses that the guard accepts, deg.
+    /// The ranges of A1 to A4 over all accepted poses, deg.
     ranges: [[f64; 2]; 4],
     /// The number of pairs of shapes in the proof.
     pairs: usize,
-    /// The number of regions of poses into which the proof was divided.
+    /// The number of pose regions in the proof.
     regions: u64,
 }
 
@@ -88,18 +88,18 @@ impl<'a> From<&'a NearestPair> for Pair<'a> {
 }
 
 /// Template of the progress bar, which counts pairs of mounts (groups of parts that move together).
-const BAR_TEMPLATE: &str = "{wide_bar} {pos}/{len} looking for parts that meet";
+const BAR_TEMPLATE: &str = "{wide_bar} {pos}/{len} searching for colliding parts";
 
-/// Proves how close the parts come to each other, with a progress bar.
+/// Proves the distances between the parts, with a progress bar.
 pub(super) fn prove(assembly: &Assembly) -> Proof {
-    complete_proof(&Questions::new(assembly, |_, _| true), None)
+    complete_proof(&ProofTasks::new(assembly, |_, _| true), None)
 }
 
-/// Completes the proof: uses the answers from a merge, and computes the missing ones.
-fn complete_proof(questions: &Questions, answers: Option<Vec<Answer>>) -> Proof {
-    let bar = progress_bar(questions.count(), BAR_TEMPLATE);
-    let known_answer = |index: usize| answers.as_ref()?.get(index).cloned();
-    let proof = questions.answer_all(known_answer, |done_count, _| {
+/// Completes the proof: uses the results from a merge, and computes the missing results.
+fn complete_proof(tasks: &ProofTasks, results: Option<Vec<TaskResult>>) -> Proof {
+    let bar = create_progress_bar(tasks.count(), BAR_TEMPLATE);
+    let known_result = |index: usize| results.as_ref()?.get(index).cloned();
+    let proof = tasks.complete_all(known_result, |done_count, _| {
         bar.set_position(done_count as u64)
     });
     bar.finish_and_clear();
@@ -114,19 +114,19 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
     assembly.check_dimensions()?;
-    let questions = Questions::new(&assembly, |_, _| true);
-    let question_count = questions.count();
+    let tasks = ProofTasks::new(&assembly, |_, _| true);
+    let task_count = tasks.count();
     if let Some(part) = args.spread.part() {
-        let bar = progress_bar(part.piece_count(question_count), BAR_TEMPLATE);
-        let answer_one = |index| {
+        let bar = create_progress_bar(part.count_pieces(task_count), BAR_TEMPLATE);
+        let complete_task = |index| {
             bar.inc(1);
-            questions.answer_one(index)
+            tasks.complete_one(index)
         };
-        part.print(&args, &args.spread.robot, question_count, answer_one)?;
+        part.compute_and_print(&args, &args.spread.robot, task_count, complete_task)?;
         bar.finish_and_clear();
         return Ok(());
     }
-    let proof = complete_proof(&questions, args.spread.read_merged(question_count)?);
+    let proof = complete_proof(&tasks, args.spread.read_merged(task_count)?);
     let verdict = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {
@@ -145,10 +145,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         print_proof(&proof, args.all, &mut out)?;
     }
     out.flush()?;
-    verdict.map_err(|clash| BuildProblem::from(clash).into())
+    verdict.map_err(|clash| BuildError::from(clash).into())
 }
 
-fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Result<()> {
+fn print_proof(proof: &Proof, prints_all: bool, out: &mut impl Write) -> io::Result<()> {
     /// The largest number of rows in a list without --all.
     const MAX_ROWS: usize = 10;
     writeln!(
@@ -161,7 +161,7 @@ fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Resul
             .iter()
             .filter(|pair| pair.lower_bound < FAR_MM * 0.9)
             .collect();
-        let row_count = if show_all {
+        let row_count = if prints_all {
             close_pairs.len()
         } else {
             MAX_ROWS.min(close_pairs.len())
@@ -175,11 +175,11 @@ fn print_proof(proof: &Proof, show_all: bool, out: &mut impl Write) -> io::Resul
         }
     };
     print_list(&proof.separate_pairs, out)?;
-    writeln!(out, "\nmade to touch: gap between them")?;
+    writeln!(out, "\ndesigned to touch: gap between the parts")?;
     print_list(&proof.touching_pairs, out)?;
     writeln!(out, "\nranges of the servo angles that the guard accepts")?;
-    for (name, [from, to]) in SERVO_NAMES.iter().zip(proof.ranges) {
-        writeln!(out, "  {name} {from:7.2} to {to:7.2} deg")?;
+    for (name, [low, high]) in SERVO_NAMES.iter().zip(proof.ranges) {
+        writeln!(out, "  {name} {low:7.2} to {high:7.2} deg")?;
     }
     writeln!(
         out,

@@ -1,25 +1,27 @@
-//! `lizard parts`: everything that is needed to build the robot, as files.
+//! `lizard parts`: writes the files for building the robot.
 
 pub mod fit;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lizard_parts::{Assembly, Bill, BuildProblem, File, coupon, documents, part_files};
+use lizard_parts::{
+    Assembly, Bill, BuildError, File, build_coupon, make_documents, make_part_files,
+};
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
 
 use crate::shared::files;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 use crate::{Failure, RobotFile};
 
-/// Make the parts of the robot: files to print and to cut, what to buy, how to build it
+/// Write the robot's part files for printing and cutting, its bill of materials and its guide
 ///
-/// Writes into DIR: step/ (solids for a drawing program), stl/ (lying as they are
-/// printed), cut/ (DXF and SVG, 1:1 in mm, of the parts that can be cut from a sheet),
-/// guide/ (how to build the robot, as HTML and Markdown; placements.json says where each
-/// part is) and bill.json (what to print and to buy). Links, servos, screws and fits come
-/// from robot.toml. A robot whose parts would meet is refused.
+/// Writes to DIR: step/ (solids for CAD programs), stl/ (parts in their printing
+/// orientation), cut/ (DXF and SVG, 1:1 in mm, of the parts that can be cut from a sheet),
+/// guide/ (the building guide as HTML and Markdown; placements.json has each part's
+/// placement) and bill.json (the bill of materials). Links, servos, screws and fits come
+/// from robot.toml. A robot whose parts would collide is refused.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard parts out/parts
@@ -27,11 +29,11 @@ use crate::{Failure, RobotFile};
   lizard parts out/fit --coupon
   lizard parts out/corner --corner
 
-Print the coupon first: the first column into which everything goes by hand is the `fit`
-of your printer, and belongs under [parts] in robot.toml. Then print one corner: a seat
-for A1, its link, leg, strut and foot.")]
+Print the coupon first: the first column that takes every part by hand is the `fit` of
+your printer; enter it under [parts] in robot.toml. Then print one corner: a seat for A1,
+its link, leg, strut and foot.")]
 pub struct Args {
-    /// Folder for the files; it is created if it does not exist
+    /// Output folder; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Make only the fit coupon
@@ -47,31 +49,31 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// A part as `--json` prints it.
+/// A part in the `--json` output; the field names are the JSON keys.
 #[derive(Serialize)]
 struct PartEntry {
     part: String,
     count: usize,
-    /// The part that this one may replace; null for a part of the standard robot.
+    /// The part that this part may replace; null for a part of the standard robot.
     instead_of: Option<String>,
-    /// The bodies that this part is made for, by their names in the assembly.
+    /// Names of the part's bodies in the assembly.
     bodies: Vec<String>,
     /// The volume of one piece, mm^3.
     volume: f64,
     files: Vec<String>,
 }
 
-impl From<BuildProblem> for Failure {
-    fn from(problem: BuildProblem) -> Self {
-        Self::Impossible(problem.to_string())
+impl From<BuildError> for Failure {
+    fn from(error: BuildError) -> Self {
+        Self::Impossible(error.to_string())
     }
 }
 
-/// Makes all files and writes them.
+/// Builds all files and writes them.
 ///
 /// # Errors
 /// Fails for an invalid robot.toml, parts that do not fit, or a file that cannot be written.
-/// Writes nothing before all files are made.
+/// Writes nothing before all files are built.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
@@ -79,22 +81,22 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let is_whole_robot = !args.coupon && !args.corner;
     let mut parts = Vec::new();
     if !args.corner {
-        parts.extend(coupon(robot.parts()));
+        parts.extend(build_coupon(robot.parts()));
     }
     if !args.coupon {
         assembly.check_dimensions()?;
-        fit::prove(&assembly).judge().map_err(BuildProblem::from)?;
+        fit::prove(&assembly).judge().map_err(BuildError::from)?;
         parts.extend(match args.corner {
-            true => assembly.corner_parts(),
-            false => assembly.parts(),
+            true => assembly.collect_corner_parts(),
+            false => assembly.collect_parts(),
         });
     }
-    let bar = progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
+    let bar = create_progress_bar(parts.len(), "{wide_bar} {pos}/{len} {msg}");
     let mut files = Vec::new();
     let mut entries = Vec::new();
     for part in &parts {
         bar.set_message(part.name.clone());
-        let new_files = part_files(part, kerf)?;
+        let new_files = make_part_files(part, kerf)?;
         entries.push(PartEntry {
             part: part.name.clone(),
             count: part.count(),
@@ -110,11 +112,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut weight_text = None;
     if is_whole_robot {
         let pose = robot.lizard().solve(&robot.neutral_pose())?;
-        let bill = Bill::of(&assembly, &assembly.parts(), &pose);
-        files.extend(documents(&assembly, &bill, &pose)?);
+        let bill = Bill::compute(&assembly, &assembly.collect_parts(), &pose);
+        files.extend(make_documents(&assembly, &bill, &pose)?);
         weight_text = bill
             .differs_from(&robot.ground().body)
-            .then(|| weight_note(&bill, &robot));
+            .then(|| format_weight_note(&bill, &robot));
     }
     write_files(&args.folder, &files)?;
     let mut out = io::stdout().lock();
@@ -138,18 +140,18 @@ pub fn run(args: Args) -> Result<(), Failure> {
     Ok(out.flush()?)
 }
 
-/// The note that robot.toml gives a mass or a mass centre that differs from that of the parts.
-fn weight_note(bill: &Bill, robot: &Robot) -> String {
+/// Formats a note that the mass or the centre of mass in robot.toml differs from the parts.
+fn format_weight_note(bill: &Bill, robot: &Robot) -> String {
     let Body {
         mass,
-        mass_centre: centre,
+        centre_of_mass: centre,
     } = robot.ground().body;
     format!(
-        "The parts weigh {:.0} g, and their mass centre is {} the middle of the plate; robot.toml has {mass} g and \
-         {centre:?} mm. For predictions with these parts, put into robot.toml:\n\n{}",
+        "The parts weigh {:.0} g, and their centre of mass is {}; robot.toml has {mass} g and \
+         {centre:?} mm. For predictions with these parts, change robot.toml to:\n\n{}",
         bill.grams,
-        bill.centre_in_words(),
-        bill.body_toml()
+        bill.describe_centre(),
+        bill.format_body_toml()
     )
 }
 

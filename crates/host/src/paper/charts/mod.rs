@@ -1,4 +1,4 @@
-//! `lizard draw charts`: the paper's figures, and charts that the paper lacks, as SVG.
+//! `lizard draw charts`: draws the paper's figures and additional charts, as SVG.
 
 mod performance;
 mod reach;
@@ -17,21 +17,21 @@ use crate::paper::design;
 use crate::shared::{files, json};
 use crate::{Failure, PoseArgs, RobotFile};
 
-/// Step of the grid of the performance charts, in units of D.
+/// Grid step of the performance charts, in units of D.
 const GRID_STEP: f64 = 0.005;
-/// Number of rings on which the performance charts sample each inscribed circle.
+/// Number of sampling rings in each inscribed circle of the performance charts.
 const RING_COUNT: usize = 16;
 
-/// Draw all charts into a folder, as SVG.
+/// Draw all charts as SVG files
 ///
-/// workspace (with the maximal inscribed circle), workspaces (of tail, body and legs), conditioning (the LCI map),
-/// performance (over the whole design space), singularity (with the gaits' paths), stroke (slider travel in each gait),
-/// top-view (at neutral, or at the pose given).
+/// The charts are: workspace (with the maximal inscribed circle), workspaces (of tail, body and legs), conditioning
+/// (the LCI map), performance (over the whole design space), singularity (with the gaits' paths), stroke (slider travel
+/// in each gait), top-view (at neutral, or at the given pose).
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard draw charts docs/charts")]
 pub struct Args {
-    /// Folder for the files; it is created if it does not exist
+    /// Output folder; it is created if it does not exist
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Print the list of files as JSON
@@ -43,7 +43,7 @@ pub struct Args {
     robot: RobotFile,
 }
 
-/// A chart and its files, with the field names of `--json`.
+/// A chart and its files; the field names are the JSON keys.
 #[derive(Serialize)]
 struct ChartFiles {
     chart: &'static str,
@@ -58,7 +58,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pose = args.pose.to_pose().unwrap_or_else(|| robot.neutral_pose());
     let solution = robot.lizard().solve(&pose)?;
-    // The charts take seconds to compute. The folder is created first, so that a bad folder fails at once.
+    // The charts take seconds to compute. The folder is created first so that an invalid folder fails at once.
     fs::create_dir_all(&args.folder).map_err(|error| files::write_failure(&args.folder, &error))?;
     let mut pictures = draw_charts(&robot);
     pictures.push(("top-view", draw::draw_top_view(&robot, &solution, true)));

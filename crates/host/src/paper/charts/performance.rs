@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 use svg::node::element::Group;
 
-use crate::shared::ink::{add_title, circle, line, outlined, svg_page, text_start};
+use crate::shared::ink::{add_outline, add_title, circle, line, render_svg, text_start};
 use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
 
 /// Width and height of the page, px.
@@ -13,14 +13,14 @@ const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);
 /// Width and height of each panel, px.
 const PANEL_SIZE: f64 = 340.0;
 
-/// Draws workspace area, radius of the maximum inscribed circle, and mean conditioning index over r1 and r2.
+/// Draws the workspace area, the radius of the maximal inscribed circle and the mean conditioning index over r1 and r2.
 pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
-    let cell_of = |r1: f64, r2: f64| ((r1 / step).round() as i64, (r2 / step).round() as i64);
+    let to_cell = |r1: f64, r2: f64| ((r1 / step).round() as i64, (r2 / step).round() as i64);
     let cells: HashMap<_, _> = points
         .iter()
-        .map(|p| (cell_of(p.proportions.r1, p.proportions.r2), p))
+        .map(|p| (to_cell(p.proportions.r1, p.proportions.r2), p))
         .collect();
-    let point_at = |r1: f64, r2: f64| cells.get(&cell_of(r1, r2)).copied();
+    let find_point = |r1: f64, r2: f64| cells.get(&to_cell(r1, r2)).copied();
     type ValueFn = fn(&ChartPoint) -> Option<f64>;
     let panels: [(&str, ValueFn, f64, usize); 3] = [
         ("workspace area / D²", |p| Some(p.performance.area), 2.5, 2),
@@ -43,7 +43,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         "Performance charts of the five-bar",
         "every design r1 + r2 + r3 = 0.9 (crank, coupler, half base, in units of D); dashed: r3 = 0.1 to 0.4; white: no design; ring: the paper's design",
     );
-    for (i, (name, value_of, max, decimals)) in panels.into_iter().enumerate() {
+    for (i, (name, get_value, max, decimals)) in panels.into_iter().enumerate() {
         let plot = Plot {
             corner: (90.0 + 480.0 * i as f64, 150.0),
             size: (PANEL_SIZE, PANEL_SIZE),
@@ -58,7 +58,7 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         let step_count = (PROPORTION_SUM / step).round() as usize;
         // Cells are centred on the grid points, so the map extends half a cell beyond the axes.
         let map_plot = Plot {
-            corner: plot.page_point(-step / 2.0, PROPORTION_SUM + step / 2.0),
+            corner: plot.to_page_point(-step / 2.0, PROPORTION_SUM + step / 2.0),
             size: (
                 PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
                 PANEL_SIZE * (PROPORTION_SUM + step) / PROPORTION_SUM,
@@ -72,21 +72,21 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
         );
         group = plot.draw_grid(group, &x_axis, &y_axis);
         group = map_plot.draw_map(group, (step_count + 1, step_count + 1), |x, y| {
-            point_at(x, y)
-                .and_then(value_of)
+            find_point(x, y)
+                .and_then(get_value)
                 .map(|value| scale.colour(value))
         });
         for r3 in [0.1, 0.2, 0.3, 0.4] {
             let (start, end) = (
-                plot.page_point(0.0, PROPORTION_SUM - r3),
-                plot.page_point(PROPORTION_SUM - r3, 0.0),
+                plot.to_page_point(0.0, PROPORTION_SUM - r3),
+                plot.to_page_point(PROPORTION_SUM - r3, 0.0),
             );
             group = group.add(line(start, end, "white", 0.8).set("stroke-dasharray", "3 4"));
         }
-        let (x, y) = plot.page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
+        let (x, y) = plot.to_page_point(Proportions::PAPER.r1, Proportions::PAPER.r2);
         group = group
-            .add(outlined(circle((x, y), 7.0, "none"), "white", 5.0))
-            .add(outlined(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
+            .add(add_outline(circle((x, y), 7.0, "none"), "white", 5.0))
+            .add(add_outline(circle((x, y), 7.0, "none"), "#d55e00", 2.5));
         group = plot.draw_axes(group, &x_axis, &y_axis);
         group = group.add(text_start(name, (plot.corner.0, 128.0), 17.0));
         group = scale.draw_key(
@@ -97,5 +97,5 @@ pub fn draw_performance(points: &[ChartPoint], step: f64) -> String {
             decimals,
         );
     }
-    svg_page(PAGE_SIZE, group)
+    render_svg(PAGE_SIZE, group)
 }

@@ -1,8 +1,8 @@
 //! The chart of the workspaces of tail, body and legs, seen from above.
 //!
-//! The paper plots only the head's workspace, and says that the other workspaces can be plotted in the same way.
-//! The tail's workspace mirrors the head's. A slider has no end point, so its middle is plotted. A foot has one degree
-//! of freedom, so its workspace is an arc.
+//! The paper plots only the head's workspace, and claims that the other workspaces can be plotted in the same way. The
+//! tail's workspace mirrors the head's workspace. A slider has no end point, so its middle is plotted. A foot has one
+//! degree of freedom, so its workspace is an arc.
 
 use std::collections::HashSet;
 
@@ -11,7 +11,7 @@ use lizard_robot::Robot;
 use svg::node::element::Group;
 
 use crate::shared::ink::{
-    DARK, GREY, add_title, circle, outlined, rectangle, svg_page, text_start,
+    DARK, GREY, add_outline, add_title, circle, rectangle, render_svg, text_start,
 };
 use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
@@ -21,24 +21,24 @@ const AXES: [Axis<'static>; 2] = [
     Axis::new(40.0, "x, mm to the right of the plate's middle"),
     Axis::new(40.0, "y, mm ahead of it"),
 ];
-/// Half the width of the drawn square, mm.
+/// Half the width of the plotted square, mm.
 const HALF_WIDTH: f64 = 160.0;
-/// Width of a cell of the drawn square, mm.
+/// Width of a cell in the plotted square, mm.
 const CELL_WIDTH: f64 = 2.0;
-/// Range of the servo turns that are tried, deg to either side of neutral.
+/// Largest tested servo turn to either side of neutral, deg.
 const MAX_TURN_DEG: i32 = 80;
-/// Colours of the tail's areas: first the area that the linkage allows, then the area that the guard accepts.
+/// Colours of the tail's areas: the area that the linkage allows, and the area that the guard accepts.
 const TAIL_COLOURS: [&str; 2] = ["#cfe3f1", "#4a9bd0"];
-/// Colours of the sliders' areas: first the area that the linkage allows, then the area that the guard accepts.
+/// Colours of the sliders' areas: the area that the linkage allows, and the area that the guard accepts.
 const SLIDER_COLOURS: [&str; 2] = ["#f9e0cc", "#e08a4a"];
-/// Colour of the arcs on which the guard accepts a foot.
+/// Colour of the arcs where the guard accepts a foot.
 const LEG_COLOUR: &str = "#117733";
 
-/// Indices of cells of the drawn square.
+/// Indices of cells in the plotted square.
 type Cells = HashSet<(i32, i32)>;
 
-/// The cell that contains a point.
-fn cell_of(point: Vector) -> (i32, i32) {
+/// Returns the cell that contains a point.
+fn to_cell(point: Vector) -> (i32, i32) {
     (
         (point.x / CELL_WIDTH).floor() as i32,
         (point.y / CELL_WIDTH).floor() as i32,
@@ -53,14 +53,14 @@ pub fn draw_workspaces(robot: &Robot) -> String {
         x_range: (-HALF_WIDTH, HALF_WIDTH),
         y_range: (-HALF_WIDTH, HALF_WIDTH),
     };
-    let tail_cells = accepted_tail_cells(robot);
-    let linkage_cells = linkage_slider_cells(robot);
-    let slider_cells = accepted_slider_cells(robot);
+    let tail_cells = find_accepted_tail_cells(robot);
+    let linkage_cells = find_linkage_slider_cells(robot);
+    let slider_cells = find_accepted_slider_cells(robot);
     let cell_count = (2.0 * HALF_WIDTH / CELL_WIDTH) as usize;
     let mut group = plot.draw_grid(Group::new(), &AXES[0], &AXES[1]);
     group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
         let point = Vector::new(x, y);
-        let cell = cell_of(point);
+        let cell = to_cell(point);
         let colours = [
             (slider_cells.contains(&cell), SLIDER_COLOURS[1]),
             (tail_cells.contains(&cell), TAIL_COLOURS[1]),
@@ -73,8 +73,8 @@ pub fn draw_workspaces(robot: &Robot) -> String {
             .map(|(_, colour)| colour)
     });
     for servo in 0..4 {
-        let full_circle = foot_positions(robot, servo, (-180..=180).map(f64::from), false);
-        let guarded_arc = foot_positions(
+        let full_circle = compute_foot_positions(robot, servo, (-180..=180).map(f64::from), false);
+        let guarded_arc = compute_foot_positions(
             robot,
             servo,
             (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from),
@@ -87,13 +87,13 @@ pub fn draw_workspaces(robot: &Robot) -> String {
             )
             .add(plot.curve(&guarded_arc, LEG_COLOUR, 4.0))
             .add(
-                plot.curve(&foot_path(robot, servo), DARK, 8.0)
+                plot.curve(&compute_foot_path(robot, servo), DARK, 8.0)
                     .set("stroke-opacity", 0.55),
             );
     }
     for shaft in robot.lizard().shafts() {
-        group = group.add(outlined(
-            circle(plot.page_point(shaft.x, shaft.y), 6.0, "white"),
+        group = group.add(add_outline(
+            circle(plot.to_page_point(shaft.x, shaft.y), 6.0, "white"),
             DARK,
             2.0,
         ));
@@ -105,7 +105,7 @@ pub fn draw_workspaces(robot: &Robot) -> String {
         "Workspaces of tail, body and legs",
         "from above; light: what the links alone allow, dark: what the guard accepts",
     );
-    svg_page(PAGE_SIZE, draw_legend(group))
+    render_svg(PAGE_SIZE, draw_legend(group))
 }
 
 fn draw_legend(mut group: Group) -> Group {
@@ -141,7 +141,7 @@ fn draw_legend(mut group: Group) -> Group {
         "where walk has the foot",
     );
     group
-        .add(outlined(
+        .add(add_outline(
             circle((legend_x + 17.0, 300.0), 6.0, "white"),
             DARK,
             2.0,
@@ -153,54 +153,54 @@ fn draw_legend(mut group: Group) -> Group {
         ))
 }
 
-/// The neutral servo angles plus these turns, deg.
-fn turned_angles(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
+/// Returns the neutral servo angles plus `turns`, deg.
+fn turn_from_neutral(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     let neutral: [f64; 4] = robot.neutral_pose().into();
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
 
-/// The solutions that the guard accepts, for all pairs of turns in steps of 1 degree. `turns` converts a pair into the
-/// turns of all four servos.
-fn accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
+/// Returns the solutions that the guard accepts, for all pairs of turns in steps of 1 degree. `turns` converts a pair
+/// to the turns of all four servos.
+fn find_accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) -> Vec<Solution> {
     let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
     let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
     pairs
-        .filter_map(|(a, b)| robot.solve_if_allowed(turned_angles(robot, turns(a, b))))
+        .filter_map(|(a, b)| robot.solve_if_allowed(turn_from_neutral(robot, turns(a, b))))
         .collect()
 }
 
-/// The cells that the tail's point reaches in poses that the guard accepts.
-fn accepted_tail_cells(robot: &Robot) -> Cells {
-    let solutions = accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
+/// Returns the cells that the tail's point reaches in accepted poses.
+fn find_accepted_tail_cells(robot: &Robot) -> Cells {
+    let solutions = find_accepted_solutions(robot, |a, b| [0.0, 0.0, a, b]);
     solutions
         .iter()
-        .map(|solution| cell_of(solution.tail_point()))
+        .map(|solution| to_cell(solution.tail_point()))
         .collect()
 }
 
-/// The cells that the middles of both sliders reach in poses that the guard accepts. Only mirror-symmetric poses are
-/// tried, because in these poses the guard accepts the widest range of angles.
-fn accepted_slider_cells(robot: &Robot) -> Cells {
-    let solutions = accepted_solutions(robot, |a, b| [a, -a, -b, b]);
+/// Returns the cells that the sliders' middles reach in accepted poses. Only mirror-symmetric poses are tested, because
+/// the guard accepts the widest range of angles there.
+fn find_accepted_slider_cells(robot: &Robot) -> Cells {
+    let solutions = find_accepted_solutions(robot, |a, b| [a, -a, -b, b]);
     let points = solutions.iter().flat_map(|solution| {
         Side::ALL.map(|side| {
             let slider = match side {
                 Side::Left => &solution.left,
                 Side::Right => &solution.right,
             };
-            slider_middle(robot, side, slider.rear_tip, slider.front_tip)
+            compute_slider_middle(robot, side, slider.rear_tip, slider.front_tip)
         })
     });
-    points.map(cell_of).collect()
+    points.map(to_cell).collect()
 }
 
-/// The middle of a slider, from the tips of its arms relative to its rear shaft.
-fn slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip: Vector) -> Vector {
+/// Returns a slider's middle from the tips of its arms, which are relative to its rear shaft.
+fn compute_slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip: Vector) -> Vector {
     robot.lizard().shafts()[side.servos()[1]] + (rear_tip + front_tip) * 0.5
 }
 
-/// The cells that the middles of both sliders reach at all arm angles with the travel within the stroke.
-fn linkage_slider_cells(robot: &Robot) -> Cells {
+/// Returns the cells that the sliders' middles reach at all arm angles with a travel within the stroke.
+fn find_linkage_slider_cells(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
     for side in Side::ALL {
@@ -214,25 +214,28 @@ fn linkage_slider_cells(robot: &Robot) -> Cells {
             let front_tip = shaft + front * slider.front_arm;
             let travel = (front_tip - rear_tip).length() - slider.nominal_length;
             if (limits.stroke_min..=limits.stroke_max).contains(&travel) {
-                cells.insert(cell_of(slider_middle(robot, side, rear_tip, front_tip)));
+                cells.insert(to_cell(compute_slider_middle(
+                    robot, side, rear_tip, front_tip,
+                )));
             }
         }
     }
     cells
 }
 
-/// True if a point, in the chassis frame, is behind the tail's base and within reach of both arms.
+/// True if a point in the chassis frame is behind the tail's base and within reach of both arms.
 fn is_in_tail_workspace(robot: &Robot, point: Vector) -> bool {
     let [left, right] = End::Tail.servos();
     let shafts = robot.lizard().shafts();
     let offset = point - (shafts[left] + shafts[right]) * 0.5;
     let local_point = Vector::new(offset.x, -offset.y);
-    local_point.y >= 0.0 && Workspace::of(&robot.lizard().end(End::Tail)).contains(local_point)
+    local_point.y >= 0.0
+        && Workspace::for_five_bar(&robot.lizard().end(End::Tail)).contains(local_point)
 }
 
-/// The positions of a foot if only its servo turns from neutral. With `is_guarded`, positions that the guard refuses
-/// are omitted.
-fn foot_positions(
+/// Returns a foot's positions if only its servo turns from neutral. If `is_guarded` is true, positions that the guard
+/// refuses are omitted.
+fn compute_foot_positions(
     robot: &Robot,
     servo: usize,
     turns: impl Iterator<Item = f64>,
@@ -241,26 +244,26 @@ fn foot_positions(
     let accepted_position = |turn: f64| {
         let mut turns = [0.0; 4];
         turns[servo] = turn;
-        let angles = turned_angles(robot, turns);
+        let angles = turn_from_neutral(robot, turns);
         let is_accepted = !is_guarded || robot.solve_if_allowed(angles).is_some();
-        is_accepted.then(|| foot_position(robot, servo, angles[servo]))
+        is_accepted.then(|| compute_foot_position(robot, servo, angles[servo]))
     };
     turns.filter_map(accepted_position).collect()
 }
 
-/// The position of a foot with its servo at `angle` (deg), without lag.
-fn foot_position(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
-    let foot = robot.legs()[servo].place_at(angle, angle).foot;
+/// Returns a foot's position with its servo at `angle` (deg), without lag.
+fn compute_foot_position(robot: &Robot, servo: usize, angle: f64) -> (f64, f64) {
+    let foot = robot.legs()[servo].points_at(angle, angle).foot;
     (foot.x, foot.y)
 }
 
-/// The path of a foot in the gait `walk`; empty if the robot does not have that gait.
-fn foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
+/// Returns a foot's path in the gait `walk`; empty if the robot does not have this gait.
+fn compute_foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
     let gait = robot.gait("walk").into_iter();
     let poses = gait.flat_map(|gait| (0..=100).map(move |i| gait.pose(f64::from(i) / 100.0)));
-    let angle_of = |pose: Pose| <[f64; 4]>::from(pose)[servo];
+    let servo_angle = |pose: Pose| <[f64; 4]>::from(pose)[servo];
     poses
-        .map(|pose| foot_position(robot, servo, angle_of(pose)))
+        .map(|pose| compute_foot_position(robot, servo, servo_angle(pose)))
         .collect()
 }
 
@@ -274,9 +277,9 @@ mod tests {
     }
 
     #[test]
-    fn points_that_the_guard_accepts_are_within_reach_of_the_links() {
+    fn accepted_points_are_within_reach_of_the_links() {
         let robot = paper_robot();
-        let solutions = accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
+        let solutions = find_accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(solutions.len() > 300, "{}", solutions.len());
         for solution in solutions {
             assert!(
@@ -284,8 +287,10 @@ mod tests {
                 "{solution:?}"
             );
         }
-        let (accepted_cells, linkage_cells) =
-            (accepted_slider_cells(&robot), linkage_slider_cells(&robot));
+        let (accepted_cells, linkage_cells) = (
+            find_accepted_slider_cells(&robot),
+            find_linkage_slider_cells(&robot),
+        );
         let outside_count = accepted_cells.difference(&linkage_cells).count();
         assert!(
             accepted_cells.len() > 100 && outside_count * 20 < accepted_cells.len(),
@@ -304,8 +309,8 @@ mod tests {
             .filter(|point| is_in_tail_workspace(&robot, *point))
             .count() as f64;
         assert!((area / 7446.3 - 1.0).abs() < 0.01, "{area}");
-        // The middle of a slider is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
-        for (x, y) in linkage_slider_cells(&robot) {
+        // A slider's middle is half the sum of two arms of 30 mm, so it lies in a disc with a radius of 30 mm.
+        for (x, y) in find_linkage_slider_cells(&robot) {
             let (x, y) = (
                 CELL_WIDTH * (f64::from(x) + 0.5),
                 CELL_WIDTH * (f64::from(y) + 0.5),
@@ -314,7 +319,7 @@ mod tests {
             assert!(distance < 30.0 + 2.0 * CELL_WIDTH, "{x} {y}");
         }
         // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
-        for (x, y) in foot_positions(&robot, 0, (-180..=180).map(f64::from), false) {
+        for (x, y) in compute_foot_positions(&robot, 0, (-180..=180).map(f64::from), false) {
             let distance = (x + 35.0).hypot(y - 55.0);
             assert!((distance - 45.0).abs() < 0.01, "{x} {y} {distance}");
         }

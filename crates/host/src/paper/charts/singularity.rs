@@ -1,11 +1,11 @@
-//! The chart of the two head servos' angles, with margins, singular curves, and the paths of the gaits.
+//! The chart of the head servos' angles, with margins, singular curves and the gaits' paths.
 
 use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wrap};
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
 use crate::shared::ink::{
-    DARK, add_title, circle, cross, line, outlined, rectangle, svg_page, text_start,
+    DARK, add_outline, add_title, circle, cross, line, rectangle, render_svg, text_start,
 };
 use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
@@ -13,7 +13,7 @@ use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, dra
 const PAGE_SIZE: (f64, f64) = (1500.0, 860.0);
 /// Range of the angles in the left panel, deg.
 const ANGLE_RANGE: (f64, f64) = (0.0, 180.0);
-/// Colours and dashes of the paths: colours of Okabe and Ito, and other dark colours. Dashes distinguish paths of
+/// Colours and dashes of the paths: colours by Okabe and Ito, and other dark colours. Dashes distinguish paths with
 /// similar colours.
 const PATH_STYLES: [(&str, &str); 10] = [
     ("#000000", ""),
@@ -27,19 +27,19 @@ const PATH_STYLES: [(&str, &str); 10] = [
     ("#332288", ""),
     ("#332288", "7 5"),
 ];
-/// Colour of the curves on which A1's arm is singular.
+/// Colour of the curves where A1's arm is singular.
 const A1_COLOUR: &str = "#882255";
-/// Colour of the curves on which A2's arm is singular.
+/// Colour of the curves where A2's arm is singular.
 const A2_COLOUR: &str = "#b58900";
 
-/// Draws the head's least margin over theta1 and theta4, with the paths of the gaits.
+/// Draws the head's least margin over theta1 and theta4, with the gaits' paths.
 pub fn draw_singularities(robot: &Robot) -> String {
     let scale = ColourScale {
         min: 0.3,
         max: 1.0,
         colours: BLUES,
     };
-    let axes_with_step = |step| {
+    let create_axes = |step| {
         (
             Axis::new(step, "theta1 (A1), deg"),
             Axis::new(step, "theta4 (A2), deg"),
@@ -51,8 +51,8 @@ pub fn draw_singularities(robot: &Robot) -> String {
         x_range: ANGLE_RANGE,
         y_range: ANGLE_RANGE,
     };
-    let paths = gait_paths(robot);
-    let path_square = square_around(&paths);
+    let paths = compute_gait_paths(robot);
+    let path_square = enclose_paths(&paths);
     let right_plot = Plot {
         corner: (800.0, 110.0),
         size: (400.0, 400.0),
@@ -61,14 +61,17 @@ pub fn draw_singularities(robot: &Robot) -> String {
     let mut group = Group::new();
     for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
         group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
-            Some(least_margin(robot, x, y).map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)))
+            Some(
+                compute_least_margin(robot, x, y)
+                    .map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)),
+            )
         });
     }
     group = draw_singular_curves(group, &left_plot, robot);
     // The left panel shows the outline of the right panel.
-    let top_left = left_plot.page_point(path_square.x_range.0, path_square.y_range.1);
-    let bottom_right = left_plot.page_point(path_square.x_range.1, path_square.y_range.0);
-    group = group.add(outlined(
+    let top_left = left_plot.to_page_point(path_square.x_range.0, path_square.y_range.1);
+    let bottom_right = left_plot.to_page_point(path_square.x_range.1, path_square.y_range.0);
+    group = group.add(add_outline(
         rectangle(
             top_left,
             (bottom_right.0 - top_left.0, bottom_right.1 - top_left.1),
@@ -90,16 +93,16 @@ pub fn draw_singularities(robot: &Robot) -> String {
     for (i, (_, path)) in paths.iter().enumerate() {
         if let [(x, y)] = path[..] {
             let dot = circle(
-                right_plot.page_point(x, y),
+                right_plot.to_page_point(x, y),
                 6.0,
                 PATH_STYLES[i % PATH_STYLES.len()].0,
             );
             group = group.add(dot.set("stroke", "white").set("stroke-width", 1.5));
         }
     }
-    let (x_axis, y_axis) = axes_with_step(20.0);
+    let (x_axis, y_axis) = create_axes(20.0);
     group = left_plot.draw_axes(group, &x_axis, &y_axis);
-    let (x_axis, y_axis) = axes_with_step(10.0);
+    let (x_axis, y_axis) = create_axes(10.0);
     group = right_plot.draw_axes(group, &x_axis, &y_axis);
     for (i, (names, path)) in paths.iter().enumerate() {
         let (colour, dashes) = PATH_STYLES[i % PATH_STYLES.len()];
@@ -151,12 +154,12 @@ pub fn draw_singularities(robot: &Robot) -> String {
         "Singularities of the head, and where the gaits go",
         "left: all angles of A1 and A2; right: the marked square with the path of each gait",
     );
-    svg_page(PAGE_SIZE, group)
+    render_svg(PAGE_SIZE, group)
 }
 
-/// The least margin of the head and the front legs, with the tail at neutral. `None` if the pose is impossible, or
-/// violates a limit other than a slider's stroke.
-fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
+/// Returns the least margin of the head and the front legs, with the tail at neutral. `None` if the pose is impossible
+/// or violates a limit other than a slider's stroke.
+fn compute_least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
         theta4,
@@ -178,12 +181,12 @@ fn least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     (!violates_limit).then(|| margins.into_iter().fold(1.0, f64::min))
 }
 
-/// The paths of all gaits in the plane of theta1 and theta4, each with the names of its gaits. A gait and its reverse
-/// have the same path.
-fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
+/// Returns the paths of all gaits in the plane of theta1 and theta4, each with the names of its gaits. A gait and its
+/// reverse have the same path.
+fn compute_gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     let mut paths: Vec<(String, Vec<(f64, f64)>)> = Vec::new();
     for gait in robot.gaits() {
-        let path = gait_path(gait);
+        let path = compute_gait_path(gait);
         let same_path = paths
             .iter_mut()
             .find(|(_, known_path)| are_same_path(known_path, &path));
@@ -198,8 +201,8 @@ fn gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
     paths
 }
 
-/// The path of a gait in the plane of theta1 and theta4; a single point if neither angle changes.
-fn gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
+/// Returns a gait's path in the plane of theta1 and theta4; a single point if neither angle changes.
+fn compute_gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     let angles_at_step = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
@@ -214,7 +217,7 @@ fn gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
     }
 }
 
-/// True if every point of each path is within 0.5 deg of a point of the other.
+/// True if every point of each path is within 0.5 deg of a point of the other path.
 fn are_same_path(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
     let is_near = |point: &(f64, f64), path: &[(f64, f64)]| {
         path.iter()
@@ -224,17 +227,17 @@ fn are_same_path(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
         && second.iter().all(|point| is_near(point, first))
 }
 
-/// A square plot that contains all paths.
-fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
+/// Returns a square plot that contains all paths.
+fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let all_points = || paths.iter().flat_map(|(_, path)| path);
-    let range_of = |coordinate: fn(&(f64, f64)) -> f64| {
+    let compute_range = |coordinate: fn(&(f64, f64)) -> f64| {
         let min_value = all_points().map(coordinate).fold(f64::INFINITY, f64::min);
         let max_value = all_points()
             .map(coordinate)
             .fold(f64::NEG_INFINITY, f64::max);
         ((min_value + max_value) / 2.0, (max_value - min_value) / 2.0)
     };
-    let ((x, half_width), (y, half_height)) = (range_of(|p| p.0), range_of(|p| p.1));
+    let ((x, half_width), (y, half_height)) = (compute_range(|p| p.0), compute_range(|p| p.1));
     let half_size = (half_width.max(half_height) + 5.0).ceil();
     Plot {
         corner: (0.0, 0.0),
@@ -248,7 +251,7 @@ fn square_around(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
 fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
     let five_bar = robot.lizard().end(End::Head);
     group = draw_sweep(group, plot, |theta1| {
-        five_bar.singular_poses_with(theta1).collect()
+        five_bar.find_singular_poses(theta1).collect()
     });
     // A sweep over theta1 has few points on steep curves, so a sweep over theta4 follows. The second sweep uses the
     // mirrored five-bar, in which left and right are exchanged.
@@ -270,13 +273,13 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
             theta_right: theta4,
         };
         mirrored_five_bar
-            .singular_poses_with(180.0 - theta4)
+            .find_singular_poses(180.0 - theta4)
             .map(unmirror)
             .collect()
     });
-    for pose in five_bar.poses_with_coinciding_tips() {
+    for pose in five_bar.find_coinciding_tip_poses() {
         if pose.theta_left >= 0.0 && pose.theta_right >= 0.0 {
-            let position = plot.page_point(pose.theta_left, pose.theta_right);
+            let position = plot.to_page_point(pose.theta_left, pose.theta_right);
             group = group.add(cross(position, 7.0, DARK, 3.0));
         }
     }
@@ -285,7 +288,11 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
 
 /// Sweeps an angle from 0 to 180 deg, and connects each singular pose to the nearest pose of the same kind at the
 /// previous angle, if the two are close.
-fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<SingularPose>) -> Group {
+fn draw_sweep(
+    mut group: Group,
+    plot: &Plot,
+    find_poses: impl Fn(f64) -> Vec<SingularPose>,
+) -> Group {
     const STEP_DEG: f64 = 0.5;
     let is_inside = |pose: &&SingularPose| {
         [pose.theta_left, pose.theta_right]
@@ -297,7 +304,7 @@ fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<Singu
     };
     let mut previous_poses: Vec<SingularPose> = Vec::new();
     for i in 0..=360 {
-        let poses = poses_at(f64::from(i) * STEP_DEG);
+        let poses = find_poses(f64::from(i) * STEP_DEG);
         for pose in poses.iter().filter(is_inside) {
             let nearest = previous_poses
                 .iter()
@@ -312,8 +319,8 @@ fn draw_sweep(mut group: Group, plot: &Plot, poses_at: impl Fn(f64) -> Vec<Singu
                     Singularity::RightArm => A2_COLOUR,
                     Singularity::Couplers => DARK,
                 };
-                let start = plot.page_point(previous_pose.theta_left, previous_pose.theta_right);
-                let end = plot.page_point(pose.theta_left, pose.theta_right);
+                let start = plot.to_page_point(previous_pose.theta_left, previous_pose.theta_right);
+                let end = plot.to_page_point(pose.theta_left, pose.theta_right);
                 group = group.add(line(start, end, colour, 2.5));
             }
         }

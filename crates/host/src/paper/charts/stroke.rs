@@ -1,21 +1,21 @@
-//! The chart of the sliders' travel in each gait.
+//! The chart of slider travel in each gait.
 
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::ink::{Anchor, GREY, add_title, rectangle, svg_page, text, text_start};
+use crate::shared::ink::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 use crate::shared::number::round_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
 const COLUMN_COUNT: usize = 4;
 /// Width and height of a panel, px.
 const PANEL_SIZE: (f64, f64) = (255.0, 150.0);
-/// Distances between the left edges and between the upper edges of neighbouring panels, px.
+/// Horizontal and vertical distance between neighbouring panels, px.
 const PANEL_PITCH: (f64, f64) = (330.0, 240.0);
 const LEFT_COLOUR: &str = "#0072b2";
 const RIGHT_COLOUR: &str = "#d55e00";
 
-/// Draws the travel of both sliders over a cycle of every gait, and the limits.
+/// Draws both sliders' travel over a cycle of every gait, and the limits.
 pub fn draw_stroke(robot: &Robot) -> String {
     let row_count = robot.gaits().len().div_ceil(COLUMN_COUNT);
     let size = (
@@ -56,7 +56,7 @@ pub fn draw_stroke(robot: &Robot) -> String {
         };
         group = draw_panel(group, &plot, robot, gait);
     }
-    svg_page(size, group)
+    render_svg(size, group)
 }
 
 fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) -> Group {
@@ -76,7 +76,7 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         (plot.y_range.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y_range.1),
     ] {
-        let (top_left, bottom_left) = (plot.page_point(0.0, high), plot.page_point(0.0, low));
+        let (top_left, bottom_left) = (plot.to_page_point(0.0, high), plot.to_page_point(0.0, low));
         group = group.add(rectangle(
             top_left,
             (plot.size.0, bottom_left.1 - top_left.1),
@@ -90,16 +90,16 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
             Some((phase, solution.left.s, solution.right.s))
         })
         .collect();
-    let curve_of = |travel_of: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
+    let list_points = |travel: fn(&(f64, f64, f64)) -> f64| -> Vec<(f64, f64)> {
         samples
             .iter()
-            .map(|sample| (sample.0, travel_of(sample)))
+            .map(|sample| (sample.0, travel(sample)))
             .collect()
     };
     group = group
-        .add(plot.curve(&curve_of(|sample| sample.1), LEFT_COLOUR, 2.5))
+        .add(plot.curve(&list_points(|sample| sample.1), LEFT_COLOUR, 2.5))
         .add(
-            plot.curve(&curve_of(|sample| sample.2), RIGHT_COLOUR, 2.5)
+            plot.curve(&list_points(|sample| sample.2), RIGHT_COLOUR, 2.5)
                 .set("stroke-dasharray", "7 4"),
         );
     group = plot.draw_axes(group, &x_axis, &y_axis);

@@ -1,11 +1,11 @@
-//! Charts of the head's workspace, and of the local conditioning index over the workspace.
+//! Charts of the head's workspace and of the local conditioning index in the workspace.
 
 use lizard_kinematics::{Circle, End, Vector, Workspace};
 use lizard_paper::design::{CLAIMED_LCI, Performance, lci};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use crate::shared::ink::{DARK, GREY, add_title, circle, outlined, svg_page, text_start};
+use crate::shared::ink::{DARK, GREY, add_outline, add_title, circle, render_svg, text_start};
 use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
 
 /// Width and height of the page, px.
@@ -19,7 +19,7 @@ const SHAFT_COLOUR: &str = "#0072b2";
 /// Draws the limits of each arm, the workspace between them, the inscribed circle, and the head at neutral.
 pub fn draw_workspace(robot: &Robot) -> String {
     let five_bar = robot.lizard().end(End::Head);
-    let workspace = Workspace::of(&five_bar);
+    let workspace = Workspace::for_five_bar(&five_bar);
     let half_range = (workspace.outer_radius / 20.0).ceil() * 20.0 + 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
@@ -42,7 +42,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
     if let Some(mic) = workspace.inscribed_circle() {
         group = group.add(draw_ring(&plot, mic.centre, mic.radius, CIRCLE_COLOUR, 3.0));
     }
-    for path in look_paths(robot) {
+    for path in compute_look_paths(robot) {
         group = group.add(plot.curve(&path, LOOK_COLOUR, 2.5));
     }
     group = draw_five_bar(group, &plot, robot);
@@ -53,7 +53,7 @@ pub fn draw_workspace(robot: &Robot) -> String {
         "Theoretical workspace of the head",
         "all points that both arms reach; the tail has the same behind",
     );
-    let performance = Performance::of(&five_bar, 32);
+    let performance = Performance::compute(&five_bar, 32);
     let legend_x = 840.0;
     group = draw_legend_entry(group, (legend_x, 120.0), GREY, "5 4", "limits of each arm");
     group = draw_legend_entry(
@@ -80,13 +80,13 @@ pub fn draw_workspace(robot: &Robot) -> String {
     for (i, fact) in facts.iter().enumerate() {
         group = group.add(text_start(fact, (legend_x, 250.0 + 24.0 * i as f64), 16.0));
     }
-    svg_page(PAGE_SIZE, group)
+    render_svg(PAGE_SIZE, group)
 }
 
-/// Draws the local conditioning index over the upper workspace, with outward elbows.
+/// Draws the local conditioning index in the upper workspace, with outward elbows.
 pub fn draw_conditioning(robot: &Robot) -> String {
     let five_bar = robot.lizard().end(End::Head);
-    let workspace = Workspace::of(&five_bar);
+    let workspace = Workspace::for_five_bar(&five_bar);
     let half_range = (workspace.outer_radius / 20.0).ceil() * 20.0;
     let plot = Plot {
         corner: (90.0, 90.0),
@@ -109,7 +109,7 @@ pub fn draw_conditioning(robot: &Robot) -> String {
                 _ => IMPOSSIBLE_COLOUR,
             })
     });
-    let performance = Performance::of(&five_bar, 64);
+    let performance = Performance::compute(&five_bar, 64);
     if let (Some(mic), Some(lci_stats)) = (workspace.inscribed_circle(), performance.lci) {
         let lci_circle = Circle {
             radius: lci_stats.radius_above,
@@ -157,14 +157,14 @@ pub fn draw_conditioning(robot: &Robot) -> String {
         "Local conditioning index of the head",
         "outward elbows, spectral norm; grey: cranks crossed, or behind the base",
     );
-    svg_page((PAGE_SIZE.0, 720.0), group)
+    render_svg((PAGE_SIZE.0, 720.0), group)
 }
 
 /// Draws a circle whose centre and radius are in the plot's units.
 fn draw_ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64) -> Ring {
-    outlined(
+    add_outline(
         circle(
-            plot.page_point(centre.x, centre.y),
+            plot.to_page_point(centre.x, centre.y),
             radius * plot.scale(),
             "none",
         ),
@@ -173,8 +173,8 @@ fn draw_ring(plot: &Plot, centre: Vector, radius: f64, colour: &str, width: f64)
     )
 }
 
-/// The head's path in the gesture `look`; an empty list if the robot does not have this gesture.
-fn look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
+/// Returns the head's path in the gesture `look`; an empty list if the robot does not have this gesture.
+fn compute_look_paths(robot: &Robot) -> Vec<Vec<(f64, f64)>> {
     robot
         .gait("look")
         .into_iter()
@@ -201,8 +201,8 @@ fn draw_five_bar(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         group = group.add(plot.curve(&points, DARK, 4.0));
         for (i, (x, y)) in points.into_iter().enumerate() {
             let fill = if i % 4 == 0 { SHAFT_COLOUR } else { "white" };
-            group = group.add(outlined(
-                circle(plot.page_point(x, y), 6.0, fill),
+            group = group.add(add_outline(
+                circle(plot.to_page_point(x, y), 6.0, fill),
                 DARK,
                 2.0,
             ));

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use lizard_core::numbers::section::{SPACE_BYTES, START_ADDRESS};
+use lizard_core::numbers::section::{REGION_BYTES, START_ADDRESS};
 use lizard_robot::Robot;
-use lizard_upload::{robot_in, robot_label};
+use lizard_upload::{find_robot, format_robot_label};
 use simulated_uno::{Image, LoadError};
 
 use super::CODE_HEX;
-use crate::shared::files::note_input;
+use crate::shared::files::record_input;
 use crate::{Failure, RobotFile};
 
 /// An image to run, and the name of its source.
@@ -39,20 +39,20 @@ impl From<ReadError> for Failure {
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
 pub fn read_image(path: &Path) -> Result<Image, ReadError> {
-    Image::read(note_input(path)).map_err(|error| ReadError {
+    Image::read(record_input(path)).map_err(|error| ReadError {
         path: path.to_owned(),
         error,
     })
 }
 
-/// The reason why an image cannot be run.
+/// An error in the selection of a firmware.
 #[derive(Debug, thiserror::Error)]
 enum FirmwareError {
-    #[error("there is no firmware at {0}; without --elf, the one inside this program is used")]
+    #[error("{0} does not exist; omit --elf to run the built-in firmware")]
     Missing(String),
     #[error(
-        "{} has the robot {elf_robot} in it, and not {robot}, which is {robot_label}; without \
-         --elf, the firmware inside this program runs with any robot",
+        "{} contains the robot {elf_robot}, expected {robot}, which is {robot_label}; omit --elf \
+         to run the built-in firmware with any robot",
         elf.display()
     )]
     OtherRobot {
@@ -69,8 +69,8 @@ impl From<FirmwareError> for Failure {
     }
 }
 
-/// Returns the firmware to run for a robot: the given file, which must contain this robot, or the code inside this
-/// program followed by this robot. `robot_file` is the robot's source.
+/// Returns the firmware for a robot: the file `elf`, which must contain this robot, or the built-in code followed by
+/// this robot. `robot_file` is the robot's source.
 ///
 /// An image without a robot's section is accepted, because a simulated UNO can run any program.
 ///
@@ -90,13 +90,13 @@ pub(crate) fn select_firmware(
         return Err(FirmwareError::Missing(elf.display().to_string()).into());
     }
     let image = read_image(elf)?;
-    if let Some(robot_in_image) = robot_in(&image.flash())
+    if let Some(robot_in_image) = find_robot(&image.flash())
         && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
             robot: robot_file.name()?,
-            elf_robot: robot_label(&robot_in_image),
-            robot_label: robot_label(robot.firmware()),
+            elf_robot: format_robot_label(&robot_in_image),
+            robot_label: format_robot_label(robot.firmware()),
             elf: elf.to_owned(),
         }
         .into());
@@ -105,8 +105,8 @@ pub(crate) fn select_firmware(
     Ok(Firmware { name, image })
 }
 
-/// Size of the code in an image with this robot, bytes, without the erased flash up to the section.
-pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
+/// Returns the size of the code in an image with this robot, bytes, without the erased flash up to the section.
+pub(crate) fn count_code_bytes(image: &Image, robot: &Robot) -> u32 {
     let code_end = image
         .symbol("__code_end")
         .map(|code_end| code_end.address as u32);
@@ -114,7 +114,7 @@ pub(crate) fn code_bytes(image: &Image, robot: &Robot) -> u32 {
     code_end.unwrap_or_else(|| image.flash_used() - robot.section().len() as u32)
 }
 
-/// The code inside this program followed by this robot.
+/// Returns the built-in code followed by this robot.
 ///
 /// # Panics
 /// Never: a test parses this code, and the image has room for a robot's section.
@@ -124,7 +124,7 @@ pub fn built_in_image(robot: &Robot) -> Image {
     image
 }
 
-/// Changes this robot's routines in the image so that they do not wait for contacts; see
+/// Replaces the robot's routines in the image by routines that do not wait for contacts; see
 /// [`Robot::without_contacts`].
 ///
 /// # Panics
@@ -134,14 +134,14 @@ pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
     image
 }
 
-/// Reads the program of an ELF or HEX file and replaces the file's robot by this robot. A program without a robot
+/// Reads the program of an ELF or HEX file and replaces the file's robot by `robot`. A program without a robot
 /// stays unchanged.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or is not a program for an AVR.
 pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, ReadError> {
     let mut image = read_image(path)?;
-    if robot_in(&image.flash()).is_some() {
+    if find_robot(&image.flash()).is_some() {
         replace_robot(&mut image, robot).map_err(|error| ReadError {
             path: path.to_owned(),
             error,
@@ -150,8 +150,8 @@ pub fn read_with_robot(path: &Path, robot: &Robot) -> Result<Image, ReadError> {
     Ok(image)
 }
 
-/// Replaces the robot's section of an image.
+/// Replaces the robot's section in an image.
 fn replace_robot(image: &mut Image, robot: &Robot) -> Result<(), LoadError> {
     let start = u32::from(START_ADDRESS);
-    image.replace(start..start + u32::from(SPACE_BYTES), &robot.section())
+    image.replace(start..start + u32::from(REGION_BYTES), &robot.section())
 }

@@ -1,4 +1,4 @@
-//! The exactness of the servo pulses: errors of their widths and periods in cycles.
+//! The exactness of the servo pulses: errors of widths and periods in cycles.
 
 use simulated_uno::most_pins_high;
 
@@ -11,20 +11,20 @@ use crate::simulate::sim::frame::{FRAME_CYCLES, first_cycle, group_frames};
 /// The errors of the pulses' widths and periods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exactness {
-    /// Smallest and largest value of a measured width minus its command, cycles; `None` if the commands are not known,
+    /// Smallest and largest difference between a width and its command, cycles; `None` if the commands are not known
     /// because the firmware was built from different source code.
     pub width_error_range: Option<[i64; 2]>,
     /// Largest deviation of a servo's pulse period from 20 ms, cycles.
     pub max_period_error: u64,
     /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
-    /// The greatest common divisor of all changes of a width, cycles; `None` if the widths do not change.
+    /// The greatest common divisor of all width changes, cycles; `None` if the widths do not change.
     pub width_step: Option<u64>,
 }
 
 impl Exactness {
-    /// Measures all pulses that the firmware of `robot` has sent so far. The first `command_bytes` bytes that the board
-    /// received must contain all commands that determine the pulses.
+    /// Measures all pulses that the board has sent so far. The first `command_bytes` bytes that the board received must
+    /// contain all commands that determine the pulses.
     ///
     /// # Errors
     /// Fails if the board has sent no pulse.
@@ -77,20 +77,20 @@ impl Exactness {
         })
     }
 
-    /// Peak-to-peak error of the widths, cycles; `None` if the commands are not known.
+    /// Returns the peak-to-peak error of the widths, cycles; `None` if the commands are not known.
     pub fn jitter(&self) -> Option<u64> {
         self.width_error_range
             .map(|[min_error, max_error]| max_error.abs_diff(min_error))
     }
 
-    /// Largest deviation of a width from its command, cycles; `None` if the commands are not known.
+    /// Returns the largest deviation of a width from its command, cycles; `None` if the commands are not known.
     pub fn max_width_error(&self) -> Option<u64> {
         self.width_error_range
             .map(|[min_error, max_error]| min_error.unsigned_abs().max(max_error.unsigned_abs()))
     }
 }
 
-/// The greatest common divisor.
+/// Computes the greatest common divisor.
 fn gcd(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -1,11 +1,11 @@
-//! Prints the table of figures and budgets as text.
+//! Prints the table of measurements and budgets as text.
 
 use std::io::{self, Write};
 
 use super::budget::{Bound, Row, SERVO_LIBRARY};
 use crate::shared::number::format_grouped;
 
-/// Prints a row for each figure, then notes about the measured `gait` and the missing figures.
+/// Prints a row for each measurement, then notes about the measured `gait` and missing values.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -46,15 +46,15 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
     }
     let gait_note = match gait {
         Some(gait) => format!("The gait is {gait}."),
-        None => "-: not measured, this robot has no gait that moves.".to_owned(),
+        None => "-: not measured, because this robot has no moving gait.".to_owned(),
     };
     if rows
         .iter()
-        .any(|row| row.what == "width less command, worst" && row.measured.is_none())
+        .any(|row| row.what == "width minus command, worst" && row.measured.is_none())
     {
         writeln!(
             out,
-            "\nThis firmware was not built from the same source and robot.toml as this program: \
+            "\nThis firmware was not built from the same source and robot.toml as this program; \
              its widths were not compared."
         )?;
     }
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_figure_over_its_budget_is_marked() {
+    fn value_over_its_budget_is_marked() {
         let row = Row {
             what: "flash",
             unit: "bytes",

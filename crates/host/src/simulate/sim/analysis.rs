@@ -1,4 +1,4 @@
-//! Servo angles read back from the pulses of frames, and the figures computed from them.
+//! Servo angles computed from the pulses of frames, and the results computed from these angles.
 
 use std::collections::HashMap;
 
@@ -17,17 +17,17 @@ use crate::shared::ink::pin_name;
 pub struct ServoFrame {
     /// Seconds since power-on.
     pub seconds: f64,
-    /// Servo angles in degrees, chassis frame; `None` while the robot rests.
+    /// Servo angles in the chassis frame, degrees; `None` while the robot rests.
     pub angles: Option<[f64; 4]>,
-    /// Servo sweeps from neutral in degrees, foot forward positive; `None` while the robot rests.
+    /// Servo sweeps from neutral, degrees, positive for a foot forward; `None` while the robot rests.
     #[serde(skip)]
     pub sweeps: Option<[f64; 4]>,
 }
 
-/// The pulses of one servo.
+/// The pulses of one servo; the field names are the JSON keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ServoReport {
-    /// Name of the servo, `A1` to `A4`.
+    /// The servo's name, `A1` to `A4`.
     pub servo: &'static str,
     /// The servo's leg: L or R for the side, then F for front or H for hind.
     pub leg: &'static str,
@@ -47,14 +47,14 @@ pub struct ServoReport {
     pub slew: f64,
 }
 
-/// The smallest margin of a run, and its time.
+/// The smallest margin in a run, and its time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SmallestMargin {
-    /// The name of the margin.
+    /// The margin's name.
     pub margin: String,
-    /// The value of the margin.
+    /// The margin's value.
     pub value: f64,
-    /// Seconds from power-on to the frame with this margin.
+    /// Seconds from power-on to the frame with the margin.
     pub seconds: f64,
 }
 
@@ -71,7 +71,7 @@ pub struct Safety {
     pub first_violation: Option<String>,
 }
 
-/// The robot's path during one command, by the contact model.
+/// The robot's displacement during one command, according to the contact model; the field names are the JSON keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CommandPath {
     /// The command in effect.
@@ -80,17 +80,17 @@ pub struct CommandPath {
     pub from: f64,
     /// End of the command, seconds since power-on.
     pub to: f64,
-    /// Distance forward from the start of the path, mm; `None` if the contact model does not determine it, because two
-    /// feet balance the other two (a tie).
+    /// Displacement forward, mm; `None` if the contact model cannot determine it because two feet balance the other two
+    /// (a tie).
     pub forward: Option<f64>,
-    /// Distance to the left from the start of the path, mm; `None` if a tie leaves it undetermined.
+    /// Displacement to the left, mm; `None` if a tie leaves it undetermined.
     pub left: Option<f64>,
     /// Turn counter-clockwise, deg; `None` if a tie leaves it undetermined.
     pub turn: Option<f64>,
 }
 
 impl ServoFrame {
-    /// The frame that starts `seconds` after power-on, with these pulse widths in cycles.
+    /// Creates the frame that starts `seconds` after power-on from its pulse widths, cycles.
     fn from_widths(robot: &Robot, seconds: f64, widths: Option<[u64; 4]>) -> Self {
         let to_us = |width: u64| width as f64 / CYCLES_PER_US as f64;
         let offsets = widths.map(|widths| -> [f64; 4] {
@@ -106,26 +106,28 @@ impl ServoFrame {
     }
 }
 
-/// The servo angles of each frame, computed from its pulse widths.
-pub fn servo_frames_of(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
-    let seconds_of = |frame: &Frame| frame.start as f64 / FREQUENCY as f64;
+/// Computes the servo angles of each frame from its pulse widths.
+pub fn compute_servo_frames(robot: &Robot, frames: &[Frame]) -> Vec<ServoFrame> {
     frames
         .iter()
-        .map(|frame| ServoFrame::from_widths(robot, seconds_of(frame), frame.all_widths()))
+        .map(|frame| {
+            let seconds = frame.start as f64 / FREQUENCY as f64;
+            ServoFrame::from_widths(robot, seconds, frame.all_widths())
+        })
         .collect()
 }
 
-/// The frames of a run, and the robot whose servos received them.
+/// The frames of a run, and the robot that received them.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
-    /// The robot whose servos received the frames.
+    /// The robot that received the frames.
     pub robot: &'a Robot,
-    /// The frames of the run.
+    /// The run's frames.
     pub log: &'a FrameLog,
 }
 
 impl<'a> Run<'a> {
-    /// The servo angles of the frames whose numbers are in `range`, in order.
+    /// Returns the servo angles of the frames with indices in `range`, in order.
     pub fn servo_frames_in(
         self,
         range: std::ops::Range<usize>,
@@ -138,7 +140,7 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// The servo angles of all frames, in order.
+    /// Returns the servo angles of all frames, in order.
     pub fn servo_frames(self) -> impl Iterator<Item = ServoFrame> + Clone + 'a {
         self.servo_frames_in(0..self.log.widths.len())
     }
@@ -150,9 +152,12 @@ impl Serialize for Run<'_> {
     }
 }
 
-/// Computes the report of each servo. `commanded_widths` are the widths in cycles that the firmware's core requested in
+/// Computes each servo's report. `commanded_widths` are the widths in cycles that the firmware's core requested in
 /// each frame, 0 for no pulse.
-pub fn servo_reports(run: Run<'_>, commanded_widths: Option<&[[u16; 4]]>) -> Vec<ServoReport> {
+pub fn compute_servo_reports(
+    run: Run<'_>,
+    commanded_widths: Option<&[[u16; 4]]>,
+) -> Vec<ServoReport> {
     let frames = &run.log.widths;
     let mut max_turns_per_frame = [0.0f64; 4];
     let mut previous_angles = None;
@@ -165,7 +170,7 @@ pub fn servo_reports(run: Run<'_>, commanded_widths: Option<&[[u16; 4]]>) -> Vec
         }
         previous_angles = angles;
     }
-    let report_of = |i: usize| {
+    let compute_report = |i: usize| {
         let widths = || frames.iter().map(move |frame| frame[i]).filter(|w| *w > 0);
         let to_us = |width: Option<u16>| f64::from(width.unwrap_or(0)) / CYCLES_PER_US as f64;
         let width_error = commanded_widths.map(|commanded_widths| {
@@ -185,10 +190,10 @@ pub fn servo_reports(run: Run<'_>, commanded_widths: Option<&[[u16; 4]]>) -> Vec
             slew: max_turns_per_frame[i] * FREQUENCY as f64 / FRAME_CYCLES as f64,
         }
     };
-    (0..4).map(report_of).collect()
+    (0..4).map(compute_report).collect()
 }
 
-/// Solves every pose of the run, and collects the smallest margin, the stroke and the violations.
+/// Solves every pose of the run and collects the smallest margin, the stroke and the violations.
 pub fn check_safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
         least: None,
@@ -216,7 +221,7 @@ pub fn check_safety(run: Run<'_>) -> Safety {
 }
 
 impl Safety {
-    /// Adds a pose; returns the reason if the pose is infeasible or violates a limit.
+    /// Adds a pose; returns the violation if the pose is infeasible or violates a limit.
     fn add_pose(&mut self, robot: &Robot, angles: [f64; 4], seconds: f64) -> Option<String> {
         let solution = match robot.lizard().solve(&angles.into()) {
             Err(infeasible) => return Some(infeasible.to_string()),
@@ -238,10 +243,10 @@ impl Safety {
     }
 }
 
-/// Computes the path during each command by the contact model; the last entry is the path of the complete run. Legs
-/// count as rigid here, so that a pair of frames that repeats is computed only once; in `lizard twin` legs lag. Feet
-/// are never lifted: see [`lizard_robot::Ground`].
-pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
+/// Computes the displacement during each command with the contact model; the last entry is the complete run. Legs are
+/// rigid here, so that repeated pairs of frames are computed only once; in `lizard twin`, legs lag. Feet are never
+/// lifted; see [`lizard_robot::Ground`].
+pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut travel_cache = TravelCache {
         run,
         travels: HashMap::new(),
@@ -252,23 +257,23 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut paths = Vec::with_capacity(spans.len() + 1);
     for span in spans {
         let mut travel = NO_TRAVEL;
-        for index in run.log.index_at(span.from)..run.log.index_at(span.to) {
-            let frame_travel = travel_cache.travel_from(index);
+        for index in run.log.index_at(span.start_s)..run.log.index_at(span.end_s) {
+            let frame_travel = travel_cache.compute_travel(index);
             travel = compose_travel(travel, frame_travel);
             total = compose_travel(total, frame_travel);
         }
         let are_determined = *determined_by_command
             .entry(span.command.as_str())
-            .or_insert_with(|| determined_components(run.robot, &span.command));
+            .or_insert_with(|| find_determined_components(run.robot, &span.command));
         are_all_determined = std::array::from_fn(|i| are_all_determined[i] && are_determined[i]);
         paths.push(CommandPath::new(
             &span.command,
-            [span.from, span.to],
+            [span.start_s, span.end_s],
             travel,
             are_determined,
         ));
     }
-    let end = spans.last().map_or(0.0, |span| span.to);
+    let end = spans.last().map_or(0.0, |span| span.end_s);
     paths.push(CommandPath::new(
         "all",
         [0.0, end],
@@ -278,10 +283,10 @@ pub fn command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     paths
 }
 
-/// True for each component of a command's path (forward, left, turn) that the contact model determines. A component
-/// of a gait's path that depends on a tie is not determined.
-fn determined_components(robot: &Robot, command: &str) -> [bool; 3] {
-    robot.gait_of_line(command).map_or([true; 3], |gait| {
+/// Returns true for each component of a command's path (forward, left, turn) that the contact model determines. A
+/// component that depends on a tie is not determined.
+fn find_determined_components(robot: &Robot, command: &str) -> [bool; 3] {
+    robot.find_gait_in_line(command).map_or([true; 3], |gait| {
         let prediction = robot.predict(gait);
         [prediction.forward, prediction.left, prediction.turn].map(|component| component.is_some())
     })
@@ -308,10 +313,10 @@ const NO_TRAVEL: Travel = Travel {
     turn: 0.0,
 };
 
-/// Pulse widths of a frame and of the next frame, cycles.
+/// Pulse widths of a frame and the next frame, cycles.
 type WidthPair = [[u16; 4]; 2];
 
-/// The movements of the robot from one frame to the next, computed on demand and cached, because a gait repeats its
+/// The robot's displacements from one frame to the next, computed on demand and cached, because a gait repeats its
 /// frames.
 struct TravelCache<'a> {
     run: Run<'a>,
@@ -319,9 +324,9 @@ struct TravelCache<'a> {
 }
 
 impl TravelCache<'_> {
-    /// The movement from frame number `index` to the next; zero while the robot rests, and for the last frame.
-    fn travel_from(&mut self, index: usize) -> Travel {
-        /// Largest number of pairs of frames in the cache, which then takes a few megabytes.
+    /// Computes the displacement from frame `index` to the next; zero while the robot rests, and for the last frame.
+    fn compute_travel(&mut self, index: usize) -> Travel {
+        /// Largest number of frame pairs in the cache, a few megabytes.
         const MAX_CACHED_PAIRS: usize = 100_000;
         let frames = &self.run.log.widths;
         let Some(next) = frames.get(index + 1) else {
@@ -343,7 +348,7 @@ impl TravelCache<'_> {
     }
 }
 
-/// Composes two movements; the second one is relative to the end of the first.
+/// Composes two displacements; `second` is relative to the end of `first`.
 fn compose_travel(first: Travel, second: Travel) -> Travel {
     let (sin, cos) = first.turn.to_radians().sin_cos();
     Travel {

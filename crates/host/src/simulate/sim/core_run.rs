@@ -1,12 +1,12 @@
 //! Runs the firmware's core on this machine, for comparison with the simulated chip.
 //!
-//! The core is plain integer Rust, so with the same bytes received before the same ticks it must compute exactly the
+//! The core is plain integer Rust. If it receives the same bytes before the same ticks, it must compute exactly the
 //! same widths here as on the AVR. The pulses at the pins are compared with these widths: a difference is a bug in the
-//! compiler, in the board's code or in the code that makes the pulses.
+//! compiler, in the board's code or in the code for the pulses.
 //!
-//! The time at which main reads a received byte has to be reconstructed. Main reads a byte when the UNO has received it
+//! The time when main reads a received byte must be reconstructed. Main reads a byte when the UNO has received it
 //! completely and the transmit buffer has room for the longest answer; the free room follows from the length of the
-//! text written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed, and take no time
+//! text written so far. Main also waits while it writes the EEPROM; these waits are not reconstructed and take no time
 //! here.
 
 use lizard_core::console::MAX_OUTPUT_LINE_BYTES;
@@ -20,13 +20,13 @@ use super::supplies;
 
 /// Cycles that the UNO takes to send a byte: 10 bits of 17 * 8 cycles.
 const CYCLES_PER_BYTE: u64 = 1360;
-/// Bytes that main can write before it has to wait: 255 in the ring buffer and two in the transmitter.
+/// Bytes that main can write before it must wait: 255 in the ring buffer and two in the transmitter.
 const SERIAL_CAPACITY_BYTES: u64 = 255 + 2;
 /// Largest number of queued bytes that leaves room for the longest answer.
 const MAX_QUEUED_BYTES: u64 = SERIAL_CAPACITY_BYTES - MAX_OUTPUT_LINE_BYTES as u64;
-/// Cycles that the AVR takes to compute a frame, approximately.
+/// Approximate cycles for the computation of a frame on the AVR.
 const FRAME_COMPUTE_CYCLES: u64 = 8_000;
-/// The most cycles that the AVR takes to read the end of a line and to act on it.
+/// Most cycles for reading the end of a line and executing the line on the AVR.
 const MAX_READING_CYCLES: u64 = 3_000;
 /// Largest number of frames from power-on to A1's first pulse.
 const MAX_FRAMES_TO_WAKE: usize = 500;
@@ -50,13 +50,13 @@ impl CoreRun {
         }
     }
 
-    /// Runs the main loop from this cycle on, until it has nothing left to do.
+    /// Runs the main loop from `cycle` until it has nothing left to do.
     fn wake(&mut self, cycle: u64) {
         self.running_robot.board.transmitter.set_cycle(cycle);
         self.running_robot.settle();
     }
 
-    /// Runs a control tick at this cycle, and returns the pulse widths of the frame that it starts, cycles.
+    /// Runs a control tick at `cycle` and returns the pulse widths of its frame, cycles.
     fn tick(&mut self, cycle: u64) -> [u16; 4] {
         self.wake(cycle);
         self.running_robot.board.tick();
@@ -72,8 +72,8 @@ impl CoreRun {
         widths
     }
 
-    /// The cycle at which waiting lines are written and waiting bytes are read; `None` if nothing waits.
-    fn next_wake_cycle(&self) -> Option<u64> {
+    /// Returns the cycle for writing waiting lines and reading waiting bytes; `None` if nothing waits.
+    fn compute_next_wake_cycle(&self) -> Option<u64> {
         let board = &self.running_robot.board;
         let is_waiting = board.unread_count() > 0 || self.running_robot.has_output();
         is_waiting.then(|| {
@@ -85,18 +85,18 @@ impl CoreRun {
     }
 }
 
-/// The pulse widths that the core has computed, and the text that it has written.
+/// The core's pulse widths and text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CoreOutput {
-    /// Widths in cycles, 0 for no pulse, of each frame from A1's first pulse on.
+    /// Widths of each frame from A1's first pulse, cycles; 0 for no pulse.
     pub widths: Vec<[u16; 4]>,
-    /// The text written to the serial line, in which the counters `late` and `rx_lost` are always 0.
+    /// The text written to the serial line; its counters `late` and `rx_lost` are always 0.
     pub text: String,
 }
 
-/// Runs the core of a robot on a recording: `received` are the bytes that reached the UNO, `first_pulse_cycle` is the
-/// cycle of A1's first pulse, and `frame_count` is the number of frames from that pulse on. The result is exact except
-/// for the effect of the [`undecided_lines`].
+/// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `first_pulse_cycle` is the cycle
+/// of A1's first pulse, and `frame_count` is the number of frames from this pulse on. The result is exact except for
+/// the effects of the lines that [`find_undecided_lines`] returns.
 pub fn play(
     robot: Robot<'static>,
     received: &[SerialByte],
@@ -106,7 +106,7 @@ pub fn play(
     play_with_contacts(robot, received, &[], first_pulse_cycle, frame_count)
 }
 
-/// Runs the core of a robot like [`play`], but with contacts that close and open.
+/// Runs a robot's core like [`play`], but with contacts that close and open.
 pub fn play_with_contacts(
     robot: Robot<'static>,
     received: &[SerialByte],
@@ -115,17 +115,17 @@ pub fn play_with_contacts(
     frame_count: usize,
 ) -> CoreOutput {
     let mut contacts = contacts.iter().peekable();
-    let silent_count = frames_before_waking(robot);
+    let silent_count = count_frames_before_waking(robot);
     let mut run = CoreRun::new(robot);
     let mut received = received.iter().peekable();
     let mut widths = Vec::with_capacity(frame_count);
     for frame_index in 0..silent_count + frame_count {
         let start = first_pulse_cycle + frame_index as u64 * FRAME_CYCLES;
-        // A control tick is one slot before the first pulse of the frame that it starts.
+        // A control tick comes one slot before the first pulse of its frame.
         let tick_cycle = start.saturating_sub(silent_count as u64 * FRAME_CYCLES + SLOT_CYCLES);
         loop {
             let next_wake_cycle = run
-                .next_wake_cycle()
+                .compute_next_wake_cycle()
                 .filter(|next_wake_cycle| *next_wake_cycle < tick_cycle);
             let is_due = |byte: &&SerialByte| {
                 byte.cycle < tick_cycle
@@ -160,9 +160,9 @@ pub fn play_with_contacts(
     }
 }
 
-/// Indices of the received lines that end so shortly before a control tick that a few cycles decide whether main reads
-/// them before the tick.
-pub fn undecided_lines(
+/// Returns the indices of received lines that end so shortly before a control tick that main may read them before or
+/// after the tick.
+pub fn find_undecided_lines(
     received: &[SerialByte],
     first_pulse_cycle: u64,
 ) -> impl Iterator<Item = usize> {
@@ -175,8 +175,8 @@ pub fn undecided_lines(
         .filter_map(|(line, cycles_left)| (cycles_left < MAX_READING_CYCLES).then_some(line))
 }
 
-/// Number of frames before A1's first pulse if no command arrives.
-fn frames_before_waking(robot: Robot<'static>) -> usize {
+/// Counts the frames before A1's first pulse if no command arrives.
+fn count_frames_before_waking(robot: Robot<'static>) -> usize {
     let mut run = CoreRun::new(robot);
     (0..MAX_FRAMES_TO_WAKE)
         .take_while(|_| run.tick(0)[0] == 0)

@@ -5,11 +5,11 @@ use std::io::{self, Write};
 use super::session::{DialogueLine, Sender};
 use crate::shared::plain::escape_controls;
 
-/// Number of lines printed of each run of consecutive `# t=` lines; the others are only counted.
+/// Number of printed lines in each run of consecutive `# t=` lines; the remaining lines are only counted.
 const MAX_SHOWN_LINES: usize = 3;
 
-/// Prints the lines of a dialogue. A run of consecutive `# t=` lines, which `watch` causes, is shortened to its first
-/// three lines and the number of the others, unless `shows_all` is true.
+/// Prints the lines of a dialogue. A run of consecutive `# t=` lines, which `watch` causes, is shortened to three lines
+/// and the number of further lines, unless `shows_all` is true.
 #[derive(Debug)]
 pub struct Printer {
     /// True if runs of `# t=` lines are printed completely.
@@ -19,7 +19,7 @@ pub struct Printer {
 }
 
 impl Printer {
-    /// A printer that prints all lines, or shortens runs of `# t=` lines.
+    /// Creates a printer that prints all lines, or shortens runs of `# t=` lines.
     pub fn new(shows_all: bool) -> Self {
         Self {
             shows_all,
@@ -54,7 +54,7 @@ impl Printer {
         out.flush()
     }
 
-    /// Ends a run of `# t=` lines: prints the number of its lines that were left out, if any.
+    /// Ends a run of `# t=` lines: prints the number of omitted lines, if any.
     ///
     /// # Errors
     /// Fails if writing fails.
@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn long_runs_of_watch_lines_are_shortened_and_every_other_line_is_printed() {
+    fn only_long_runs_of_watch_lines_are_shortened() {
         let watch_lines = [(Sender::Robot, "# t=1 pose=1,2,3,4"); 5];
         let mut lines = vec![(Sender::User, "watch 1"), (Sender::Robot, "ok watch 1")];
         lines.extend(watch_lines);

@@ -1,11 +1,11 @@
-//! The movement of each foot. A foot is never lifted, so only the direction of its movement matters.
+//! The movement of each foot. A foot is never lifted, so only its direction of movement matters.
 
 use simulated_uno::FREQUENCY;
 
 use super::analysis::ServoFrame;
 use super::frame::FRAME_CYCLES;
 
-/// Angular rate of a leg, deg/s, below which its foot counts as still. A motion that starts or ends as a cubic or
+/// Highest angular rate of a leg whose foot counts as still, deg/s. A motion that starts or ends as a cubic or
 /// smoothstep function passes this rate within a frame.
 const MAX_STILL_RATE: f64 = 4.0;
 
@@ -20,19 +20,19 @@ pub enum Phase {
     Still,
 }
 
-/// A time span in which a foot keeps the same kind of movement.
+/// A time span with one kind of movement of a foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FootSpan {
     /// The kind of movement.
     pub phase: Phase,
-    /// The start of the time span, s since power-on.
-    pub from: f64,
-    /// The end of the time span, s since power-on.
-    pub to: f64,
+    /// Start of the time span, s since power-on.
+    pub start_s: f64,
+    /// End of the time span, s since power-on.
+    pub end_s: f64,
 }
 
-/// Lists the movements of a servo's foot in order of time, without a span while the servo rests.
-pub fn foot_spans(
+/// Lists the movements of a servo's foot in order of time; there is no span while the servo rests.
+pub fn list_foot_spans(
     servo_frames: impl Iterator<Item = ServoFrame> + Clone,
     servo: usize,
 ) -> Vec<FootSpan> {
@@ -50,12 +50,18 @@ pub fn foot_spans(
         } else {
             Phase::Stance
         };
-        let (from, to) = (current.seconds, next.seconds);
+        let (start_s, end_s) = (current.seconds, next.seconds);
         match spans.last_mut() {
-            Some(last_span) if last_span.phase == phase && from - last_span.to < frame_s / 2.0 => {
-                last_span.to = to
+            Some(last_span)
+                if last_span.phase == phase && start_s - last_span.end_s < frame_s / 2.0 =>
+            {
+                last_span.end_s = end_s
             }
-            _ => spans.push(FootSpan { phase, from, to }),
+            _ => spans.push(FootSpan {
+                phase,
+                start_s,
+                end_s,
+            }),
         }
     }
     spans
@@ -66,8 +72,8 @@ mod tests {
     use super::*;
     use lizard_robot::servo::FORWARD_TURN_SIGN;
 
-    /// Five seconds of a gait, then a second of rest.
-    fn gait_frames(gait: &str) -> Vec<ServoFrame> {
+    /// Creates five seconds of a gait and a second of rest.
+    fn create_gait_frames(gait: &str) -> Vec<ServoFrame> {
         let robot = crate::shared::robot_file::built_in_robot("paper");
         let gait = robot.gait(gait).expect("the gait is in robot.toml");
         let neutral: [f64; 4] = robot.neutral_pose().into();
@@ -75,62 +81,62 @@ mod tests {
             .map(|n| f64::from(n) / 50.0)
             .map(|seconds| {
                 let angles = (seconds < 5.0).then(|| gait.angles(gait.phase_at(seconds)));
-                let sweep_of =
+                let to_sweep =
                     |angles: [f64; 4], i: usize| (angles[i] - neutral[i]) * FORWARD_TURN_SIGN[i];
                 ServoFrame {
                     seconds,
                     angles,
-                    sweeps: angles.map(|angles| std::array::from_fn(|i| sweep_of(angles, i))),
+                    sweeps: angles.map(|angles| std::array::from_fn(|i| to_sweep(angles, i))),
                 }
             })
             .collect()
     }
 
-    /// The movement of a servo's foot at a time of [`gait_frames`]; `None` while the robot rests.
-    fn phase_at(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
-        let spans = foot_spans(gait_frames(gait).into_iter(), servo);
+    /// Returns the movement of a servo's foot at a time in [`create_gait_frames`]; `None` while the robot rests.
+    fn find_phase(gait: &str, servo: usize, seconds: f64) -> Option<Phase> {
+        let spans = list_foot_spans(create_gait_frames(gait).into_iter(), servo);
         let span = spans
             .iter()
-            .find(|span| (span.from..span.to).contains(&seconds));
+            .find(|span| (span.start_s..span.end_s).contains(&seconds));
         span.map(|span| span.phase)
     }
 
     #[test]
-    fn in_walk_every_foot_is_in_stance_three_quarters_of_the_time_and_in_swing_the_rest() {
+    fn feet_in_walk_are_in_stance_for_three_quarters_of_the_cycle() {
         for servo in 0..4 {
-            let spans = foot_spans(gait_frames("walk").into_iter(), servo);
-            let seconds_in = |phase| {
+            let spans = list_foot_spans(create_gait_frames("walk").into_iter(), servo);
+            let sum_seconds = |phase| {
                 let phase_spans = spans.iter().filter(move |span| span.phase == phase);
                 phase_spans
-                    .map(|span| span.to.min(4.0) - span.from.max(1.0))
+                    .map(|span| span.end_s.min(4.0) - span.start_s.max(1.0))
                     .filter(|seconds| *seconds > 0.0)
                     .sum::<f64>()
             };
-            // In these three cycles a foot is still only where it reverses.
+            // In these three cycles, a foot is still only where it reverses.
             assert!(
-                (seconds_in(Phase::Stance) - 2.25).abs() < 0.13,
+                (sum_seconds(Phase::Stance) - 2.25).abs() < 0.13,
                 "{}",
-                seconds_in(Phase::Stance)
+                sum_seconds(Phase::Stance)
             );
             assert!(
-                (seconds_in(Phase::Swing) - 0.75).abs() < 0.13,
+                (sum_seconds(Phase::Swing) - 0.75).abs() < 0.13,
                 "{}",
-                seconds_in(Phase::Swing)
+                sum_seconds(Phase::Swing)
             );
         }
     }
 
     #[test]
     fn turning_left_moves_the_left_feet_forward_and_the_right_feet_back() {
-        // In the first fifth of `left` all legs make their stroke together.
-        let phases = [0, 1, 2, 3].map(|servo| phase_at("left", servo, 1.1));
+        // In the first fifth of `left`, all legs make their stroke together.
+        let phases = [0, 1, 2, 3].map(|servo| find_phase("left", servo, 1.1));
         let [left, right] = [Some(Phase::Swing), Some(Phase::Stance)];
         assert_eq!(phases, [left, right, right, left]);
     }
 
     #[test]
-    fn a_standing_foot_is_still_and_a_resting_foot_has_no_phase() {
-        assert_eq!(phase_at("stand", 0, 2.0), Some(Phase::Still));
-        assert_eq!(phase_at("walk", 0, 5.5), None);
+    fn standing_foot_is_still_and_resting_foot_has_no_phase() {
+        assert_eq!(find_phase("stand", 0, 2.0), Some(Phase::Still));
+        assert_eq!(find_phase("walk", 0, 5.5), None);
     }
 }

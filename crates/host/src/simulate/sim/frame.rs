@@ -3,32 +3,32 @@
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, Edge, Pin, pulses};
 
-/// Cycles of a frame of 20 ms.
+/// Length of a frame, 20 ms, in cycles.
 pub const FRAME_CYCLES: u64 = 20 * CYCLES_PER_MS;
 
-/// Cycles from one servo's pulse to the next servo's pulse. A pulse that starts up to half a slot before the start of
-/// a frame still belongs to that frame.
+/// Cycles from one servo's pulse to the next servo's pulse. A pulse that starts up to half a slot before a frame still
+/// belongs to the frame.
 pub(super) const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 
 /// The servo pulses of one frame, in servo order A1, A2, A3, A4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Frame {
-    /// Cycle at which A1's pulse should start.
+    /// Nominal start cycle of A1's pulse.
     pub start: u64,
-    /// Cycle at which each servo's pulse starts; `None` without a pulse.
+    /// Start cycle of each servo's pulse; `None` without a pulse.
     pub starts: [Option<u64>; 4],
-    /// Width of each servo's pulse in cycles of 62.5 ns; `None` without a pulse.
+    /// Width of each servo's pulse, cycles of 62.5 ns; `None` without a pulse.
     pub widths: [Option<u64>; 4],
 }
 
 impl Frame {
-    /// The four widths; `None` unless all four servos have a pulse.
+    /// Returns the four widths; `None` unless all four servos have a pulse.
     pub fn all_widths(&self) -> Option<[u64; 4]> {
         let [a1, a2, a3, a4] = self.widths;
         Some([a1?, a2?, a3?, a4?])
     }
 
-    /// The four widths in cycles.
+    /// Returns the four widths in cycles.
     ///
     /// # Panics
     /// Panics if a servo has no pulse in this frame.
@@ -43,19 +43,19 @@ impl Frame {
     }
 }
 
-/// The pins of the robot's servos A1, A2, A3, A4.
+/// Returns the pins of the robot's servos A1, A2, A3, A4.
 pub fn servo_pins(robot: &Robot) -> [Pin; 4] {
     robot.servos().map(|servo| Pin::arduino(servo.pin))
 }
 
-/// The first cycle that belongs to the frame that starts at cycle `start`: half a slot earlier, so that a pulse that
-/// starts a little early is not assigned to the previous frame.
+/// Returns the first cycle that belongs to the frame with the nominal start cycle `start`: half a slot earlier, so that
+/// a slightly early pulse is not assigned to the previous frame.
 pub fn first_cycle(start: u64) -> u64 {
     start.saturating_sub(SLOT_CYCLES / 2)
 }
 
-/// Start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle `anchor` and every
-/// 20 ms after it.
+/// Returns the start of the first frame whose [`first_cycle`] is `current_cycle` or later. Frames start at cycle
+/// `anchor` and every 20 ms thereafter.
 pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
     anchor
         + (current_cycle + SLOT_CYCLES / 2)
@@ -64,7 +64,7 @@ pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
             * FRAME_CYCLES
 }
 
-/// Cycle of the last rising edge of A1, the first of `pins`; `None` without one.
+/// Returns the cycle of the last rising edge of A1, the first of `pins`; `None` without such an edge.
 pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
     edges
         .iter()
@@ -73,7 +73,7 @@ pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
         .map(|edge| edge.cycle)
 }
 
-/// Groups the pulses of these edges into the `count` frames from cycle `start` on.
+/// Groups the pulses in `edges` into the `count` frames from cycle `start` on.
 pub fn group_frames(edges: &[Edge], pins: [Pin; 4], start: u64, count: u64) -> Vec<Frame> {
     let empty_frame = |n| Frame {
         start: start + n * FRAME_CYCLES,
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pulse_that_starts_a_little_early_belongs_to_the_next_frame() {
+    fn slightly_early_pulse_belongs_to_the_next_frame() {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse_edges(start, 24_000, PINS[0]));
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn the_next_frame_is_the_first_whose_first_cycle_is_not_past() {
+    fn next_start_returns_the_first_frame_that_has_not_begun() {
         assert_eq!(next_start(500, 0), 500 + FRAME_CYCLES);
         assert_eq!(next_start(1_000_000, 0), 1_000_000);
         let next = next_start(1_000_000, 1_000_000);

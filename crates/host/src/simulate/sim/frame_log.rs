@@ -1,29 +1,30 @@
-//! The log of all frames of a run. A frame takes eight bytes, so that even a simulated day fits into memory.
+//! The log of all frames in a run. A frame takes eight bytes, so that even a simulated day fits into memory.
 
 use simulated_uno::{Edge, FREQUENCY, Pin};
 
 use super::frame::{FRAME_CYCLES, first_cycle};
 
-/// The pulses of every frame from A1's first pulse on.
+/// The pulses of every frame from A1's first pulse.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct FrameLog {
-    /// Cycle at which the first frame's A1 pulse starts.
+    /// Start cycle of A1's pulse in the first frame.
     pub first_start: u64,
     /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse, 65535 for a longer pulse.
     pub widths: Vec<[u16; 4]>,
-    /// For each servo, the largest deviation of the distance between two successive pulses from 20 ms, cycles.
+    /// Each servo's largest deviation of a pulse period from 20 ms, cycles.
     pub max_period_error: [u64; 4],
     /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
 }
 
 impl FrameLog {
-    /// Seconds from power-on to the start of the frame at `index`.
+    /// Returns the seconds from power-on to the start of the frame at `index`.
     pub fn seconds_at(&self, index: usize) -> f64 {
         (self.first_start + index as u64 * FRAME_CYCLES) as f64 / FREQUENCY as f64
     }
 
-    /// Index of the first frame that starts `seconds` after power-on or later; the number of all frames if none does.
+    /// Returns the index of the first frame at `seconds` after power-on or later; the number of frames if there is
+    /// none.
     pub fn index_at(&self, seconds: f64) -> usize {
         let offset_cycles = seconds * FREQUENCY as f64 - self.first_start as f64;
         let index = (offset_cycles / FRAME_CYCLES as f64).ceil().max(0.0) as usize;
@@ -31,7 +32,7 @@ impl FrameLog {
     }
 }
 
-/// Builds a [`FrameLog`] from edges, which may arrive in any number of batches.
+/// Builds a [`FrameLog`] from edges that arrive in any number of batches.
 #[derive(Debug)]
 pub struct FrameReader {
     pins: [Pin; 4],
@@ -45,7 +46,7 @@ pub struct FrameReader {
 }
 
 impl FrameReader {
-    /// Creates a reader for the pulses of `pins`, those of the servos A1 to A4, with memory reserved for `frame_count`
+    /// Creates a reader for the pulses of `pins`, the pins of the servos A1 to A4, with memory for `frame_count`
     /// frames.
     pub fn new(pins: [Pin; 4], frame_count: usize) -> Self {
         Self {
@@ -82,7 +83,7 @@ impl FrameReader {
         }
     }
 
-    /// Adds a pulse to the log. Ignores a pulse before A1's first one.
+    /// Adds a pulse to the log. Ignores pulses before A1's first pulse.
     fn record_pulse(&mut self, servo: usize, start: u64, width: u64) {
         let Some(offset_cycles) = start.checked_sub(first_cycle(self.log.first_start)) else {
             return;
@@ -104,7 +105,7 @@ impl FrameReader {
         }
     }
 
-    /// Returns the log, cut or extended to the frames that are complete at `cycle`.
+    /// Returns the log, truncated or extended to the frames that are complete at `cycle`.
     pub fn finish(mut self, cycle: u64) -> FrameLog {
         let frame_count = if self.has_started {
             (cycle - first_cycle(self.log.first_start)) / FRAME_CYCLES
@@ -131,7 +132,7 @@ mod tests {
         })
     }
 
-    /// Reads the edges in two batches, split at index `split_index`.
+    /// Reads the edges in two batches, split at `split_index`.
     fn read_in_two_batches(edges: &[Edge], split_index: usize, cycle: u64) -> FrameLog {
         let mut reader = FrameReader::new(PINS, 0);
         reader.read(edges[..split_index].to_vec());
@@ -140,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_log_does_not_depend_on_where_the_edges_are_split() {
+    fn log_does_not_depend_on_the_batches() {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse_edges(PINS[3], 500_000, 20_000)); // before A1's first pulse
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn overlapping_pulses_are_high_at_once_and_touching_pulses_are_not() {
+    fn only_overlapping_pulses_count_as_high_at_once() {
         let most_pins_high = |second_start: u64| {
             let mut edges = Vec::from(pulse_edges(PINS[0], 1_000_000, 100));
             edges.extend(pulse_edges(PINS[1], second_start, 100));
@@ -179,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn a_frame_is_found_by_its_start_time() {
+    fn index_at_finds_frames_by_start_time() {
         let log = FrameLog {
             first_start: FREQUENCY,
             widths: vec![[0; 4]; 50],

@@ -5,20 +5,20 @@ use simulated_uno::SerialByte;
 /// A line that the firmware has sent.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Line {
-    /// The cycle at which the line ended.
+    /// The cycle of the line end.
     pub cycle: u64,
     /// The text without the line end.
     pub text: String,
 }
 
 impl Line {
-    /// True if this is the line that answers a command, not an information line (`# ...`).
+    /// True if the line answers a command; false for an information line (`# ...`).
     pub fn is_answer(&self) -> bool {
         !self.text.starts_with('#')
     }
 }
 
-/// Assembles lines, and keeps the beginning of a line until its end arrives.
+/// Assembles lines and keeps a partial line until its end arrives.
 #[derive(Debug, Default)]
 pub struct LineReader {
     partial_line: String,

@@ -1,5 +1,5 @@
-//! `lizard sim`: runs the real firmware on a simulated UNO, and reports its output, the pulses of its servos, and
-//! how far the robot would walk.
+//! `lizard sim`: runs the real firmware on a simulated UNO, and reports its output, the servo pulses, and the predicted
+//! displacement.
 
 pub mod analysis;
 pub mod core_run;
@@ -29,8 +29,8 @@ use simulated_uno::{FREQUENCY, Fidelity, State, Uno};
 use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
-use crate::shared::progress::{Spinner, progress_bar};
-use crate::shared::suggestion::suggestion_text;
+use crate::shared::progress::{Spinner, create_progress_bar};
+use crate::shared::suggestion::format_suggestion;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 use analysis::Run;
@@ -42,14 +42,12 @@ use session::{DialogueLine, Event, Recording};
 
 /// Run the firmware on a simulated Arduino UNO
 ///
-/// By default it plays boot, the first gait that moves, the gait that turns most, stop
-/// and rest. It prints the dialogue, a table of the servos and the predicted distance,
-/// and draws servo angles and footfalls. Time is simulated: ten minutes take a few
-/// seconds.
+/// By default, plays boot, the first moving gait, the gait that turns most, stop and rest.
+/// Prints the dialogue, a table of the servos and the predicted displacement, and draws
+/// servo angles and footfalls. Time is simulated: ten minutes take a few seconds.
 #[derive(clap::Args, Debug)]
 pub struct Args {
-    /// The firmware: an ELF that has this robot in it [default: the one inside this
-    /// program]
+    /// The firmware, an ELF that contains this robot [default: the built-in firmware]
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
     /// Play one gait of robot.toml
@@ -61,7 +59,7 @@ pub struct Args {
     /// Simulated time in seconds [default: 12, or a second after the script]
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     duration: Option<f64>,
-    /// Press a robot's input for 0.2 s, or from a time to another, in seconds since power-on:
+    /// Press a robot's input for 0.2 s, or for a time span, in seconds since power-on:
     /// `button@2`, `nose@5.5-8`; may be repeated
     #[arg(long, value_name = "NAME@SECONDS")]
     press: Vec<Press>,
@@ -71,30 +69,30 @@ pub struct Args {
     /// Print everything as one JSON object, including the angles of each frame
     #[arg(long)]
     json: bool,
-    /// The file for the picture
+    /// Output file for the picture
     #[arg(long, value_name = "FILE", default_value = "out/lizard-sim.svg")]
     svg: PathBuf,
-    /// The fidelity of the simulated chip
+    /// Fidelity of the simulated chip
     #[arg(long, value_enum, default_value_t)]
     fidelity: FidelityArg,
-    /// Act as a board on USB instead: in real time at a pseudo terminal that other
-    /// programs can open, until Ctrl-C. LINK becomes a link to it
+    /// Simulate a board on USB instead: in real time at a pseudo terminal that other
+    /// programs can open, until Ctrl-C. LINK becomes a symbolic link to it
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "LINK", num_args = 0..=1,
           conflicts_with_all = ["gait", "script", "duration", "all", "json", "svg"])]
     pty: Option<Option<PathBuf>>,
-    /// With --pty: a new board, with this boot loader in flash (ELF) and no firmware, so
-    /// that `make flash` can write it
+    /// With --pty: a new board with this boot loader (ELF) and no firmware, so that `make
+    /// flash` can write it
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "FILE", requires = "pty", conflicts_with = "elf")]
     boot_loader: Option<PathBuf>,
-    /// With --pty: behind a radio module of this rate, in baud, such as 9600: packets of 20
-    /// bytes that come late, get lost, or are cut; no reset when the port is opened
+    /// With --pty: connect through a radio module with this baud rate, such as 9600: packets of
+    /// 20 bytes are delayed, lost, or cut; opening the port does not reset the board
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "BAUD", requires = "pty", conflicts_with = "boot_loader",
           value_parser = clap::value_parser!(u32).range(300..=1_000_000))]
     radio: Option<u32>,
-    /// With --radio: the seed of its random numbers; the same seed, the same air
+    /// With --radio: the seed of the random numbers; the same seed gives the same transmission
     #[cfg(target_os = "linux")]
     #[arg(long, value_name = "N", requires = "radio", default_value_t = 0)]
     seed: u64,
@@ -105,21 +103,21 @@ pub struct Args {
 /// The fidelity of the simulated chip, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum FidelityArg {
-    /// Corrected by the ATmega328P's data sheet
+    /// Corrected according to the ATmega328P's data sheet
     #[default]
     DataSheet,
-    /// simavr 1.6 as it is
+    /// simavr 1.6, unchanged
     Stock,
 }
 
 /// Longest run, s: a day.
 const MAX_SECONDS: f64 = 86_400.0;
 
-/// Parses a time in seconds, which must be above 0 and at most [`MAX_SECONDS`].
+/// Parses a time in seconds, which must be greater than 0 and at most [`MAX_SECONDS`].
 fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= MAX_SECONDS => Ok(value),
-        Ok(_) => Err(format!("it must be above 0 and at most {MAX_SECONDS}")),
+        Ok(_) => Err(format!("must be greater than 0 and at most {MAX_SECONDS}")),
         Err(_) => Err("it is not a number".to_owned()),
     }
 }
@@ -127,7 +125,7 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a firmware that is missing or has another robot, an unknown gait or input, an
+/// Fails for an invalid robot.toml, a firmware that is missing or contains another robot, an unknown gait or input, an
 /// invalid script, a firmware that crashes, or a file that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {
@@ -135,7 +133,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         FidelityArg::Stock => Fidelity::Stock,
     };
     let robot = args.robot.load()?;
-    let contacts = press::contact_changes(&args.press, &robot)?;
+    let contacts = press::list_contact_changes(&args.press, &robot)?;
     #[cfg(target_os = "linux")]
     if let Some(link) = &args.pty {
         let mut uno = match &args.boot_loader {
@@ -167,9 +165,9 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut dialogue_lines = Vec::new();
     let recording = record(&mut uno, &robot, &script, &args, &mut dialogue_lines)?;
 
-    let spinner = Spinner::new("looking at every frame");
-    let spans = spans::command_spans(&script, &recording.answers);
-    let commanded_widths = core_widths(&robot, &recording, &script.contacts);
+    let spinner = Spinner::new("analysing every frame");
+    let spans = spans::list_command_spans(&script, &recording.answers);
+    let commanded_widths = compute_core_widths(&robot, &recording, &script.contacts);
     let (robot, log) = (&robot, &recording.frames);
     let run = Run { robot, log };
     let picture = timeline::draw(run, &spans, &timeline::SIMULATED_CAPTION);
@@ -182,16 +180,16 @@ pub fn run(args: Args) -> Result<(), Failure> {
         },
         seconds: recording.cycles as f64 / FREQUENCY as f64,
         wall_seconds: recording.wall_time.as_secs_f64(),
-        servos: analysis::servo_reports(run, commanded_widths.as_deref()),
+        servos: analysis::compute_servo_reports(run, commanded_widths.as_deref()),
         safety: analysis::check_safety(run),
-        way: analysis::command_paths(run, &spans),
+        way: analysis::compute_command_paths(run, &spans),
         most_pins_high: log.most_pins_high,
-        asleep_percent: 100.0 * uno.asleep_cycles() as f64 / uno.cycle().max(1) as f64,
-        flash: firmware::code_bytes(uno.image(), robot) + robot.section().len() as u32,
+        asleep_percent: 100.0 * uno.sleep_cycles() as f64 / uno.cycle().max(1) as f64,
+        flash: firmware::count_code_bytes(uno.image(), robot) + robot.section().len() as u32,
         ram: Ram::measure(&uno),
         overruns: uno.overruns(),
         resets: uno.watchdog_resets(),
-        ended: end_message(&recording.state),
+        ended: describe_end(&recording.state),
         svg: Some(args.svg.display().to_string()),
         dialogue: dialogue_lines,
         frames: run,
@@ -209,7 +207,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-/// Plays the script. The dialogue is printed as it happens; with `--json` it is collected in `dialogue_lines` instead.
+/// Plays the script. Prints the dialogue as it happens; with `--json`, collects it in `dialogue_lines` instead.
 fn record(
     uno: &mut Uno,
     robot: &Robot,
@@ -217,7 +215,7 @@ fn record(
     args: &Args,
     dialogue_lines: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
-    let time_bar = time_progress_bar(script.end_ms);
+    let time_bar = create_time_bar(script.end_ms);
     let mut printer = Printer::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
@@ -237,9 +235,9 @@ fn record(
     Ok(recording)
 }
 
-/// The pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the firmware's banner
-/// shows that it was built from the same core and tables as this program.
-fn core_widths(
+/// Computes the pulse widths, in cycles, that the firmware's core requests in each frame; `None` unless the firmware's
+/// banner shows that the firmware and this program have the same core and tables.
+fn compute_core_widths(
     robot: &Robot,
     recording: &Recording,
     contacts: &[ContactChange],
@@ -256,13 +254,13 @@ fn core_widths(
     is_same_source.then_some(output.widths)
 }
 
-/// The message about the state in which the firmware ended.
-fn end_message(state: &State) -> String {
+/// Describes the final state of the firmware.
+fn describe_end(state: &State) -> String {
     match state {
         State::Alive => "the firmware is alive".to_owned(),
         State::Halted => "the firmware sleeps with interrupts off, forever".to_owned(),
         State::Crashed { pc, message } => {
-            // simavr's message for an unknown reason.
+            // simavr uses this message for an unknown reason.
             let reason = match message.as_str() {
                 "avr_sadly_crashed" => "no such instruction or address",
                 known_reason => known_reason,
@@ -273,7 +271,7 @@ fn end_message(state: &State) -> String {
     }
 }
 
-/// The script that the command-line options ask for.
+/// Returns the script that the command-line options select.
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     let duration_ms = args.duration.map(|seconds| (seconds * 1000.0) as u64);
     if let Some(path) = &args.script {
@@ -288,20 +286,20 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     {
         let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
         return Err(Failure::Input(format!(
-            "robot.toml has no gait `{gait}`; it has {}{}",
+            "robot.toml has no gait `{gait}`; allowed values: {}{}",
             names.join(", "),
-            suggestion_text(gait, names)
+            format_suggestion(gait, names)
         )));
     }
     let ms = duration_ms.unwrap_or(12_000);
-    if ms < Script::SHORTEST_MS {
-        let min_s = Script::SHORTEST_MS / 1000;
+    if ms < Script::MIN_MS {
+        let min_s = Script::MIN_MS / 1000;
         return Err(Failure::Input(format!(
             "--duration must be at least {min_s} s without --script"
         )));
     }
     Ok(args.gait.as_deref().map_or_else(
-        || Script::from_gaits(&tour::demonstration_gaits(robot), ms),
+        || Script::from_gaits(&tour::choose_demonstration_gaits(robot), ms),
         |gait| Script::from_gaits(&[gait], ms),
     ))
 }
@@ -313,9 +311,9 @@ pub(crate) fn read_script(path: &Path) -> Result<Script, Failure> {
     Script::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))
 }
 
-/// A progress bar of the simulated time.
-pub(crate) fn time_progress_bar(end_ms: u64) -> ProgressBar {
-    progress_bar(
+/// Creates a progress bar for the simulated time.
+pub(crate) fn create_time_bar(end_ms: u64) -> ProgressBar {
+    create_progress_bar(
         end_ms as usize,
         "{bar:40} {pos}/{len} ms simulated, {elapsed}",
     )

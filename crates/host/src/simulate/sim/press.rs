@@ -1,4 +1,4 @@
-//! Presses of a robot's inputs, which are contacts, at given times.
+//! Timed presses of a robot's inputs, which are contacts.
 
 use std::str::FromStr;
 
@@ -7,21 +7,21 @@ use simulated_uno::{Pin, Uno};
 
 use crate::Failure;
 
-/// The duration of a press whose end is not given, ms.
+/// Duration of a press without a given end, ms.
 const DEFAULT_PRESS_MS: u64 = 200;
 
-/// A press of an input: its contact is closed for some time. Written as `button@2` or `nose@5.5-8`.
+/// A press of an input, which closes its contact for some time; written as `button@2` or `nose@5.5-8`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Press {
     /// Name of the input in robot.toml.
     input: String,
     /// Time at which the contact closes, ms since power-on.
-    from_ms: u64,
+    start_ms: u64,
     /// Time at which the contact opens, ms since power-on.
-    to_ms: u64,
+    end_ms: u64,
 }
 
-/// A change of a contact, which closes or opens.
+/// The closing or opening of a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ContactChange {
     /// Milliseconds since power-on.
@@ -43,30 +43,33 @@ impl FromStr for Press {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let invalid_form = || "it is not NAME@SECONDS or NAME@FROM-TO".to_owned();
+        let invalid_form = || "expected NAME@SECONDS or NAME@START-END".to_owned();
         let (input, times) = text.split_once('@').ok_or_else(invalid_form)?;
         let parse_ms = |text| super::parse_seconds(text).map(|seconds| (1_000.0 * seconds) as u64);
-        let (from_ms, to_ms) = match times.split_once('-') {
-            Some((from, to)) => (parse_ms(from)?, parse_ms(to)?),
+        let (start_ms, end_ms) = match times.split_once('-') {
+            Some((start, end)) => (parse_ms(start)?, parse_ms(end)?),
             None => (parse_ms(times)?, parse_ms(times)? + DEFAULT_PRESS_MS),
         };
-        if to_ms <= from_ms {
-            return Err("it ends before it begins".to_owned());
+        if end_ms <= start_ms {
+            return Err("the end must be after the start".to_owned());
         }
         let input = input.to_owned();
         Ok(Self {
             input,
-            from_ms,
-            to_ms,
+            start_ms,
+            end_ms,
         })
     }
 }
 
-/// The changes of a robot's contacts, in order of time.
+/// Lists the changes of a robot's contacts in order of time.
 ///
 /// # Errors
 /// Fails if the robot does not have the input of a press.
-pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactChange>, Failure> {
+pub fn list_contact_changes(
+    presses: &[Press],
+    robot: &Robot,
+) -> Result<Vec<ContactChange>, Failure> {
     let mut changes = Vec::new();
     for press in presses {
         let mut inputs = robot.inputs().named_pins();
@@ -75,10 +78,10 @@ pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactCh
             let message = format!("robot.toml has no [input.{name}] for --press");
             return Err(Failure::Input(message));
         };
-        let change_at = |ms, is_closed| ContactChange { ms, pin, is_closed };
+        let new_change = |ms, is_closed| ContactChange { ms, pin, is_closed };
         changes.extend([
-            change_at(press.from_ms, true),
-            change_at(press.to_ms, false),
+            new_change(press.start_ms, true),
+            new_change(press.end_ms, false),
         ]);
     }
     changes.sort_by_key(|change| (change.ms, change.is_closed));
@@ -89,23 +92,23 @@ pub fn contact_changes(presses: &[Press], robot: &Robot) -> Result<Vec<ContactCh
 mod tests {
     use super::*;
 
-    fn press(input: &str, from_ms: u64, to_ms: u64) -> Press {
+    fn press(input: &str, start_ms: u64, end_ms: u64) -> Press {
         let input = input.to_owned();
         Press {
             input,
-            from_ms,
-            to_ms,
+            start_ms,
+            end_ms,
         }
     }
 
     #[test]
-    fn a_press_is_a_name_and_a_time_or_a_time_span() {
+    fn press_is_parsed_from_a_name_and_a_time_or_time_span() {
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
         for (invalid_text, reason) in [
-            ("button", "it is not NAME@SECONDS or NAME@FROM-TO"),
+            ("button", "expected NAME@SECONDS or NAME@START-END"),
             ("button@soon", "it is not a number"),
-            ("button@3-2", "it ends before it begins"),
+            ("button@3-2", "the end must be after the start"),
             ("button@-1-2", "it is not a number"),
         ] {
             assert_eq!(

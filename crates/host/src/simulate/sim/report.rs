@@ -10,10 +10,10 @@ use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
 use crate::shared::number::round_decimals;
 
-/// All results of a run.
+/// All results of a run; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
-    /// The name of the firmware.
+    /// The firmware's name.
     pub elf: String,
     /// The fidelity of the simulated chip: `data-sheet` or `stock`.
     pub fidelity: &'static str,
@@ -23,28 +23,29 @@ pub struct Report<'a> {
     pub wall_seconds: f64,
     /// The console's dialogue.
     pub dialogue: Vec<DialogueLine>,
-    /// The pulses of each servo.
+    /// The servos' pulses.
     pub servos: Vec<ServoReport>,
-    /// The smallest margin, the stroke and the violations over all poses of the run.
+    /// The smallest margin, the stroke and the violations over all poses.
     pub safety: Safety,
-    /// The predicted path of each command; the last entry is the complete run.
+    /// The predicted displacement during each command; the last entry is the complete run.
     pub way: Vec<CommandPath>,
     /// Largest number of servo pins that are high at the same time.
     pub most_pins_high: u32,
-    /// Share of all cycles in which the CPU was asleep, percent.
+    /// Cycles in which the CPU was asleep, percent.
     pub asleep_percent: f64,
-    /// Bytes of flash of the firmware.
+    /// Flash size of the firmware, bytes.
     pub flash: u32,
-    /// The RAM in use; `None` for an image that is not an ELF, because it does not state where the data ends.
+    /// The RAM in use; `None` for an image that is not an ELF, because such an image does not contain the end of the
+    /// data.
     #[serde(flatten)]
     pub ram: Option<Ram>,
-    /// Number of received bytes that were lost because the firmware read them too late.
+    /// Number of received bytes lost because the firmware read them too late.
     pub overruns: u64,
     /// The number of watchdog resets.
     pub resets: u64,
-    /// The state in which the firmware ended, as a message.
+    /// The firmware's final state, as a message.
     pub ended: String,
-    /// The file of the picture.
+    /// The picture's file.
     pub svg: Option<String>,
     /// The servo angles of every frame.
     pub frames: Run<'a>,
@@ -122,7 +123,7 @@ impl Report<'_> {
         if self.frames.robot.drive().can_lag() {
             writeln!(
                 out,
-                "Here the legs follow their servos exactly; `lizard twin` lets them lag."
+                "Here the legs follow their servos exactly; in `lizard twin` they lag."
             )?;
         }
         let is_undetermined =
@@ -149,12 +150,12 @@ impl Report<'_> {
             let frame_count = self.safety.violations;
             writeln!(
                 out,
-                "{frame_count} frames break a limit of robot.toml, the first: {reason}"
+                "{frame_count} frames violate a limit of robot.toml; first violation: {reason}"
             )?;
         }
         let ram_text = self.ram.as_ref().map_or_else(String::new, |ram| {
             let (spare, data) = (ram.stack_spare, ram.static_ram);
-            format!("static RAM {data} B, stack {spare} B from it, ")
+            format!("static RAM {data} B, {spare} B free below the stack, ")
         });
         writeln!(
             out,
@@ -173,7 +174,7 @@ impl Report<'_> {
     }
 }
 
-/// The RAM that a program uses.
+/// A program's RAM use.
 #[derive(Debug, Serialize)]
 pub struct Ram {
     /// Bytes of static data.
@@ -183,7 +184,7 @@ pub struct Ram {
 }
 
 impl Ram {
-    /// Measures the RAM of a UNO's program; `None` if the image does not state where its data ends.
+    /// Measures the RAM of a UNO's program; `None` if the image does not contain the end of its data.
     pub fn measure(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();
         (static_ram > 0).then(|| Self {

@@ -1,10 +1,10 @@
-//! A script: commands for the robot, each with the time at which it is sent.
+//! A script: timed commands for the robot.
 
-use lizard_robot::command_of;
+use lizard_robot::to_command;
 
 use super::press::ContactChange;
 
-/// A command and the time at which it is sent.
+/// A command and its time.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Step {
     /// Milliseconds since power-on.
@@ -24,48 +24,48 @@ pub struct Script {
     pub end_ms: u64,
 }
 
-/// The error in an invalid line of a script. Lines are counted from 1.
+/// An error in a line of a script. Line numbers start at 1.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ScriptError {
     /// The line does not begin with a time.
-    #[error("line {0}: it begins with `{1}`, not with a time in whole milliseconds")]
+    #[error("line {0}: expected a time in whole milliseconds, got `{1}`")]
     NoTime(usize, String),
     /// No command follows the time.
-    #[error("line {0}: no command follows the time")]
+    #[error("line {0}: the command after the time is missing")]
     NoCommand(usize),
-    /// The line's time is before that of the previous command.
-    #[error("line {line}: {ms} ms comes before the {previous_ms} ms of the command above")]
+    /// The line's time is before the previous command's time.
+    #[error("line {line}: {ms} ms is before the previous command's {previous_ms} ms")]
     OutOfOrder {
-        /// The number of the line.
+        /// The line number.
         line: usize,
-        /// The time of this line, ms.
+        /// The line's time, ms.
         ms: u64,
-        /// The time of the previous command, ms.
+        /// The previous command's time, ms.
         previous_ms: u64,
     },
 }
 
-/// Time for which the robot stands before the first command of a built-in script, ms.
+/// Standing time before the first command of a built-in script, ms.
 const STAND_MS: u64 = 1000;
 /// Time for `stop`, `status` and `rest` at the end of a built-in script, ms.
 const CLOSING_MS: u64 = 2000;
 
 impl Script {
-    /// Shortest length that a built-in script may have, ms.
-    pub const SHORTEST_MS: u64 = STAND_MS + CLOSING_MS + 1000;
+    /// Shortest allowed length of a built-in script, ms.
+    pub const MIN_MS: u64 = STAND_MS + CLOSING_MS + 1000;
 
-    /// A script of `ms` milliseconds, which must be at least [`Self::SHORTEST_MS`]: a second of standing, then the
-    /// gaits one after the other, `stop`, `status` and `rest`.
+    /// Creates a script of `ms` milliseconds, at least [`Self::MIN_MS`]: a second of standing, then the gaits one after
+    /// another, `stop`, `status` and `rest`.
     pub fn from_gaits(gaits: &[&str], ms: u64) -> Self {
         let gaits_ms = ms - STAND_MS - CLOSING_MS;
         // The last gait gets four parts of the time, and each earlier gait gets five.
-        let start_of = |index: usize| {
+        let compute_start = |index: usize| {
             STAND_MS + gaits_ms * 5 * index as u64 / (4 + 5 * (gaits.len() as u64 - 1))
         };
         let mut steps: Vec<Step> = gaits
             .iter()
             .enumerate()
-            .map(|(index, gait)| step(start_of(index), &command_of(gait)))
+            .map(|(index, gait)| step(compute_start(index), &to_command(gait)))
             .collect();
         steps.push(step(ms - CLOSING_MS, "stop"));
         steps.push(step(ms - CLOSING_MS / 2 - 200, "status"));
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_script_is_parsed_into_commands_with_their_times() {
+    fn script_is_parsed_into_timed_commands() {
         let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
         let script = Script::parse(text);
         let steps = vec![
@@ -148,27 +148,30 @@ mod tests {
     }
 
     #[test]
-    fn an_error_names_its_line() {
-        let message_of = |text| {
+    fn error_names_its_line() {
+        let parse_error = |text| {
             Script::parse(text)
                 .expect_err("the script must be refused")
                 .to_string()
         };
         assert_eq!(
-            message_of("100 walk\nsoon stop"),
-            "line 2: it begins with `soon`, not with a time in whole milliseconds"
+            parse_error("100 walk\nsoon stop"),
+            "line 2: expected a time in whole milliseconds, got `soon`"
         );
-        assert_eq!(message_of("100"), "line 1: no command follows the time");
         assert_eq!(
-            message_of("100 walk\n\n90 stop"),
-            "line 3: 90 ms comes before the 100 ms of the command above"
+            parse_error("100"),
+            "line 1: the command after the time is missing"
+        );
+        assert_eq!(
+            parse_error("100 walk\n\n90 stop"),
+            "line 3: 90 ms is before the previous command's 100 ms"
         );
     }
 
     #[test]
-    fn the_built_in_scripts_are_in_order_and_end_in_time() {
+    fn built_in_scripts_are_in_order_and_end_in_time() {
         for script in [
-            Script::from_gaits(&["walk", "left"], Script::SHORTEST_MS),
+            Script::from_gaits(&["walk", "left"], Script::MIN_MS),
             Script::from_gaits(&["arc-left"], 9000),
             Script::from_gaits(&[], 9000),
         ] {

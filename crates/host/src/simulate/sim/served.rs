@@ -1,4 +1,4 @@
-//! Serves the simulated UNO to other programs, at a serial port of this machine.
+//! Serves the simulated UNO to other programs at a serial port of this machine.
 
 use std::fs;
 use std::io::{self, Write};
@@ -13,24 +13,24 @@ use simulated_uno::{Fidelity, Image, Port, Radio, State, Uno};
 
 use super::press::ContactChange;
 use crate::Failure;
-use crate::shared::files::{self, note_input};
+use crate::shared::files::{self, record_input};
 
-/// A new board that has only this boot loader in flash.
+/// Creates a new board with only a boot loader in flash.
 ///
 /// # Errors
 /// Fails if the file is missing or is not an AVR program.
 pub(super) fn new_board(boot_loader: &Path, fidelity: Fidelity) -> Result<Uno, Failure> {
-    let image = Image::read(note_input(boot_loader))
+    let image = Image::read(record_input(boot_loader))
         .map_err(|error| Failure::Input(format!("{}: {error}", boot_loader.display())))?;
     Ok(Uno::with_boot_loader(image, fidelity))
 }
 
-/// Serves the UNO, by cable or by radio, until a signal ends the program, and closes and opens its contacts at their
-/// times. `link` becomes a symbolic link to the port, because the port's own name differs from run to run; the link is
-/// removed at the end.
+/// Serves the UNO by cable or radio until a signal ends the program, and closes and opens its contacts at their times.
+/// `link` becomes a symbolic link to the port, because the port's name differs from run to run; the link is removed at
+/// the end.
 ///
 /// # Errors
-/// Fails if this machine provides no pseudo terminal, or if something other than a link to one already exists at
+/// Fails if no pseudo terminal can be opened, or if anything except a link to a pseudo terminal already exists at
 /// `link`.
 pub(super) fn serve_until_interrupted(
     mut uno: Uno,
@@ -38,28 +38,27 @@ pub(super) fn serve_until_interrupted(
     radio: Option<Radio>,
     contacts: &[ContactChange],
 ) -> Result<(), Failure> {
-    let mut port = Port::new().map_err(|error| {
-        Failure::Impossible(format!("this machine gives no pseudo terminal: {error}"))
-    })?;
+    let mut port = Port::new()
+        .map_err(|error| Failure::Impossible(format!("cannot open a pseudo terminal: {error}")))?;
     let reset_note = match radio {
         Some(radio) => {
             port = port.with_radio(radio);
-            "opening the port resets nothing"
+            "opening the port does not reset it"
         }
         None => "opening the port resets it",
     };
     let port_name = match link {
         Some(link) => {
-            // Called before the link is made, so that a signal between the two calls does not leave the link behind.
+            // The thread starts before the link is created, so that a signal in between does not leave the link behind.
             remove_link_on_signal(link.to_owned(), port.path().to_owned())?;
-            make_link(link, port.path())?;
+            create_link(link, port.path())?;
             link.to_owned()
         }
         None => port.path().to_owned(),
     };
     let mut out = io::stdout();
     writeln!(out, "the simulated UNO is at {}", port_name.display())?;
-    writeln!(out, "{reset_note}; Ctrl-C ends it")?;
+    writeln!(out, "{reset_note}; Ctrl-C stops it")?;
     let mut printed_state = State::Alive;
     let mut contacts = contacts.iter().peekable();
     loop {
@@ -81,33 +80,34 @@ pub(super) fn serve_until_interrupted(
             writeln!(
                 out,
                 "{}",
-                state_message(&printed_state, uno.flash(), &port_name)
+                describe_state(&printed_state, uno.flash(), &port_name)
             )?;
         }
     }
 }
 
-/// The message about a new state of the chip. A new board has nothing in flash at the firmware's address, so the chip
-/// stops as soon as the boot loader jumps there.
-fn state_message(state: &State, flash: &[u8], port: &Path) -> String {
+/// Describes a new state of the chip. A new board has nothing in flash at the firmware's address, so the chip stops
+/// when the boot loader jumps there.
+fn describe_state(state: &State, flash: &[u8], port: &Path) -> String {
     match state {
         State::Crashed { .. } if flash.starts_with(&[0xff, 0xff]) => format!(
-            "there is no firmware in this board yet; `lizard flash {}` writes it",
+            "this board has no firmware yet; `lizard flash {}` writes it",
             port.display()
         ),
-        _ => super::end_message(state),
+        _ => super::describe_end(state),
     }
 }
 
-/// Starts a thread that removes the link when a signal, such as that of Ctrl-C, ends the program, unless the link
-/// points to another file by then. The signal then has its default effect.
+/// Starts a thread that removes the link when a signal such as Ctrl-C ends the program, unless the link points to
+/// another file by then. The signal then has its default effect.
 fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
-    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP])
-        .map_err(|error| Failure::Impossible(format!("Ctrl-C cannot be waited for: {error}")))?;
+    let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(|error| {
+        Failure::Impossible(format!("cannot install the handler for Ctrl-C: {error}"))
+    })?;
     thread::spawn(move || {
         for signal in &mut signals {
             if fs::read_link(&link).is_ok_and(|target| target == port) {
-                // If the removal fails, the next run replaces the broken link that remains.
+                // If the removal fails, the next run replaces the broken link.
                 let _ = fs::remove_file(&link);
             }
             let _ = signal_hook::low_level::emulate_default_handler(signal);
@@ -116,9 +116,9 @@ fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Makes `link` a symbolic link to `port`. Replaces a link to another pseudo terminal, which a killed run left behind.
-fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
-    let failure_of = |error: io::Error| files::write_failure(link, &error);
+/// Creates the symbolic link `link` to `port`. Replaces a link to another pseudo terminal, left by a killed run.
+fn create_link(link: &Path, port: &Path) -> Result<(), Failure> {
+    let to_failure = |error: io::Error| files::write_failure(link, &error);
     let occupied_failure = || {
         let name = link.display();
         Failure::Input(format!(
@@ -126,14 +126,14 @@ fn make_link(link: &Path, port: &Path) -> Result<(), Failure> {
         ))
     };
     if fs::read_link(link).is_ok_and(|target| target.starts_with("/dev/pts")) {
-        fs::remove_file(link).map_err(failure_of)?;
+        fs::remove_file(link).map_err(to_failure)?;
     }
     if let Some(folder) = link.parent() {
-        fs::create_dir_all(folder).map_err(failure_of)?;
+        fs::create_dir_all(folder).map_err(to_failure)?;
     }
     symlink(port, link).map_err(|error| match error.kind() {
         io::ErrorKind::AlreadyExists => occupied_failure(),
-        _ => failure_of(error),
+        _ => to_failure(error),
     })
 }
 
@@ -142,18 +142,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_board_without_firmware_is_reported_as_such_and_a_crash_in_plain_words() {
+    fn states_without_firmware_and_after_a_crash_are_described() {
         let crashed_state = State::Crashed {
             pc: 0x7fe4,
             message: "avr_sadly_crashed".to_owned(),
         };
         let port = Path::new("out/uno");
         assert_eq!(
-            state_message(&crashed_state, &[0xff; 8], port),
-            "there is no firmware in this board yet; `lizard flash out/uno` writes it"
+            describe_state(&crashed_state, &[0xff; 8], port),
+            "this board has no firmware yet; `lizard flash out/uno` writes it"
         );
         assert_eq!(
-            state_message(&crashed_state, &[0x0c, 0x94, 0xff], port),
+            describe_state(&crashed_state, &[0x0c, 0x94, 0xff], port),
             "the firmware crashed at 0x7fe4: no such instruction or address"
         );
     }

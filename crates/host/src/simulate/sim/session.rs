@@ -14,7 +14,7 @@ use super::script::Script;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sender {
-    /// The user, or the script in the user's place.
+    /// The user or the script.
     User,
     /// The firmware on the simulated board.
     Robot,
@@ -25,13 +25,13 @@ pub enum Sender {
 pub struct DialogueLine {
     /// Milliseconds from power-on to the end of the robot's line, or to the start of the user's line.
     pub ms: f64,
-    /// The sender of the line.
+    /// The line's sender.
     pub from: Sender,
     /// The text without the line end.
     pub text: String,
 }
 
-/// An event that [`play`] reports while it runs.
+/// An event during [`play`].
 #[derive(Debug)]
 pub enum Event<'a> {
     /// The next line of the dialogue.
@@ -43,17 +43,17 @@ pub enum Event<'a> {
 /// The result of a run.
 #[derive(Debug)]
 pub struct Recording {
-    /// The firmware's first line; `None` if it has sent none.
+    /// The firmware's first line; `None` without any line.
     pub banner: Option<String>,
-    /// The answer to each command of the script; `None` if it did not arrive before the end of the run.
+    /// The answer to each command of the script; `None` if no answer arrived before the end of the run.
     pub answers: Vec<Option<String>>,
-    /// Every pulse of the servos.
+    /// Every servo pulse.
     pub frames: FrameLog,
-    /// The bytes that the UNO has received completely, each with its cycle.
+    /// The bytes that the UNO received completely, each with its cycle.
     pub received_by_uno: Vec<SerialByte>,
     /// The number of simulated cycles.
     pub cycles: u64,
-    /// The state in which the firmware ended.
+    /// The firmware's final state.
     pub state: State,
     /// Wall time of the run.
     pub wall_time: Duration,
@@ -137,7 +137,7 @@ impl<F: FnMut(Event<'_>) -> io::Result<()>> Dialogue<F> {
         }))
     }
 
-    /// Reads the bytes that the UNO has sent, and reports the lines that end in them.
+    /// Reads the bytes that the UNO has sent, and reports the completed lines.
     fn receive(&mut self, uno: &mut Uno) -> io::Result<()> {
         for line in self.reader.read(&uno.take_transmitted()) {
             if line.is_answer() {

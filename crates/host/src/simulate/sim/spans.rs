@@ -1,31 +1,31 @@
-//! The commands of a run and the time spans in which each was in effect.
+//! The commands of a run and their time spans.
 
 use lizard_core::console::word::{Effect, Word};
 
 use super::script::Script;
 
-/// A time span in which one command is in effect.
+/// The time span of a command's effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
-    /// The command in effect.
+    /// The command.
     pub command: String,
-    /// Time since power-on at which the command was sent, s.
-    pub from: f64,
-    /// Time since power-on at which the next command was sent or the run ended, s.
-    pub to: f64,
+    /// Time when the command was sent, s since power-on.
+    pub start_s: f64,
+    /// Time when the next command was sent or the run ended, s since power-on.
+    pub end_s: f64,
 }
 
-/// True if a command starts or ends a motion or changes its speed. A word that the console does not know counts as the
-/// name of a gait.
+/// True if a command starts or ends a motion or changes its speed. A word that is not a console word counts as a gait's
+/// name.
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();
     Word::find(word.as_bytes())
         .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::Calibrates))
 }
 
-/// The initial `stand` and the commands that changed the motion, in order of time. After a refused command, the
+/// Lists the initial `stand` and the commands that changed the motion, in order of time. After a refused command, the
 /// previous command stays in effect.
-pub fn command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
+pub fn list_command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
     let mut starts = vec![(0.0, "stand")];
     for (step, answer) in script.steps.iter().zip(answers) {
         let is_refused = answer
@@ -36,14 +36,18 @@ pub fn command_spans(script: &Script, answers: &[Option<String>]) -> Vec<Span> {
         }
     }
     let end = script.end_ms as f64 / 1000.0;
-    let ends = starts.iter().skip(1).map(|(from, _)| *from).chain([end]);
+    let ends = starts
+        .iter()
+        .skip(1)
+        .map(|(start_s, _)| *start_s)
+        .chain([end]);
     starts
         .iter()
         .zip(ends)
-        .map(|((from, command), to)| Span {
+        .map(|((start_s, command), end_s)| Span {
             command: (*command).to_owned(),
-            from: *from,
-            to,
+            start_s: *start_s,
+            end_s,
         })
         .collect()
 }
@@ -53,14 +57,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_refused_command_and_one_without_motion_leave_the_previous_command_in_effect() {
+    fn refused_command_and_command_without_motion_have_no_span() {
         let script = Script::parse("1000 walk\n2000 pose 0 0 0 0\n3000 watch 5\n4000 rest")
             .expect("the script is valid");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];
-        let spans = command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
+        let spans = list_command_spans(&script, &answers.map(|answer| Some(answer.to_owned())));
         let span_tuples: Vec<(&str, f64, f64)> = spans
             .iter()
-            .map(|span| (span.command.as_str(), span.from, span.to))
+            .map(|span| (span.command.as_str(), span.start_s, span.end_s))
             .collect();
         assert_eq!(
             span_tuples,

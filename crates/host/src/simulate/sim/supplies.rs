@@ -1,7 +1,7 @@
-//! The supply voltages and contacts of a simulated UNO, as a healthy robot has them.
+//! Supply voltages and contacts of a simulated UNO on a healthy robot.
 //!
-//! The firmware stops the pulses when a supply voltage is too low. So a simulated board needs, besides its own 5 V, the
-//! divided voltage of the servos' rail at the pin that robot.toml names.
+//! The firmware stops the pulses when a supply voltage is too low. A simulated board therefore needs the divided
+//! voltage of the servo rail at the pin that robot.toml names, in addition to its own 5 V.
 
 use lizard_core::control::supply::Reading;
 use lizard_core::numbers::supplies::Supplies;
@@ -13,16 +13,16 @@ const BOARD_MV: f64 = 5_000.0;
 /// Counts of the analogue-to-digital converter at full scale.
 const FULL_SCALE_COUNTS: f64 = 1_024.0;
 
-/// The analogue pin that measures the servos' rail, and the voltage at that pin when the rail is healthy, mV. `None` if
-/// no pin measures the rail.
+/// Returns the analogue pin that measures the servo rail, and the voltage at this pin with a healthy rail, mV. `None`
+/// if no pin measures the rail.
 pub fn healthy_rail(robot: &Robot) -> Option<(Pin, u16)> {
     let mv = healthy_rail_mv(&robot.firmware().supplies())?;
     Some((Pin::arduino(robot.firmware().rail_pin()?), mv as u16))
 }
 
-/// Connects the supplies of a healthy robot and its contacts, all of them open, to the UNO.
+/// Connects the supplies of a healthy robot and its open contacts to the UNO.
 pub fn connect(uno: &mut Uno, robot: &Robot) {
-    uno.set_bandgap_mv(robot.supplies().reference * 1_000.0);
+    uno.set_bandgap_mv(robot.supplies().reference_volts * 1_000.0);
     if let Some((pin, mv)) = healthy_rail(robot) {
         uno.set_analog_mv(pin, mv);
     }
@@ -31,11 +31,11 @@ pub fn connect(uno: &mut Uno, robot: &Robot) {
     }
 }
 
-/// The analogue-to-digital converter's readings of healthy supplies.
+/// Returns the analogue-to-digital converter's readings of healthy supplies.
 pub(super) fn healthy_reading(supplies: &Supplies) -> Reading {
-    let counts_of = |mv: f64| (FULL_SCALE_COUNTS * mv / BOARD_MV) as u16;
+    let to_counts = |mv: f64| (FULL_SCALE_COUNTS * mv / BOARD_MV) as u16;
     Reading {
-        reference: counts_of(f64::from(supplies.reference_mv)),
-        rail: healthy_rail_mv(supplies).map_or(0, counts_of),
+        reference: to_counts(f64::from(supplies.reference_mv)),
+        rail: healthy_rail_mv(supplies).map_or(0, to_counts),
     }
 }

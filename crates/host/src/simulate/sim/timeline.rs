@@ -1,14 +1,14 @@
-//! The picture of a run: the servo angles over time, and the stance and swing of each foot.
+//! The picture of a run: the servo angles over time, and each foot's stance and swing.
 
 use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
 use super::analysis::Run;
-use super::footfall::{FootSpan, Phase, foot_spans};
+use super::footfall::{FootSpan, Phase, list_foot_spans};
 use super::spans::Span;
 use crate::shared::ink::{
     Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_PLACES, add_title, curve,
-    line, pin_name, rectangle, svg_page, text, text_middle, text_start,
+    line, pin_name, rectangle, render_svg, text, text_middle, text_start,
 };
 
 /// Width of the picture, px.
@@ -54,16 +54,16 @@ pub const SIMULATED_CAPTION: Caption = Caption {
     axis_label: "time since power-on (s)",
 };
 
-/// Draws the picture and returns it as SVG text. `spans` are the commands that were in effect.
+/// Draws the picture and returns it as SVG text. `spans` are the commands in effect.
 pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
-    let end_s = spans.last().map_or(0.0, |span| span.to);
+    let end_s = spans.last().map_or(0.0, |span| span.end_s);
     let chart = Chart {
         run,
         spans,
         caption,
         end_s: end_s.max(0.1),
     };
-    let half_range_deg = chart.half_range_deg();
+    let half_range_deg = chart.compute_half_range_deg();
     let mut group = add_title(Group::new(), LEFT_MARGIN, caption.title, caption.note);
     group = chart.draw_commands(group);
     for servo in 0..4 {
@@ -72,7 +72,7 @@ pub fn draw(run: Run<'_>, spans: &[Span], caption: &Caption) -> String {
     }
     group = chart.draw_command_changes(group);
     group = chart.draw_axis(group);
-    svg_page((WIDTH, HEIGHT), group)
+    render_svg((WIDTH, HEIGHT), group)
 }
 
 /// The contents of a picture.
@@ -85,18 +85,26 @@ struct Chart<'a> {
 }
 
 impl Chart<'_> {
-    /// Horizontal position of a time, px.
-    fn x_at(&self, seconds: f64) -> f64 {
+    /// Returns the horizontal position of a time, px.
+    fn to_x(&self, seconds: f64) -> f64 {
         LEFT_MARGIN + (WIDTH - LEFT_MARGIN - RIGHT_MARGIN) * seconds / self.end_s
     }
 
     /// Adds the band with the commands in effect.
     fn draw_commands(&self, mut group: Group) -> Group {
-        for (index, Span { from, to, command }) in self.spans.iter().enumerate() {
-            let (x, end_x) = (self.x_at(*from), self.x_at(*to));
+        for (
+            index,
+            Span {
+                start_s,
+                end_s,
+                command,
+            },
+        ) in self.spans.iter().enumerate()
+        {
+            let (x, end_x) = (self.to_x(*start_s), self.to_x(*end_s));
             let fill = if index % 2 == 0 { "#e6e6e6" } else { "#d2d2d2" };
             group = group.add(rectangle((x, COMMANDS_Y), (end_x - x, 26.0), fill));
-            // A letter takes about 7.5 px. The name of a command that would not fit is left out.
+            // A letter takes about 7.5 px. A command that does not fit is omitted.
             if command.len() as f64 * 7.5 < end_x - x {
                 let position = ((x + end_x) / 2.0, COMMANDS_Y + 18.0);
                 group = group.add(text_middle(command, position, 15.0));
@@ -114,15 +122,15 @@ impl Chart<'_> {
     /// Adds a vertical line across the complete picture at each change of command.
     fn draw_command_changes(&self, mut group: Group) -> Group {
         for span in self.spans.iter().skip(1) {
-            let x = self.x_at(span.from);
+            let x = self.to_x(span.start_s);
             let mark = line((x, COMMANDS_Y), (x, AXIS_Y), GREY, 1.0);
             group = group.add(mark.set("stroke-dasharray", "2 4"));
         }
         group
     }
 
-    /// Half the angle range of a strip, deg; the same for all strips, so that their slopes can be compared.
-    fn half_range_deg(&self) -> f64 {
+    /// Computes half a strip's angle range, deg; all strips have the same range, so that their slopes can be compared.
+    fn compute_half_range_deg(&self) -> f64 {
         let sweeps = self
             .run
             .servo_frames()
@@ -136,9 +144,9 @@ impl Chart<'_> {
     fn draw_strip(&self, mut group: Group, servo: usize, half_range_deg: f64) -> Group {
         let top = STRIPS_Y + servo as f64 * (STRIP_HEIGHT + STRIP_GAP);
         let neutral = self.run.robot.servos()[servo].neutral;
-        let y_of =
+        let to_y =
             |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / half_range_deg);
-        let (start_x, end_x) = (self.x_at(0.0), self.x_at(self.end_s));
+        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
         let name = format!("{} {}", SERVO_NAMES[servo], SERVO_PLACES[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
@@ -169,8 +177,8 @@ impl Chart<'_> {
         for tick in first_tick..=-first_tick {
             let angle = neutral + f64::from(tick) * tick_interval_deg;
             let grid_line = line(
-                (start_x, y_of(angle)),
-                (end_x, y_of(angle)),
+                (start_x, to_y(angle)),
+                (end_x, to_y(angle)),
                 GRID_COLOUR,
                 1.0,
             );
@@ -182,29 +190,29 @@ impl Chart<'_> {
                 grid_line
             });
             let label = format!("{angle:.0}°");
-            let position = (LEFT_MARGIN - 8.0, y_of(angle) + 4.5);
+            let position = (LEFT_MARGIN - 8.0, to_y(angle) + 4.5);
             group = group.add(text(&label, position, 13.0, GREY, Anchor::End));
         }
-        for angle_curve in self.angle_curves(servo) {
+        for angle_curve in self.compute_angle_curves(servo) {
             let points: Vec<(f64, f64)> = angle_curve
                 .iter()
-                .map(|(seconds, angle)| (self.x_at(*seconds), y_of(*angle)))
+                .map(|(seconds, angle)| (self.to_x(*seconds), to_y(*angle)))
                 .collect();
             group = group.add(curve(&points, SERVO_COLOURS[servo], 2.2));
         }
         group
     }
 
-    /// A servo's angle as points (seconds, degrees), with one curve for each time span with pulses. If there are many
-    /// frames per pixel column, only the lowest and the highest angle of each column are kept.
-    fn angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
+    /// Returns a servo's angle as points (seconds, degrees), with one curve for each time span with pulses. If there
+    /// are many frames per pixel column, only the lowest and the highest angle in each column are kept.
+    fn compute_angle_curves(&self, servo: usize) -> Vec<Vec<(f64, f64)>> {
         let is_dense =
             self.run.log.widths.len() as f64 > 4.0 * (WIDTH - LEFT_MARGIN - RIGHT_MARGIN);
         let mut curves = vec![Curve::default()];
         for servo_frame in self.run.servo_frames() {
             match (servo_frame.angles, curves.last_mut()) {
                 (Some(angles), Some(last_curve)) => {
-                    let column = is_dense.then(|| self.x_at(servo_frame.seconds) as i64);
+                    let column = is_dense.then(|| self.to_x(servo_frame.seconds) as i64);
                     last_curve.add_point(column, (servo_frame.seconds, angles[servo]));
                 }
                 (None, Some(last_curve)) if last_curve.points.is_empty() => {}
@@ -221,7 +229,7 @@ impl Chart<'_> {
     /// Adds the row with the footfalls of a servo's foot; the first row also gets the heading and the legend.
     fn draw_foot_row(&self, mut group: Group, servo: usize) -> Group {
         let top = FEET_Y + servo as f64 * (FOOT_HEIGHT + FOOT_GAP);
-        let (start_x, end_x) = (self.x_at(0.0), self.x_at(self.end_s));
+        let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
         if servo == 0 {
             let position = (14.0, FEET_Y - 12.0);
             group = group.add(text_start("Footfalls", position, 17.0).set("font-weight", "bold"));
@@ -240,14 +248,19 @@ impl Chart<'_> {
                 SERVO_COLOURS[servo],
                 Anchor::End,
             ));
-        let spans_of_foot = foot_spans(self.run.servo_frames(), servo);
-        if spans_of_foot.len() as f64 > (end_x - start_x) / 2.0 {
+        let foot_spans = list_foot_spans(self.run.servo_frames(), servo);
+        if foot_spans.len() as f64 > (end_x - start_x) / 2.0 {
             let position = ((start_x + end_x) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
             let note = "steps shorter than a pixel: simulate less to see them";
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
-        for FootSpan { phase, from, to } in spans_of_foot {
-            let (x, width) = (self.x_at(from), self.x_at(to) - self.x_at(from));
+        for FootSpan {
+            phase,
+            start_s,
+            end_s,
+        } in foot_spans
+        {
+            let (x, width) = (self.to_x(start_s), self.to_x(end_s) - self.to_x(start_s));
             group = group.add(draw_foot_span(
                 phase,
                 SERVO_COLOURS[servo],
@@ -296,14 +309,14 @@ impl Chart<'_> {
             .find(|tick_interval_s| self.end_s / tick_interval_s <= 15.0)
             .unwrap_or(7200.0);
         group = group.add(line(
-            (self.x_at(0.0), AXIS_Y),
-            (self.x_at(self.end_s), AXIS_Y),
+            (self.to_x(0.0), AXIS_Y),
+            (self.to_x(self.end_s), AXIS_Y),
             DARK,
             1.2,
         ));
         for tick in 0..=(self.end_s / tick_interval_s + 1e-9) as u32 {
             let seconds = f64::from(tick) * tick_interval_s;
-            let x = self.x_at(seconds);
+            let x = self.to_x(seconds);
             let label = if tick_interval_s < 1.0 {
                 format!("{seconds:.1}")
             } else {
@@ -313,7 +326,7 @@ impl Chart<'_> {
                 .add(line((x, AXIS_Y), (x, AXIS_Y + 7.0), DARK, 1.2))
                 .add(text_middle(&label, (x, AXIS_Y + 25.0), 14.0));
         }
-        let middle = (self.x_at(0.0) + self.x_at(self.end_s)) / 2.0;
+        let middle = (self.to_x(0.0) + self.to_x(self.end_s)) / 2.0;
         group.add(text_middle(
             self.caption.axis_label,
             (middle, AXIS_Y + 50.0),
@@ -355,7 +368,7 @@ struct Curve {
 }
 
 impl Curve {
-    /// Adds a point in a pixel column. Only the lowest and the highest of the points in the same column are kept. If
+    /// Adds a point in a pixel column. Only the lowest and the highest point in a column are kept. If
     /// `column` is `None`, all points are kept.
     fn add_point(&mut self, column: Option<i64>, point: (f64, f64)) {
         if column.is_none() {
@@ -387,19 +400,29 @@ mod tests {
     use super::*;
     use crate::simulate::sim::frame_log::FrameLog;
 
-    fn draw_picture(frame_count: usize, width_at: impl Fn(usize) -> u16, spans: &[Span]) -> String {
+    fn draw_picture(
+        frame_count: usize,
+        compute_width: impl Fn(usize) -> u16,
+        spans: &[Span],
+    ) -> String {
         let robot = crate::shared::robot_file::built_in_robot("paper");
         let log = FrameLog {
-            widths: (0..frame_count).map(|index| [width_at(index); 4]).collect(),
+            widths: (0..frame_count)
+                .map(|index| [compute_width(index); 4])
+                .collect(),
             ..FrameLog::default()
         };
         let (robot, log) = (&robot, &log);
         draw(Run { robot, log }, spans, &SIMULATED_CAPTION)
     }
 
-    fn span(command: &str, from: f64, to: f64) -> Span {
+    fn span(command: &str, start_s: f64, end_s: f64) -> Span {
         let command = command.to_owned();
-        Span { command, from, to }
+        Span {
+            command,
+            start_s,
+            end_s,
+        }
     }
 
     #[test]
@@ -415,15 +438,15 @@ mod tests {
     }
 
     #[test]
-    fn a_long_run_is_a_small_picture_that_keeps_the_extremes() {
+    fn picture_of_a_long_run_is_small_and_keeps_the_extremes() {
         // One frame out of 10 000 is an extreme.
-        let width_at = |n| match n {
+        let compute_width = |n| match n {
             5000 => 24_800,
             _ => 24_000 + 10 * (n as u16 % 3),
         };
-        let picture = draw_picture(10_000, width_at, &[span("stand", 0.0, 200.0)]);
+        let picture = draw_picture(10_000, compute_width, &[span("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
-        // 50 us are 5 degrees, so 10.4 pixels: half a strip has 52 pixels for 25 degrees.
+        // 50 us are 5 degrees or 10.4 pixels: half a strip has 52 pixels for 25 degrees.
         let first_curve = picture
             .split("points=\"")
             .nth(1)

@@ -1,25 +1,25 @@
-//! The selection of a robot's gaits for a demonstration.
+//! Selection of a robot's gaits for a demonstration.
 
 use lizard_robot::Robot;
 
-/// Names of the gaits that move a servo, in the order of robot.toml.
-pub fn moving_gaits(robot: &Robot) -> Vec<&str> {
+/// Lists the names of the gaits that move a servo, in the order of robot.toml.
+pub fn list_moving_gaits(robot: &Robot) -> Vec<&str> {
     let gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
     gaits.map(|gait| gait.name()).collect()
 }
 
-/// Names of the gaits of a demonstration: the first moving gait, then the one of the other moving gaits that is
-/// predicted to turn the robot most in a cycle. With fewer than two moving gaits, the list is shorter.
-pub fn demonstration_gaits(robot: &Robot) -> Vec<&str> {
-    let gaits = moving_gaits(robot);
-    let turn_of = |name: &str| {
+/// Chooses the gaits of a demonstration: the first moving gait, and the other moving gait with the largest predicted
+/// turn per cycle. With fewer than two moving gaits, the list is shorter.
+pub fn choose_demonstration_gaits(robot: &Robot) -> Vec<&str> {
+    let gaits = list_moving_gaits(robot);
+    let predict_turn = |name: &str| {
         let gait = robot.gait(name);
         gait.map_or(0.0, |gait| robot.predict(gait).turn.map_or(0.0, f64::abs))
     };
     let other_gaits = gaits.iter().copied().skip(1);
-    // Mirrored gaits turn equally far; the tolerance keeps the first of them.
+    // Mirrored gaits turn equally far; the tolerance selects the first of them.
     let turning_gait = other_gaits.fold(None, |best: Option<&str>, name| match best {
-        Some(best) if turn_of(name) <= turn_of(best) + 1e-6 => Some(best),
+        Some(best) if predict_turn(name) <= predict_turn(best) + 1e-6 => Some(best),
         _ => Some(name),
     });
     gaits
@@ -35,9 +35,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_demonstration_of_the_paper_robot_is_walk_and_left() {
+    fn demonstration_of_the_paper_robot_is_walk_and_left() {
         let robot = crate::shared::robot_file::built_in_robot("paper");
-        assert_eq!(demonstration_gaits(&robot), ["walk", "left"]);
-        assert!(!moving_gaits(&robot).contains(&"stand"));
+        assert_eq!(choose_demonstration_gaits(&robot), ["walk", "left"]);
+        assert!(!list_moving_gaits(&robot).contains(&"stand"));
     }
 }

@@ -1,5 +1,5 @@
-//! `lizard twin`: runs the real firmware on the simulated UNO, moves a simulated robot by its pulses, and reports how
-//! the robot walks.
+//! `lizard twin`: runs the real firmware on the simulated UNO, moves a simulated robot with its pulses, and reports the
+//! robot's path.
 
 pub mod replay;
 pub mod report;
@@ -8,33 +8,33 @@ mod robust;
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_robot::{CheckedGait, Robot, Round, Routine, WITHOUT_CONTACTS_NOTE, command_of};
+use lizard_robot::{OPEN_INPUTS_NOTE, Robot, Routine, RoutineRow, to_command};
 use lizard_twin::ServoModel;
 use simulated_uno::{Fidelity, State, Uno};
 
 use crate::shared::firmware;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::suggestion_text;
+use crate::shared::robot_file::find_moving_gait;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{frame, read_script, spans, supplies, time_progress_bar, tour};
+use crate::simulate::sim::{create_time_bar, frame, read_script, spans, supplies, tour};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;
 
-/// Let the firmware walk: servos, linkage, springs, feet, the path over the floor
+/// Simulate the robot with the firmware's pulses: servos, linkage, springs, feet, its path
 ///
-/// Runs the image on the simulated UNO and gives its pulses to servos that turn the
-/// linkage; springs pull the legs, and the contact model computes how the body moves.
-/// Without a script, every gait of robot.toml walks for some cycles. The table compares
-/// each gait's last complete cycle with the prediction of `lizard gaits`.
+/// Runs the firmware on the simulated UNO. Its pulses drive simulated servos, which turn the
+/// linkage; springs pull the legs, and the contact model computes the body's displacement.
+/// Without a script, the robot walks a few cycles of every gait in robot.toml. The table
+/// compares each gait's last complete cycle with the prediction of `lizard gaits`.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Examples:
   lizard twin
   lizard twin dance.txt
   lizard twin --gait crawl --robust 200
 
-A script is a file of lines `<ms since power-on> <command>`.")]
+A script is a file with lines `<ms since power-on> <command>`.")]
 pub struct Args {
     /// A file of commands and their times, as for `lizard sim` [default: every gait]
     #[arg(value_name = "SCRIPT")]
@@ -42,19 +42,18 @@ pub struct Args {
     /// Walk one gait of robot.toml, or one round of a routine
     #[arg(long, value_hint = clap::ValueHint::Other, value_name = "NAME", conflicts_with = "script")]
     gait: Option<String>,
-    /// The firmware: an ELF that has this robot in it [default: the one inside this
-    /// program]
+    /// The firmware, an ELF that contains this robot [default: the built-in firmware]
     #[arg(long, value_name = "FILE")]
     elf: Option<PathBuf>,
-    /// The model of the servos
+    /// The servo model
     #[arg(long, value_enum, default_value_t)]
     servo: ServoArg,
     /// Print one JSON object per line, one for each command
     #[arg(long)]
     json: bool,
-    /// Then walk each gait N more times with random friction, loads, mounting, hips,
-    /// feet, springs and play, and print the spread of the distances, and how much of their
-    /// servos' torque-speed line the gaits use
+    /// Then simulate each gait N more times with random friction, loads, mounting, hips, feet,
+    /// springs and play, and print the spread of the displacements and the utilisation of the
+    /// servos' torque-speed line
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     robust: Option<u32>,
     #[command(flatten)]
@@ -64,17 +63,17 @@ pub struct Args {
 /// The model of the servos, as named on the command line.
 #[derive(clap::ValueEnum, Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum ServoArg {
-    /// With the torque, the rate, the rotor and the dead band of `[servo]` in robot.toml
+    /// With the torque, rate, rotor and dead band from `[servo]` in robot.toml
     #[default]
     Own,
-    /// Follows its pulse at once, whatever it carries
+    /// Follows its pulse at once under any load
     Ideal,
 }
 
-/// Runs the firmware, walks the robot and prints the report.
+/// Runs the firmware, simulates the robot and prints the report.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a firmware that is missing or has another robot, an unknown gait, an invalid
+/// Fails for an invalid robot.toml, a firmware that is missing or contains another robot, an unknown gait, an invalid
 /// script, a firmware that crashes, or an output that cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
@@ -88,17 +87,17 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
     let model = match args.servo {
-        ServoArg::Own => ServoModel::of(&robot),
+        ServoArg::Own => ServoModel::for_robot(&robot),
         ServoArg::Ideal => ServoModel::Ideal,
     };
-    let spans = spans::command_spans(&script, &recording.answers);
+    let spans = spans::list_command_spans(&script, &recording.answers);
     let changes_speed = script
         .steps
         .iter()
         .any(|step| step.command.starts_with("speed"));
-    let spinner = Spinner::new("walking every frame");
-    let replay = Replay::new(&robot, &recording.frames, spans, model);
-    let report = Report::new(&robot, &replay, model, changes_speed);
+    let spinner = Spinner::new("simulating every frame");
+    let replay = Replay::simulate(&robot, &recording.frames, spans, model);
+    let report = Report::compute(&robot, &replay, model, changes_speed);
     drop(spinner);
 
     let mut out = io::stdout().lock();
@@ -107,7 +106,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     } else {
         report.print(&mut out)?;
         if has_inputs {
-            write!(out, "\n{WITHOUT_CONTACTS_NOTE}")?;
+            write!(out, "\n{OPEN_INPUTS_NOTE}")?;
         }
     }
     if let Some(variation_count) = args.robust {
@@ -119,10 +118,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Plays the script without printing anything.
 ///
 /// # Errors
-/// Fails if the firmware ends before the script does.
+/// Fails if the firmware stops before the end of the script.
 pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Recording, Failure> {
     supplies::connect(uno, robot);
-    let bar = time_progress_bar(script.end_ms);
+    let bar = create_time_bar(script.end_ms);
     let pins = frame::servo_pins(robot);
     let recording = session::play(uno, pins, script, |event| {
         if let Event::Time(ms) = event {
@@ -134,65 +133,49 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Re
     match recording.state {
         State::Alive => Ok(recording),
         _ => Err(Failure::Impossible(
-            "the firmware ended; `lizard sim` says how".to_owned(),
+            "the firmware stopped; `lizard sim` shows the reason".to_owned(),
         )),
     }
 }
 
-/// The script that the command-line options ask for.
+/// Returns the script that the command-line options select.
 fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(path) = &args.script {
         return read_script(path);
     }
     Ok(match &args.gait {
-        None => walk_script(robot, &tour::moving_gaits(robot)),
+        None => build_walk_script(robot, &tour::list_moving_gaits(robot)),
         Some(name) => match robot.routine(name) {
-            Some(routine) => round_script(robot, routine),
-            None => walk_script(robot, &[moving_gait(robot, name)?.name()]),
+            Some(routine) => build_round_script(robot, routine),
+            None => build_walk_script(robot, &[find_moving_gait(robot, name)?.name()]),
         },
     })
 }
 
 /// Builds a script for one round of a routine. The round starts after a second of standing, and the script ends two
 /// seconds after the round.
-fn round_script(robot: &Robot, routine: &Routine) -> Script {
+fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
     const STAND_MS: u64 = 1000;
-    let round = Round::of(robot, routine);
+    let round = RoutineRow::simulate(robot, routine);
     let name = routine.command();
     let round_end_ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
-    let step_at = |ms, command: &str| Step {
+    let new_step = |ms, command: &str| Step {
         ms,
         command: command.to_owned(),
     };
     Script {
         steps: vec![
-            step_at(STAND_MS, &format!("{name} 1")),
-            step_at(round_end_ms + STAND_MS, "stop"),
+            new_step(STAND_MS, &format!("{name} 1")),
+            new_step(round_end_ms + STAND_MS, "stop"),
         ],
         end_ms: round_end_ms + 2 * STAND_MS,
         ..Script::default()
     }
 }
 
-/// The gait of this name. Fails if the robot has no such gait or if the gait moves no servo.
-pub(crate) fn moving_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
-    match robot.gait(name) {
-        Some(gait) if gait.has_movement() => Ok(gait),
-        Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
-        None => {
-            let gaits = tour::moving_gaits(robot);
-            Err(Failure::Input(format!(
-                "robot.toml has no gait `{name}`; those that move are {}{}",
-                gaits.join(", "),
-                suggestion_text(name, gaits)
-            )))
-        }
-    }
-}
-
-/// Builds a script that walks each of these gaits for three cycles, after a second in which the robot takes the gait's
-/// first pose. The robot stands for a second before the first gait and after the last.
-pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
+/// Builds a script of three cycles of each gait, each after a second for taking the gait's first pose. The robot stands
+/// for a second before the first gait and after the last gait.
+pub(crate) fn build_walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES_PER_GAIT: f64 = 3.0;
     const STAND_MS: u64 = 1000;
     let mut ms = STAND_MS;
@@ -200,7 +183,7 @@ pub(crate) fn walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     for name in gaits {
         steps.push(Step {
             ms,
-            command: command_of(name),
+            command: to_command(name),
         });
         let period = robot.gait(name).map_or(1.0, |gait| gait.period());
         ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;

@@ -9,41 +9,44 @@ use simulated_uno::CYCLES_PER_US;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::spans::Span;
 
-/// The simulated robot in every frame of a run.
+/// A run replayed on the simulated robot.
 pub struct Replay {
-    /// The robot that is simulated.
+    /// The robot.
     pub robot: Robot,
     /// Seconds from power-on to the first frame.
     pub start_s: f64,
-    /// The state of the robot after each frame.
+    /// The robot's state after each frame.
     pub states: Vec<State>,
-    /// The stages, one for each command, in order.
+    /// The run's stages, one for each command, in order.
     pub stages: Vec<Stage>,
 }
 
-/// A stage of a run: the frames in which one command is in effect.
+/// A stage of a run: the frames during one command.
 pub struct Stage {
-    /// The command of this stage.
+    /// The command, as it was sent.
     pub command: String,
-    /// The indices of this stage's frames.
+    /// The indices of the stage's frames.
     pub frames: Range<usize>,
 }
 
 impl Replay {
-    /// Moves the simulated robot through the frames of a run. `spans` are the run's commands.
-    pub fn new(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
+    /// Simulates the robot with the pulses of a run. `spans` are the run's commands.
+    pub fn simulate(robot: &Robot, log: &FrameLog, spans: Vec<Span>, model: ServoModel) -> Self {
         let to_us = |width: u16| (width > 0).then(|| f64::from(width) / CYCLES_PER_US as f64);
         let mut twin = Twin::new(robot, model);
-        let states = log.widths.iter().map(|widths| twin.push(widths.map(to_us)));
-        let stage_of = |span: Span| Stage {
-            frames: log.index_at(span.from)..log.index_at(span.to),
+        let states = log
+            .widths
+            .iter()
+            .map(|widths| twin.simulate_pulses(widths.map(to_us)));
+        let to_stage = |span: Span| Stage {
+            frames: log.index_at(span.start_s)..log.index_at(span.end_s),
             command: span.command,
         };
         Self {
             robot: robot.clone(),
             start_s: log.seconds_at(0),
             states: states.collect(),
-            stages: spans.into_iter().map(stage_of).collect(),
+            stages: spans.into_iter().map(to_stage).collect(),
         }
     }
 
@@ -60,16 +63,16 @@ impl Replay {
         tally
     }
 
-    /// The gait of a stage and the frame indices of its last complete cycle. `None` unless the stage's command is a
-    /// moving gait that ran for at least two cycles.
-    pub fn last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
+    /// Returns a stage's gait and the frame indices of the gait's last complete cycle. `None` unless the stage's
+    /// command is a moving gait that ran for at least two cycles.
+    pub fn find_last_cycle(&self, stage: &Stage) -> Option<(&CheckedGait, Range<usize>)> {
         let gait = self
             .robot
             .gait(&stage.command)
             .filter(|gait| gait.has_movement())?;
-        let frame_count = (gait.period() / FRAME_S).round() as usize;
-        let start_frame = stage.frames.end.checked_sub(frame_count)?;
-        (start_frame >= stage.frames.start + frame_count)
+        let frames_per_cycle = (gait.period() / FRAME_S).round() as usize;
+        let start_frame = stage.frames.end.checked_sub(frames_per_cycle)?;
+        (start_frame >= stage.frames.start + frames_per_cycle)
             .then_some((gait, start_frame..stage.frames.end))
     }
 }

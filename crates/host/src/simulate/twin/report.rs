@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{Prediction, Robot, Round, SpringCost, Travel, UNDECIDED_NOTE};
+use lizard_robot::{DriveEffect, Prediction, Robot, RoutineRow, Travel, UNDECIDED_NOTE};
 use lizard_twin::{ServoModel, Tally};
 use serde::Serialize;
 
@@ -10,13 +10,13 @@ use super::replay::Replay;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
 
-/// A report of a run: a row for each command.
+/// The report of a run: a row for each command.
 pub struct Report {
     /// The rows in order of time.
     pub rows: Vec<Row>,
 }
 
-/// The result of one command.
+/// The result of one command; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 pub struct Row {
     /// The command as it was sent.
@@ -30,22 +30,22 @@ pub struct Row {
     /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null for a routine with
     /// inputs, for other commands, and if the script changes the speed.
     pub round: Option<Displacement>,
-    /// Distance that each foot slid over the floor, mm, servo order. This field and all that follow cover the cycle in
-    /// `cycle`, or all frames of the command if `cycle` is null.
+    /// Distance that each foot slid over the floor, in servo order, mm. This field and the fields below cover the cycle
+    /// in `cycle`, or all frames of the command if `cycle` is null.
     pub foot_slip: [f64; 4],
-    /// The largest lag of a leg behind its servo, deg.
+    /// Largest lag of a leg behind its servo, deg.
     pub lag: f64,
-    /// The name and the value of the smallest margin.
+    /// Name and value of the smallest margin.
     pub margin: Option<(&'static str, f64)>,
     /// Smallest and largest slider travel, mm.
     pub stroke: Option<[f64; 2]>,
-    /// The largest angular rate of a servo, deg/s.
+    /// Largest angular rate of a servo, deg/s.
     pub servo_rate: f64,
-    /// The largest deviation of a servo from its pulse, deg.
+    /// Largest deviation of a servo from its pulse, deg.
     pub servo_error: f64,
 }
 
-/// A displacement of the body. A component is null if the contact model cannot determine it, because two feet balance
+/// A displacement of the body. A component is null if the contact model cannot determine it because two feet balance
 /// the other two (a tie).
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Displacement {
@@ -60,15 +60,15 @@ pub struct Displacement {
 /// One cycle of a gait.
 #[derive(Debug, Serialize)]
 pub struct Cycle {
-    /// Displacement of the body in the cycle.
+    /// Displacement of the body during the cycle.
     pub way: Displacement,
-    /// The displacement that the contact model predicts for ideal servos.
+    /// Displacement predicted by the contact model with ideal servos.
     pub predicted: Displacement,
     /// Mean speed over the cycle, mm/s; null if the displacement is undetermined.
     pub speed: Option<f64>,
-    /// Predicted displacement divided by that of a robot with rigid legs; null if the legs are rigid, or if with rigid
-    /// legs the displacement is almost zero or undetermined.
-    pub share_of_rigid: Option<f64>,
+    /// Predicted displacement divided by the displacement with rigid legs; null if the legs are rigid, or if the
+    /// displacement with rigid legs is almost zero or undetermined.
+    pub fraction_of_rigid: Option<f64>,
 }
 
 impl From<Prediction> for Displacement {
@@ -81,20 +81,24 @@ impl From<Prediction> for Displacement {
     }
 }
 
-/// Predicts one round of a routine with this model of the servos; `None` unless the command runs exactly one round of a
+/// Predicts one round of a routine with the servo model `model`; `None` unless the command runs exactly one round of a
 /// routine.
-fn predict_round(robot: &Robot, command: &str, model: ServoModel) -> Option<(Round, Prediction)> {
+fn predict_round(
+    robot: &Robot,
+    command: &str,
+    model: ServoModel,
+) -> Option<(RoutineRow, Prediction)> {
     let routine = robot.routine(command.strip_suffix(" 1")?)?;
-    let round = Round::of(robot, routine);
+    let round = RoutineRow::simulate(robot, routine);
     let prediction = match model {
-        ServoModel::Motors(_) => round.driven_movement,
+        ServoModel::Motors(_) => round.movement_with_servos,
         ServoModel::Ideal | ServoModel::Unloaded(_) => round.movement,
     };
     Some((round, prediction))
 }
 
 impl Displacement {
-    /// The components of a travel that the prediction determines; all components without a prediction.
+    /// Returns the components of `travel` that the prediction determines; all components without a prediction.
     fn from_travel(travel: Travel, prediction: Option<&Prediction>) -> Self {
         let keep_determined =
             |component: fn(&Prediction) -> Option<f64>, value: f64| match prediction {
@@ -110,18 +114,18 @@ impl Displacement {
 }
 
 impl Report {
-    /// Summarises a replay in one row for each command. `changes_speed` is true if the script changes the speed of the
-    /// gaits; cycles and predicted rounds are then left out.
-    pub fn new(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
+    /// Summarises a replay in one row for each command. If `changes_speed` is true, the script changes the speed of the
+    /// gaits, and cycles and predicted rounds are omitted.
+    pub fn compute(robot: &Robot, replay: &Replay, model: ServoModel, changes_speed: bool) -> Self {
         let stages = replay
             .stages
             .iter()
             .filter(|stage| !stage.frames.is_empty());
-        let row_of = |stage: &super::replay::Stage| {
+        let compute_row = |stage: &super::replay::Stage| {
             let stage_tally = replay.tally(stage.frames.clone());
-            let gait = robot.gait_of_line(&stage.command);
+            let gait = robot.find_gait_in_line(&stage.command);
             let gait_prediction = gait.map(|gait| robot.predict(gait));
-            let cycle = replay.last_cycle(stage).filter(|_| !changes_speed);
+            let cycle = replay.find_last_cycle(stage).filter(|_| !changes_speed);
             let cycle_tally = cycle
                 .as_ref()
                 .map(|(_, frames)| replay.tally(frames.clone()));
@@ -145,10 +149,10 @@ impl Report {
                         .and_then(|prediction| prediction.forward)
                         .map(|_| {
                             let travel = tally.travel();
-                            travel.forward.hypot(travel.left) / tally.seconds()
+                            travel.forward.hypot(travel.left) / tally.duration_s()
                         }),
-                    share_of_rigid: SpringCost::of(gait, robot.ground())
-                        .and_then(|cost| cost.share_of_rigid),
+                    fraction_of_rigid: DriveEffect::compute(gait, robot.ground())
+                        .and_then(|cost| cost.fraction_of_rigid),
                 }),
                 // An input may end a step of the routine earlier or later than the prediction assumes.
                 round: round
@@ -165,7 +169,7 @@ impl Report {
             }
         };
         Self {
-            rows: stages.map(row_of).collect(),
+            rows: stages.map(compute_row).collect(),
         }
     }
 
@@ -237,14 +241,16 @@ impl Report {
                 row.servo_rate
             )?;
             if has_springs {
-                let share = cycle.share_of_rigid.map(|share| 100.0 * share);
-                let share = share.map_or("-".to_owned(), |share| format!("{share:.0}"));
-                write!(out, " {:>8.1} {share:>11}", row.lag)?;
+                let fraction = cycle.fraction_of_rigid;
+                let percent = fraction.map_or("-".to_owned(), |fraction| {
+                    format!("{:.0}", 100.0 * fraction)
+                });
+                write!(out, " {:>8.1} {percent:>11}", row.lag)?;
             }
             writeln!(out)?;
         }
         for row in self.rows.iter().filter(|row| row.cycle.is_none()) {
-            let [from, to] = row.seconds;
+            let [start_s, end_s] = row.seconds;
             let displacement = &row.way;
             if [displacement.forward, displacement.left, displacement.turn]
                 .map(|component| component.is_some_and(|component| component.abs() > 0.05))
@@ -254,7 +260,7 @@ impl Report {
             }
             writeln!(
                 out,
-                "\n{} from {from:.2} to {to:.2} s: {}",
+                "\n{} from {start_s:.2} to {end_s:.2} s: {}",
                 row.command,
                 describe_displacement(displacement)
             )?;
@@ -274,7 +280,7 @@ impl Report {
     }
 }
 
-/// Describes a displacement as text for the user.
+/// Describes a displacement for the user.
 fn describe_displacement(displacement: &Displacement) -> String {
     let [forward, left, turn] = [displacement.forward, displacement.left, displacement.turn]
         .map(|component| format_component(component, 1));

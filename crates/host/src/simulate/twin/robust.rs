@@ -1,9 +1,9 @@
-//! The spread of a gait's distance over slightly different robots and floors.
+//! The spread of a gait's displacement over slightly different robots and floors.
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Effort, Ground, HIGH_LINE_SHARE, PACES_PERCENT, Robot, Travel};
-use lizard_tune::{FRICTION_FACTORS, PLAY_SPREAD_TEXT, SPREAD_TEXT, Variation, quantiles};
+use lizard_robot::{CheckedGait, Effort, Ground, HIGH_UTILISATION, PACES_PERCENT, Robot, Travel};
+use lizard_tune::{FRICTION_FACTORS, PLAY_SPREAD_TEXT, SPREAD_TEXT, Variation, compute_quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
 
@@ -11,61 +11,64 @@ use super::replay::Replay;
 use super::report::format_component;
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::progress::progress_bar;
+use crate::shared::progress::create_progress_bar;
 
-/// The spread of a gait's displacement in one cycle.
+/// The spread of a gait's displacement per cycle; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
 struct Spread {
-    /// The name of the gait.
+    /// The gait's name.
     gait: String,
     /// Number of simulated variations.
     times: usize,
-    /// The 5th, 50th and 95th percentile of the distance forward, mm.
+    /// The 5th, 50th and 95th percentile of the displacement forward, mm.
     forward: [f64; 3],
-    /// The same percentiles of the distance to the left, mm.
+    /// The same percentiles of the displacement to the left, mm.
     left: [f64; 3],
     /// The same percentiles of the turn, deg counter-clockwise.
     turn: [f64; 3],
-    /// The load of the servos at each pace on each supply.
-    lines: Vec<EffortShare>,
+    /// The utilisation of the servos at each pace on each supply.
+    lines: Vec<Utilisation>,
 }
 
-/// The largest share of a servo's torque-speed line that a gait uses at one pace on one supply.
+/// A gait's highest utilisation of a servo's torque-speed line at one pace on one supply.
 #[derive(Debug, Serialize)]
-struct EffortShare {
-    /// Pace, percent of the gait's own pace.
+struct Utilisation {
+    /// Pace, percent of the gait's nominal pace.
     pace: f64,
-    /// Supply voltage of the servos, V.
+    /// The servos' supply voltage, V.
     volts: f64,
-    /// The share on the robot's own floor, then the share on a floor with the highest friction of the variations; 1 is
-    /// the complete line.
+    /// The utilisation on the robot's own floor, and on a floor with the highest friction of the variations; 1 is the
+    /// complete line.
     share: [f64; 2],
 }
 
-impl EffortShare {
-    /// The shares of a gait at each of the [`PACES_PERCENT`] on every supply.
-    fn of_gait(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
+impl Utilisation {
+    /// Computes a gait's utilisation at each of the [`PACES_PERCENT`] on every supply.
+    fn compute_all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
         let efforts = [1.0, FRICTION_FACTORS.1].map(|factor| {
             let ground = Ground {
                 friction_coefficient: robot.ground().friction_coefficient * factor,
                 ..*robot.ground()
             };
-            Effort::of(gait, &ground, &robot.motors())
+            Effort::simulate(gait, &ground, &robot.motors())
         });
-        let share_at = |pace: f64, volts: f64| Self {
+        let compute_one = |pace: f64, volts: f64| Self {
             pace,
             volts,
-            share: efforts
-                .each_ref()
-                .map(|effort| effort.line_share(pace / 100.0, volts / robot.servo_type().volts)),
+            share: efforts.each_ref().map(|effort| {
+                effort.utilisation(pace / 100.0, volts / robot.servo_type().supply_volts)
+            }),
         };
-        let shares_at_pace = |pace| robot.reported_volts().map(|volts| share_at(pace, volts));
-        PACES_PERCENT.into_iter().flat_map(shares_at_pace).collect()
+        let compute_at_pace = |pace| robot.reported_volts().map(|volts| compute_one(pace, volts));
+        PACES_PERCENT
+            .into_iter()
+            .flat_map(compute_at_pace)
+            .collect()
     }
 }
 
-/// Walks every gait of the run `variation_count` times, each time with another variation of robot and floor, and prints
-/// the spreads.
+/// Simulates every gait of the run `variation_count` times with different variations of robot and floor, and prints the
+/// spreads.
 ///
 /// # Errors
 /// Fails if writing fails.
@@ -86,7 +89,7 @@ pub fn run(
                 .filter(|gait| gait.has_movement())
         })
         .collect();
-    let bar = progress_bar(
+    let bar = create_progress_bar(
         variation_count as usize * gaits.len(),
         "{bar:40} {pos}/{len} walks, {eta}",
     );
@@ -97,7 +100,7 @@ pub fn run(
         }
         let simulate = |seed: u64| {
             bar.inc(1);
-            Variation::random(robot.ground(), seed)
+            Variation::draw(robot.ground(), seed)
                 .with_play(seed)
                 .simulate_cycle(robot, gait, model)
         };
@@ -105,7 +108,7 @@ pub fn run(
         spreads.push(Spread::from_paths(
             gait.name(),
             &paths,
-            EffortShare::of_gait(robot, gait),
+            Utilisation::compute_all(robot, gait),
         ));
     }
     bar.finish_and_clear();
@@ -120,23 +123,23 @@ pub fn run(
 }
 
 impl Spread {
-    /// The spread of a gait over the paths of its variations.
-    fn from_paths(gait: &str, paths: &[Travel], lines: Vec<EffortShare>) -> Self {
-        let quantiles_of = |quantity: fn(&Travel) -> f64| {
-            quantiles(paths.iter().map(quantity).collect(), [0.05, 0.5, 0.95])
+    /// Computes a gait's spread over the displacements of its variations.
+    fn from_paths(gait: &str, paths: &[Travel], lines: Vec<Utilisation>) -> Self {
+        let component_quantiles = |component: fn(&Travel) -> f64| {
+            compute_quantiles(paths.iter().map(component).collect(), [0.05, 0.5, 0.95])
         };
         Self {
             gait: gait.to_owned(),
             times: paths.len(),
-            forward: quantiles_of(|path| path.forward),
-            left: quantiles_of(|path| path.left),
-            turn: quantiles_of(|path| path.turn),
+            forward: component_quantiles(|path| path.forward),
+            left: component_quantiles(|path| path.left),
+            turn: component_quantiles(|path| path.turn),
             lines,
         }
     }
 }
 
-/// Prints a table of the spreads and a table of the shares of the torque-speed line.
+/// Prints a table of the spreads and a table of the utilisation.
 fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
@@ -168,34 +171,34 @@ fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::
     }
     writeln!(
         out,
-        "\nThe largest share of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
-         Above {HIGH_LINE_SHARE}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
+        "\nThe highest utilisation of a servo's torque-speed line, on the robot's own floor and with the most friction.\n\
+         Above {HIGH_UTILISATION}, marked with !, little is left; above 1 a servo falls behind: `lizard gaits --servos`\n"
     )?;
     let Some(first_spread) = spreads.first() else {
         return Ok(());
     };
     write!(out, "{:<12}", "gait")?;
-    for EffortShare { pace, volts, .. } in &first_spread.lines {
+    for Utilisation { pace, volts, .. } in &first_spread.lines {
         write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;
     }
     writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
         for line in &spread.lines {
-            let [own_floor_share, rough_floor_share] = line.share.map(format_share);
-            write!(
-                out,
-                "{:>18}",
-                format!("{own_floor_share} {rough_floor_share}")
-            )?;
+            let [own_floor, rough_floor] = line.share.map(format_utilisation);
+            write!(out, "{:>18}", format!("{own_floor} {rough_floor}"))?;
         }
         writeln!(out)?;
     }
     Ok(())
 }
 
-/// Formats a share of the torque-speed line, with a mark if little torque is left.
-fn format_share(share: f64) -> String {
-    let mark = if share >= HIGH_LINE_SHARE { '!' } else { ' ' };
-    format!("{share:.2}{mark}")
+/// Formats a utilisation, with a mark if little torque is left.
+fn format_utilisation(utilisation: f64) -> String {
+    let mark = if utilisation >= HIGH_UTILISATION {
+        '!'
+    } else {
+        ' '
+    };
+    format!("{utilisation:.2}{mark}")
 }

@@ -1,4 +1,4 @@
-//! The elements of an SVG drawing.
+//! A parser for SVG drawings.
 
 use std::collections::HashMap;
 
@@ -7,7 +7,7 @@ use svg::parser::Event;
 /// A point on the page, px; y points downward.
 pub type Point = (f64, f64);
 
-/// An element of a drawing: its tag, its attributes, and its text.
+/// An element of a drawing, with its tag, attributes and text.
 #[derive(Debug)]
 pub struct Element {
     pub tag: String,
@@ -16,41 +16,39 @@ pub struct Element {
 }
 
 impl Element {
-    /// The value of an attribute; empty without it.
+    /// The value of an attribute; empty if the attribute is missing.
     pub fn attribute(&self, key: &str) -> &str {
         self.attributes.get(key).map_or("", String::as_str)
     }
 
-    /// The value of an attribute as a finite number.
-    pub fn finite_number(&self, key: &str) -> f64 {
-        let text = self.attribute(key);
-        let number = text
-            .parse()
-            .unwrap_or_else(|_| panic!("{key}={text} of {self:?}"));
-        assert!(f64::is_finite(number), "{self:?}");
+    /// Parses the value of an attribute as a finite number.
+    pub fn parse_number(&self, key: &str) -> f64 {
+        let number = self.attribute(key).parse();
+        let number = number.unwrap_or_else(|_| panic!("{key} is not a number: {self:?}"));
+        assert!(f64::is_finite(number), "{key} is not finite: {self:?}");
         number
     }
 
-    /// The points through which the element is drawn.
+    /// Parses the points through which the element is drawn.
     pub fn points(&self) -> Vec<Point> {
-        let point_of = |x, y| (self.finite_number(x), self.finite_number(y));
+        let parse_point = |x, y| (self.parse_number(x), self.parse_number(y));
         match self.tag.as_str() {
-            "line" => vec![point_of("x1", "y1"), point_of("x2", "y2")],
-            "circle" => vec![point_of("cx", "cy")],
-            "text" => vec![point_of("x", "y")],
+            "line" => vec![parse_point("x1", "y1"), parse_point("x2", "y2")],
+            "circle" => vec![parse_point("cx", "cy")],
+            "text" => vec![parse_point("x", "y")],
             "rect" => {
-                let (x, y) = point_of("x", "y");
-                let (width, height) = point_of("width", "height");
+                let (x, y) = parse_point("x", "y");
+                let (width, height) = parse_point("width", "height");
                 vec![(x, y), (x + width, y + height)]
             }
             "polyline" | "polygon" => {
-                let number_of = |text: &str| text.parse().expect("a coordinate is a number");
+                let parse = |text: &str| text.parse().expect("a coordinate is a number");
                 let pairs = self
                     .attribute("points")
                     .split(' ')
                     .map(|pair| pair.split_once(','));
                 let pairs = pairs.map(|pair| pair.expect("a point is written as x,y"));
-                pairs.map(|(x, y)| (number_of(x), number_of(y))).collect()
+                pairs.map(|(x, y)| (parse(x), parse(y))).collect()
             }
             _ => vec![],
         }
@@ -69,11 +67,11 @@ impl Drawing {
             match event {
                 Event::Tag(tag, kind, attributes) if kind != svg::node::element::tag::Type::End => {
                     let attributes = attributes.iter();
-                    let attributes =
-                        attributes.map(|(key, value)| (key.clone(), value.to_string()));
                     elements.push(Element {
                         tag: tag.into(),
-                        attributes: attributes.collect(),
+                        attributes: attributes
+                            .map(|(key, value)| (key.clone(), value.to_string()))
+                            .collect(),
                         content: String::new(),
                     });
                 }
@@ -110,7 +108,7 @@ impl Drawing {
         self.element_by_id(id).points()
     }
 
-    /// Every wire and rail: its name and its points.
+    /// The names and points of all wires and rails.
     pub fn wires(&self) -> Vec<(&str, Vec<Point>)> {
         self.elements
             .iter()

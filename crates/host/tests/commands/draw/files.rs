@@ -1,6 +1,4 @@
-//! The files of robots/ as text, and values in them.
-
-use std::path::PathBuf;
+//! Reads the files in robots/ and their values.
 
 use lizard_robot::Robot;
 
@@ -8,28 +6,28 @@ use crate::program::{read_file, repo_root};
 
 use super::drawing::Drawing;
 
-/// The servos, in the order of every array.
+/// The servos in the order of all arrays.
 pub const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
 
-/// Every file of robots/: its name and its text.
-pub fn robot_files() -> Vec<(String, String)> {
+/// Reads the files in robots/; returns their names and texts.
+pub fn read_robot_files() -> Vec<(String, String)> {
     let folder = std::fs::read_dir(repo_root().join("robots")).expect("robots/ is readable");
     let paths = folder.map(|entry| entry.expect("robots/ is readable").path());
     let paths = paths.filter(|path| {
         path.extension()
             .is_some_and(|extension| extension == "toml")
     });
-    let read = |path: PathBuf| {
+    let files = paths.map(|path| {
         let text = std::fs::read_to_string(&path).expect("the file is readable");
         (path.display().to_string(), text)
-    };
-    let files: Vec<(String, String)> = paths.map(read).collect();
+    });
+    let files: Vec<(String, String)> = files.collect();
     assert!(files.len() >= 4);
     files
 }
 
-/// The text of a servo's value: that of the first line with this key after the header of the servo's table.
-pub fn servo_value<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
+/// Reads a servo's value: the text in the first line with the key `key` after the header of the servo's table.
+pub fn read_servo_value<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     let table = text.split_once(&format!("[servo.{servo}]"));
     let (_, table) = table.expect("the file has the servo's table");
     let mut values = table
@@ -38,9 +36,9 @@ pub fn servo_value<'a>(text: &'a str, servo: &str, key: &str) -> &'a str {
     values.next().expect(key).trim().trim_matches('"')
 }
 
-/// A servo's neutral angle, deg.
-pub fn neutral_angle(text: &str, servo: &str) -> f64 {
-    let value = servo_value(text, servo, "neutral");
+/// Reads a servo's neutral angle, deg.
+pub fn read_neutral_angle(text: &str, servo: &str) -> f64 {
+    let value = read_servo_value(text, servo, "neutral");
     value.parse().expect("the value is a number")
 }
 
@@ -48,8 +46,8 @@ pub fn paper_toml() -> String {
     read_file("robots/paper.toml")
 }
 
-/// Draws the robot of a robot file.
-pub fn drawing_of(draw: fn(&Robot) -> String, robot_toml: &str) -> Drawing {
+/// Draws the robot of a robot file, and parses the drawing.
+pub fn draw_robot(draw: fn(&Robot) -> String, robot_toml: &str) -> Drawing {
     let robot = Robot::parse(robot_toml).expect("the robot file is valid");
     Drawing::parse(&draw(&robot))
 }

@@ -1,4 +1,4 @@
-//! Tests of the drawings for a builder: for every robot, pins, wires and angles are those of its robot.toml.
+//! Tests of the drawings for a builder: pins, wires and angles of every robot match its robot.toml.
 
 mod cranks;
 mod drawing;
@@ -10,21 +10,21 @@ use lizard_robot::Robot;
 
 use crate::program::read_file;
 use drawing::Drawing;
-use files::{paper_toml, robot_files};
+use files::{paper_toml, read_robot_files};
 
 #[test]
-fn everything_is_on_the_page_and_large_enough_to_read() {
-    for (name, text) in robot_files() {
+fn every_element_is_on_the_page_and_large_enough_to_read() {
+    for (name, text) in read_robot_files() {
         let robot = Robot::parse(&text).expect("the robot file is valid");
         for svg in [draw_wiring(&robot), draw_horns(&robot)] {
             let drawing = Drawing::parse(&svg);
             let page = &drawing.elements[0];
-            let [width, height] = ["width", "height"].map(|key| page.finite_number(key));
-            assert!(width <= 700.0, "wider than a README");
+            let [width, height] = ["width", "height"].map(|key| page.parse_number(key));
+            assert!(width <= 700.0, "{name}: wider than a README");
             for element in &drawing.elements[1..] {
                 let mut points = element.points();
                 if element.tag == "text" {
-                    let size = element.finite_number("font-size");
+                    let size = element.parse_number("font-size");
                     assert!(size >= 12.0, "{name}: {element:?}");
                     // The width of a character in a wide font is about 0.55 of the font size.
                     let text_width = 0.55 * size * element.content.chars().count() as f64;
@@ -40,7 +40,7 @@ fn everything_is_on_the_page_and_large_enough_to_read() {
                 }
                 for (x, y) in points {
                     let is_inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
-                    assert!(is_inside, "{name}: {x} {y} {element:?}");
+                    assert!(is_inside, "{name}: ({x}, {y}) is off the page: {element:?}");
                 }
             }
         }

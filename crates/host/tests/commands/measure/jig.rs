@@ -1,46 +1,46 @@
-//! Tests of `lizard measure servo`, `steps` and `slope` on rendered films with known true values.
+//! Tests of `lizard measure servo`, `steps` and `slope` with rendered videos whose true values are known.
 
 use std::fs;
 use std::path::Path;
 
 use fastrand::Rng;
-use lizard_film::Picture;
 use lizard_studio::board::{self, Board, EVEN_BOARD};
 use lizard_studio::encode_jpeg;
 use lizard_studio::servo::Servo;
+use lizard_video::Frame;
 use serde_json::Value;
 
 use crate::program::{assert_contains, new_folder, read_file, run_in};
 
-/// Writes a picture as a JPEG file that is named after its time.
-fn write_picture(folder: &Path, seconds: f64, picture: &Picture) {
-    let jpeg = encode_jpeg(picture, 90).expect("the picture is encodable");
+/// Writes a frame as a JPEG file that is named after its time.
+fn write_frame(folder: &Path, seconds: f64, frame: &Frame) {
+    let jpeg = encode_jpeg(frame, 90).expect("the frame is encodable");
     fs::write(folder.join(format!("{seconds:.4}s.jpg")), jpeg).expect("the file is written");
 }
 
-/// Writes jig.toml: the paper's robot with pulses that change faster than its servos can follow.
+/// Writes jig.toml: the paper's robot with a slew limit above the rate of its servos.
 fn write_jig(folder: &Path) {
     let text = read_file("robots/paper.toml").replace("slew = 300.0", "slew = 1000.0");
     fs::write(folder.join("jig.toml"), text).expect("the file is written");
 }
 
-/// Checks that a figure is within two standard errors of its true value, and that the standard error is below
+/// Checks that a measured key is within two standard errors of its true value, and that the standard error is below
 /// `max_standard_error`.
-fn check_figure(object: &Value, key: &str, true_value: f64, max_standard_error: f64) {
-    let figures = object["figures"].as_array().expect("the value is an array");
-    let figure = figures.iter().find(|figure| figure["key"] == key);
-    let figure = figure.unwrap_or_else(|| panic!("{key}: {object}"));
-    let number_at = |name: &str| figure[name].as_f64().expect("the value is a number");
+fn check_key(object: &Value, name: &str, true_value: f64, max_standard_error: f64) {
+    let keys = object["figures"].as_array().expect("the value is an array");
+    let key = keys.iter().find(|key| key["key"] == name);
+    let key = key.unwrap_or_else(|| panic!("{name}: {object}"));
+    let number_at = |field: &str| key[field].as_f64().expect("the value is a number");
     let standard_error = number_at("error");
     assert!(
         (number_at("measured") - true_value).abs() < 2.0 * standard_error,
-        "{figure} {true_value}"
+        "{key}, true value {true_value}"
     );
-    assert!(standard_error < max_standard_error, "{figure}");
+    assert!(standard_error < max_standard_error, "{key}");
 }
 
 #[test]
-fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
+fn a_video_of_a_horn_gives_the_keys_of_a_reversed_servo() {
     let folder = new_folder("horn");
     write_jig(&folder);
     let servo = Servo {
@@ -51,31 +51,31 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
     };
     let mut studio = super::studio();
     (studio.deck_tag_height, studio.exposure_s) = (40.0, 1.0 / 250.0);
-    // The poses of A1 go clockwise; counter-clockwise the leg would come too close to its singularity.
+    // A1 turns clockwise; counter-clockwise the leg would come too close to its singularity.
     let mut rng = Rng::with_seed(9);
-    servo.take_pictures(&studio, -1.0, 90.0, &mut rng, |seconds, picture| {
-        write_picture(&folder, seconds, picture);
+    servo.record(&studio, -1.0, 90.0, &mut rng, |seconds, frame| {
+        write_frame(&folder, seconds, frame);
     });
     let arguments = [
         "measure", "servo", ".", "--servo", "A1", "--robot", "jig.toml", "--height",
     ];
     let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
     let object = measure(&["40", "--json"]).expect_json();
-    check_figure(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
-    check_figure(&object, "s_per_60_deg", 60.0 / servo.steady_rate(), 0.003);
+    check_key(&object, "us_per_degree", 10.0 / servo.gain, 0.05);
+    check_key(&object, "s_per_60_deg", 60.0 / servo.steady_rate(), 0.003);
     assert_eq!(object["turns_the_other_way"], true);
     let text = measure(&["40"]).expect_success();
     for expected in [
-        "It turns the other way than robot.toml says",
+        "The servo turns in the opposite direction",
         "[servo.A1]\nus_per_degree = -11.",
-        "Not told: stall_kg_cm",
+        "Not measured: stall_kg_cm",
     ] {
         assert_contains(&text, expected);
     }
     let output = measure(&["40", "--volts", "4.5", "--output", "measured.toml"]).expect_success();
     assert_contains(
         &output,
-        "Written: measured.toml, where [limits] slew is still 1000 deg/s",
+        "Written: measured.toml; its [limits] slew is still 1000 deg/s",
     );
     let [old_text, new_text] = ["jig.toml", "measured.toml"]
         .map(|file| fs::read_to_string(folder.join(file)).expect("the file is readable"));
@@ -83,30 +83,30 @@ fn a_film_of_a_horn_gives_the_keys_of_a_servo_that_turns_the_other_way() {
         .lines()
         .filter(|line| old_text.lines().all(|old| old != *line))
         .collect();
-    let value_of = |key: &str| {
+    let find_value = |key: &str| {
         let line = changed_lines.iter().find(|line| line.starts_with(key));
         let line = line.unwrap_or_else(|| panic!("{key}: {changed_lines:?}"));
         let number = line[key.len()..].split(['=', '#']).nth(1);
         let number = number.expect("the line has a value");
         number.trim().parse::<f64>().expect("the value is a number")
     };
-    assert!((value_of("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
-    // The file states the time at 4.8 V; the film was made at 4.5 V.
+    assert!((find_value("us_per_degree") - 10.0 / servo.gain).abs() < 0.1);
+    // The file states the time at 4.8 V, but the video was recorded at 4.5 V.
     let seconds_per_60_deg = 60.0 / servo.steady_rate() * 4.5 / 4.8;
     assert!(
-        (value_of("s_per_60_deg") - seconds_per_60_deg).abs() < 0.003,
+        (find_value("s_per_60_deg") - seconds_per_60_deg).abs() < 0.003,
         "{changed_lines:?}"
     );
-    assert_eq!(value_of("volts"), 4.5);
+    assert_eq!(find_value("volts"), 4.5);
     assert_contains(&changed_lines.join("\n"), ", was 10.00");
-    // Only the measured keys, a table header and blank lines are added.
+    // Only the measured keys, a table header and blank lines were added.
     assert!(new_text.lines().count() - old_text.lines().count() < 8);
     measure(&["40", "--output", "jig.toml"]).expect_refusal_with("jig.toml would be overwritten");
-    measure(&["90"]).expect_refusal_with("the tag on the deck, or on the horn, is");
+    measure(&["90"]).expect_refusal_with("according to its size, the tag on the deck or horn is");
 }
 
 #[test]
-fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
+fn steps_are_printed_only_for_a_robot_with_a_slew_limit_above_its_servos_rate() {
     let folder = new_folder("steps");
     write_jig(&folder);
     let print_steps = |servo: &str, robot: &str| {
@@ -125,11 +125,11 @@ fn steps_are_printed_only_for_a_robot_whose_pulses_outrun_its_servos() {
         "\npose 108.59 41.41 318.59 221.41\ndir 1 -\ndir 1 +\n",
     );
     print_steps("A1", "paper").expect_refusal_with("write slew = 1000.0 under [limits]");
-    print_steps("B1", "jig.toml").expect_refusal_with("it is A1, A2, A3 or A4");
+    print_steps("B1", "jig.toml").expect_refusal_with("expected A1, A2, A3 or A4");
 }
 
 #[test]
-fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_add() {
+fn a_video_of_a_slide_gives_friction_and_names_the_key_that_is_not_measured() {
     let folder = new_folder("slope");
     let sliding_board = Board {
         static_friction: 0.45,
@@ -137,19 +137,19 @@ fn a_film_of_a_slide_gives_friction_and_says_what_another_film_would_add() {
         lift_deg_per_s: 8.0,
         ..EVEN_BOARD
     };
-    sliding_board.take_pictures(&board::small_studio(), 30.0, |seconds, picture| {
-        write_picture(&folder, seconds, picture);
+    sliding_board.record(&board::small_studio(), 30.0, |seconds, frame| {
+        write_frame(&folder, seconds, frame);
     });
     let arguments = [
         "measure", "slope", ".", "--robot", "paper", "--height", "83",
     ];
     let measure = |options: &[&str]| run_in(&folder, &[&arguments[..], options].concat(), "");
     let object = measure(&["--json"]).expect_json();
-    check_figure(&object, "friction", sliding_board.sliding_friction, 0.02);
+    check_key(&object, "friction", sliding_board.sliding_friction, 0.02);
     let text = measure(&[]).expect_success();
     for expected in [
         "[ground]\nfriction = 0.",
-        "A film with the head uphill gives friction_back_over_forward",
+        "Not measured: friction_back_over_forward",
     ] {
         assert_contains(&text, expected);
     }

@@ -1,34 +1,34 @@
-//! Tests of `lizard measure keys` on hand-written results of `lizard measure`.
+//! Tests of `lizard measure keys` with hand-written results of `lizard measure`.
 
 use std::fs;
 use std::path::PathBuf;
 
 use crate::program::{Outcome, read_file, robot_path, run_in, scratch_folder};
 
-/// The movement of a gait per cycle, as `lizard measure --json` prints it; all errors are 0.05.
-fn gait_json(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
-    let component_json = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
+/// Formats a gait's movement per cycle as `lizard measure --json` does; all errors are 0.05.
+fn format_gait(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
+    let format_component = |mean: f64| format!(r#"{{"mean":{mean},"sd":0.1,"error":0.05}}"#);
     format!(
         r#"{{"gait":"{gait}","speed":100,"forward":{},"left":{},"turn":{}}}"#,
-        component_json(forward),
-        component_json(left),
-        component_json(turn)
+        format_component(forward),
+        format_component(left),
+        format_component(turn)
     )
 }
 
-/// The movements of several gaits, as `lizard measure --json` prints them.
-fn gaits_json(objects: &[String]) -> String {
+/// Formats the movements of several gaits as `lizard measure --json` does.
+fn format_gaits(objects: &[String]) -> String {
     format!(r#"{{"gaits":[{}]}}"#, objects.join(","))
 }
 
-/// Writes a file into the scratch folder.
+/// Writes a file to the scratch folder.
 fn write_file(name: &str, text: &str) -> PathBuf {
     let path = scratch_folder().join(name);
     fs::write(&path, text).expect("the file is written");
     path
 }
 
-fn measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
+fn run_measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
     let paper = robot_path("paper");
     let files: Vec<&str> = files.iter().filter_map(|file| file.to_str()).collect();
     let arguments = [&["measure", "keys", "--robot", &paper], &files[..], options].concat();
@@ -36,32 +36,32 @@ fn measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
 }
 
 #[test]
-fn files_without_usable_movements_are_refused_with_advice() {
+fn files_without_usable_movements_are_rejected_with_advice() {
     let foreign_file = r#"{"gaits":[{"gait":"walk","speed":100}]}"#.to_owned();
-    let walk_file_of = |gait: &str| gaits_json(&[gait_json(gait, [30.0, 0.0, 0.0])]);
-    let file_without_motion = gaits_json(&[gait_json("stand", [0.0; 3])]);
+    let file_with_gait = |gait: &str| format_gaits(&[format_gait(gait, [30.0, 0.0, 0.0])]);
+    let file_without_motion = format_gaits(&[format_gait("stand", [0.0; 3])]);
     let file_of_other_robot =
-        walk_file_of("walk").replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
+        file_with_gait("walk").replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
     for (text, expected) in [
-        (&foreign_file, "refused.json: this is not what"),
+        (&foreign_file, "refused.json: expected the output of"),
         (&foreign_file, "missing field `forward`"),
-        (&String::new(), "refused.json: this is not what"),
-        (&gaits_json(&[]), "none of these gaits"),
-        (&walk_file_of("wakl"), "no gait `wakl`"),
+        (&String::new(), "refused.json: expected the output of"),
+        (&format_gaits(&[]), "none of these gaits"),
+        (&file_with_gait("wakl"), "no gait `wakl`"),
         (&file_without_motion, "moves no servo"),
         (
             &file_of_other_robot,
-            "1.00 s by this robot.toml, but took 1.25 s",
+            "1.00 s in this robot.toml, but 1.25 s",
         ),
     ] {
         let file = write_file("refused.json", text);
-        measure_keys(&[&file], &[]).expect_refusal_with(expected);
+        run_measure_keys(&[&file], &[]).expect_refusal_with(expected);
     }
 }
 
 #[test]
 fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
-    let movements = gaits_json(&[gait_json("walk", [30.0, 0.0, 0.0])]);
+    let movements = format_gaits(&[format_gait("walk", [30.0, 0.0, 0.0])]);
     let movement_file = write_file("movement.json", &movements);
     let text = read_file("robots/grain.toml");
     let robot_file = write_file("other-robot.toml", &text);
@@ -70,34 +70,34 @@ fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
         (&movement_file, "this command reads it"),
     ] {
         let output = output.display().to_string();
-        measure_keys(&[&movement_file], &["--output", &output]).expect_refusal_with(reason);
+        run_measure_keys(&[&movement_file], &["--output", &output]).expect_refusal_with(reason);
     }
     let robot_text = fs::read_to_string(&robot_file).expect("the file is readable");
     assert_eq!(robot_text, text);
 }
 
 #[test]
-fn a_measured_robot_differs_only_in_the_lines_that_were_measured() {
-    // The model's movement with a friction ratio of 1.1, extrapolated by its derivatives at the file's ratio, 1.
+fn the_written_robot_file_differs_only_in_measured_lines() {
+    // The model's movements with a friction ratio of 1.1, extrapolated from the file's ratio of 1.
     let gaits = [
-        gait_json("walk", [33.57, 0.07, 0.0]),
-        gait_json("trot", [25.63, -0.02, 0.0]),
-        gait_json("crawl", [29.72, 0.3, -0.11]),
-        gait_json("back", [-32.91, 0.08, 0.0]),
-        gait_json("left", [1.09, 0.29, 14.53]),
+        format_gait("walk", [33.57, 0.07, 0.0]),
+        format_gait("trot", [25.63, -0.02, 0.0]),
+        format_gait("crawl", [29.72, 0.3, -0.11]),
+        format_gait("back", [-32.91, 0.08, 0.0]),
+        format_gait("left", [1.09, 0.29, 14.53]),
     ];
-    let measured_file = write_file("movements.json", &gaits_json(&gaits));
+    let measured_file = write_file("movements.json", &format_gaits(&gaits));
     let output = scratch_folder().join("measured.toml");
     let _ = fs::remove_file(&output);
     let output_name = output.to_str().expect("the path is UTF-8");
     let result =
-        measure_keys(&[&measured_file], &["--output", output_name, "--json"]).expect_json();
-    let verdict_of = |key: &str| {
+        run_measure_keys(&[&measured_file], &["--output", output_name, "--json"]).expect_json();
+    let find_verdict = |key: &str| {
         let mut entries = result["keys"].as_array().into_iter().flatten();
         let entry = entries.find(|entry| entry["key"] == key).expect(key);
         entry["verdict"].clone()
     };
-    assert_eq!(verdict_of("ground.friction_back_over_forward"), "moved");
+    assert_eq!(find_verdict("ground.friction_back_over_forward"), "moved");
     assert_eq!(result["written"], output_name);
     let (old_text, new_text) = (
         read_file("robots/paper.toml"),

@@ -1,4 +1,4 @@
-//! Tests of `lizard measure` on rendered films with known true values, and of the printed sheet in these films.
+//! Tests of `lizard measure` with rendered videos whose true values are known, and of the printed sheet in the videos.
 
 mod jig;
 mod keys;
@@ -18,10 +18,10 @@ use crate::program::{
     scratch_folder,
 };
 
-/// Frame rate of the films, pictures per second.
-const PICTURES_PER_SECOND: f64 = 8.0;
+/// Frame rate of the videos.
+const FRAMES_PER_SECOND: f64 = 8.0;
 
-/// A studio with a low resolution, for speed, in which the sheet fills the picture.
+/// Returns a studio with a low resolution, for speed, in which the sheet fills the frame.
 fn studio() -> Studio {
     let mut studio = Studio::random(&mut Rng::with_seed(4));
     (studio.size, studio.focal_length) = ([640, 360], 1.0);
@@ -35,7 +35,7 @@ fn studio() -> Studio {
     studio
 }
 
-/// Small differences between the cycles of a walk.
+/// Returns small differences between the cycles of a walk.
 fn variation() -> Variation {
     Variation {
         cycle_deviation: [0.1, 0.1, 0.002],
@@ -43,7 +43,7 @@ fn variation() -> Variation {
     }
 }
 
-/// Five cycles of `walk` that differ slightly from each other.
+/// Returns five cycles of `walk` that differ slightly from each other.
 fn varied_walk() -> Walk {
     let gait = paper_gait("walk");
     let start = [-true_displacement(&gait).forward * 2.5, 0.0, 0.0];
@@ -53,13 +53,13 @@ fn varied_walk() -> Walk {
 /// Renders five cycles of `walk` into a new folder.
 fn render_walk(folder: &str, file_name: impl Fn(usize) -> String) -> PathBuf {
     let walk = varied_walk();
-    render_film(folder, file_name, walk.duration_s(), |time| {
+    render_video(folder, file_name, walk.duration_s(), |time| {
         walk.pose_at(time)
     })
 }
 
-/// Renders a moving robot as JPEG files in a new folder; `file_name` makes a name from the picture's index.
-fn render_film(
+/// Renders a moving robot as JPEG files in a new folder; `file_name` returns a name for the frame's index.
+fn render_video(
     folder: &str,
     file_name: impl Fn(usize) -> String,
     duration_s: f64,
@@ -67,30 +67,30 @@ fn render_film(
 ) -> PathBuf {
     let folder = new_folder(folder);
     let mut rng = Rng::with_seed(4);
-    let background = studio().background(&mut rng);
-    for i in 0..(duration_s * PICTURES_PER_SECOND) as usize {
-        let picture = background.picture(i as f64 / PICTURES_PER_SECOND, &pose_at, &mut rng);
+    let background = studio().render_background(&mut rng);
+    for i in 0..(duration_s * FRAMES_PER_SECOND) as usize {
+        let frame = background.render_frame(i as f64 / FRAMES_PER_SECOND, &pose_at, &mut rng);
         let path = folder.join(file_name(i));
-        let jpeg = encode_jpeg(&picture, 80).expect("the picture is encodable");
+        let jpeg = encode_jpeg(&frame, 80).expect("the frame is encodable");
         fs::write(path, jpeg).expect("the file is written");
     }
     folder
 }
 
-/// Runs `lizard measure` on a film.
-fn measure(film: &Path, options: &[&str]) -> Outcome {
-    let film = film.to_str().expect("the path is UTF-8");
-    run(&[&["measure", film, "--height", "95"], options].concat())
+/// Runs `lizard measure` on a video.
+fn measure(video: &Path, options: &[&str]) -> Outcome {
+    let video = video.to_str().expect("the path is UTF-8");
+    run(&[&["measure", video, "--height", "95"], options].concat())
 }
 
-/// The words of a table that are the same for every film: all except numbers and verdicts.
-fn stable_words(table: &str) -> Vec<&str> {
+/// Returns the words of a table that are the same for every video: all except numbers and verdicts.
+fn find_stable_words(table: &str) -> Vec<&str> {
     let verdict_words = ["more", "less", "errors", "agrees"];
     let component_words = ["ahead", "left", "turn", "mm", "deg"];
     table
         .lines()
         .flat_map(|line| {
-            // The component with the largest error depends on the film, so its name is skipped, too.
+            // The component with the largest deviation depends on the video, so its name is skipped, too.
             let skipped_words = match line.starts_with("path") {
                 true => &component_words[..],
                 false => &[],
@@ -107,21 +107,20 @@ fn stable_words(table: &str) -> Vec<&str> {
 }
 
 #[test]
-fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
-    let folder = render_walk("walk film", |i| format!("walk-{}ms.jpg", i * 125));
+fn a_video_of_a_walk_agrees_with_the_prediction_and_is_rejected_as_another_gait() {
+    let folder = render_walk("walk video", |i| format!("walk-{}ms.jpg", i * 125));
     let robot = robot_path("paper");
     let measure_walk = |robot: &str, options: &[&str]| {
         let walk_options = ["--robot", robot, "--gait", "walk"];
         measure(&folder, &[&walk_options[..], options].concat())
     };
     let object = measure_walk(&robot, &["--json"]).expect_json();
-    let film = object["films"][0].clone();
+    let video = object["videos"][0].clone();
     let object = object["gaits"][0].clone();
-    let number_at = |path: &[&str]| {
+    let find_number = |path: &[&str]| {
         let value = path.iter().fold(&object, |value, key| &value[*key]);
-        value
-            .as_f64()
-            .unwrap_or_else(|| panic!("{path:?}: {object}"))
+        let number = value.as_f64();
+        number.unwrap_or_else(|| panic!("{path:?}: {object}"))
     };
     let truth = true_displacement(&paper_gait("walk"));
     for (name, truth, max_error) in [
@@ -130,24 +129,24 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         ("turn", truth.turn, 0.5),
     ] {
         assert!(
-            (number_at(&[name, "mean"]) - truth).abs() < max_error,
+            (find_number(&[name, "mean"]) - truth).abs() < max_error,
             "{name}: {object}"
         );
         assert!(
-            (number_at(&[name, "predicted"]) - truth).abs() < 1e-2,
+            (find_number(&[name, "predicted"]) - truth).abs() < 1e-2,
             "{name}: {object}"
         );
     }
-    assert!(number_at(&["cycles"]) >= 3.0 && (number_at(&["period"]) - 1.0).abs() < 0.01);
+    assert!(find_number(&["cycles"]) >= 3.0 && (find_number(&["period"]) - 1.0).abs() < 0.01);
     assert_eq!(
         object["each"].as_array().map(Vec::len),
-        Some(number_at(&["cycles"]) as usize)
+        Some(find_number(&["cycles"]) as usize)
     );
-    let figures = read_file("tools/physics/figures.json");
-    let figures: Value = serde_json::from_str(&figures).expect("the figures are JSON");
-    let mujoco = &figures["paper"]["walk"]["rigid, level"]["mujoco"];
+    let engine_results = read_file("tools/physics/figures.json");
+    let engine_results: Value = serde_json::from_str(&engine_results).expect("the file is JSON");
+    let mujoco = &engine_results["paper"]["walk"]["rigid, level"]["mujoco"];
     assert_eq!(&object["mujoco"], mujoco);
-    // The stored MuJoCo figures stay valid if a comment is added to robot.toml, but not if the mass changes.
+    // The stored MuJoCo results stay valid if a comment is added to robot.toml, but not if the mass changes.
     let text = read_file("robots/paper.toml");
     let heavier_text = text.replace("mass = 435.0", "mass = 500.0");
     assert_ne!(heavier_text, text);
@@ -162,21 +161,21 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
         assert_eq!(&object["gaits"][0]["mujoco"], mujoco);
     }
     let range = &object["range"];
-    let predicted = number_at(&["forward", "predicted"]);
+    let predicted = find_number(&["forward", "predicted"]);
     let [min, max] =
         ["least", "most"].map(|end| range[end].as_f64().expect("the value is a number"));
     assert!(min < predicted - 5.0 && predicted + 1.0 < max, "{range}");
     assert_eq!(range["least_by"], "mounting of the legs");
     let table = measure_walk(&robot, &[]).expect_success();
     assert!(table.contains("agrees"), "{table}");
-    // The example in docs/measure.md comes from such a film.
+    // The example in docs/measure.md is the output for such a video.
     let page = read_file("docs/measure.md");
     let (_, example) = page
         .split_once("--gait walk --height 95\n")
         .expect("the page has the example");
     let (example, _) = example.split_once("```").expect("the example ends");
-    let table = table.replace(&folder.display().to_string(), "film.mp4");
-    assert_eq!(stable_words(example), stable_words(&table));
+    let table = table.replace(&folder.display().to_string(), "video.mp4");
+    assert_eq!(find_stable_words(example), find_stable_words(&table));
     let csv = measure(&folder, &["--csv"]).expect_success();
     assert!(
         csv.starts_with("seconds,forward,left,heading\n0.0000,"),
@@ -184,16 +183,16 @@ fn a_film_of_a_walk_agrees_with_the_prediction_and_names_its_errors() {
     );
     assert_eq!(
         Some(csv.lines().count() as u64 - 1),
-        film["pictures"].as_u64()
+        video["pictures"].as_u64()
     );
-    // A path that does not fit the named gait is refused; the message names the gait that fits.
+    // A path that does not match the named gait is rejected; the message names the gait that matches.
     let message = measure(&folder, &["--gait", "left"]).expect_refusal();
     assert!(message.contains("was it another gait"), "{message}");
-    assert!(message.ends_with("; it is like walk"), "{message}");
+    assert!(message.ends_with("; it resembles walk"), "{message}");
 }
 
-/// The gaits of a result, each with the number of its walks.
-fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
+/// Returns the gaits of a result, each with the number of its walks.
+fn count_walks(object: &Value) -> Vec<(&str, usize)> {
     let gaits = object["gaits"].as_array().expect("the value is an array");
     let counts = gaits.iter().map(|result| {
         let name = result["gait"].as_str().expect("the gait has a name");
@@ -203,31 +202,31 @@ fn walk_counts(object: &Value) -> Vec<(&str, usize)> {
 }
 
 #[test]
-fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
+fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     let [walk, left] = ["walk", "left"].map(paper_gait);
     let order = [(&walk, 3), (&left, 4), (&walk, 3)];
     let (start, mut rng) = ([-90.0, -20.0, 0.0], Rng::with_seed(4));
     let series = WalkSeries::new(start, &order, 2.2, variation(), &mut rng);
-    let name_of = |i| format!("{i}.jpg");
-    let folder = render_film("gaits", name_of, series.duration_s(), |time| {
+    let file_name = |i| format!("{i}.jpg");
+    let folder = render_video("gaits", file_name, series.duration_s(), |time| {
         series.pose_at(time)
     });
     let robot = robot_path("paper");
     let measure_gaits = |options: &[&str]| {
-        let film_options = ["--robot", &robot, "--fps", "8"];
-        measure(&folder, &[&film_options[..], options].concat())
+        let video_options = ["--robot", &robot, "--fps", "8"];
+        measure(&folder, &[&video_options[..], options].concat())
     };
     let svg_path = scratch_folder().join("measured.svg");
     let svg_name = svg_path.display().to_string();
     let picture_options = ["--json", "--picture", &svg_name];
     let unnamed_result = measure_gaits(&picture_options).expect_json();
     assert_eq!(
-        walk_counts(&unnamed_result),
+        count_walks(&unnamed_result),
         [("walk", 2), ("left", 1)],
         "{unnamed_result}"
     );
     let named_result = measure_gaits(&["--json", "--gait", "walk,left,walk"]).expect_json();
-    assert_eq!(walk_counts(&named_result), walk_counts(&unnamed_result));
+    assert_eq!(count_walks(&named_result), count_walks(&unnamed_result));
     for (index, gait) in [walk, left].iter().enumerate() {
         let result = &unnamed_result["gaits"][index];
         let truth = true_displacement(gait);
@@ -247,25 +246,25 @@ fn gaits_in_a_film_are_identified_by_given_names_or_by_their_paths() {
     for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
         assert!(svg.contains(label), "{label}: {svg}");
     }
-    // A gait that is not in the film and gaits in the wrong order are refused.
+    // A gait that is not in the video and gaits in the wrong order are rejected.
     let refusal = measure_gaits(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
-        refusal.starts_with("lizard: 3 walks between rests of")
+        refusal.starts_with("lizard: found 3 walks between rests of")
             && refusal.contains("names 4: walk, left, walk, back\n")
-            && refusal.contains(" s long: like left\n")
-            && refusal.ends_with("no walk is like back"),
+            && refusal.contains(" s long: resembles left\n")
+            && refusal.ends_with("no walk resembles back"),
         "{refusal}"
     );
     let refusal = measure_gaits(&["--gait", "left,walk,walk"]).expect_refusal();
     assert!(
-        refusal.contains(" s, left: the path is not that of this gait")
-            && refusal.ends_with("; it is like walk"),
+        refusal.contains(" s, left: the path does not match this gait")
+            && refusal.ends_with("; it resembles walk"),
         "{refusal}"
     );
 }
 
 #[test]
-fn impossible_measurements_are_refused_with_a_message() {
+fn impossible_measurements_are_rejected_with_a_message() {
     let folder = new_folder("measure refusals");
     for name in ["empty", "text", "untimed"] {
         fs::create_dir(folder.join(name)).expect("the folder is created");
@@ -274,22 +273,25 @@ fn impossible_measurements_are_refused_with_a_message() {
         fs::write(folder.join(name), text).expect("the file is written");
     }
     for (line, message) in [
-        ("measure none --gait walk", "lizard: there is no film none"),
+        (
+            "measure none --gait walk",
+            "lizard: none is neither a video file nor a folder",
+        ),
         (
             "measure empty --gait walk",
-            "lizard: empty has no pictures: .png, .jpg or .jpeg",
+            "lizard: empty has no frames: .png, .jpg or .jpeg files",
         ),
         (
             "measure untimed --gait walk",
-            "lizard: the times of the pictures are unknown: --fps 30 gives the film's frames per second",
+            "lizard: the time of untimed/frame-001.png is unknown: give the frames per second",
         ),
         (
             "measure text --gait walk --fps 30",
-            "lizard: text/a.png is no picture that can be read: ",
+            "lizard: text/a.png is not a valid PNG or JPEG file: ",
         ),
         (
             "measure text --gait wlak --fps 30",
-            "lizard: robot.toml has no gait `wlak`; those that move are",
+            "lizard: robot.toml has no gait `wlak`; allowed values:",
         ),
         (
             "measure text --gait stand --fps 30",
@@ -297,7 +299,7 @@ fn impossible_measurements_are_refused_with_a_message() {
         ),
         (
             "measure text --gait walk --ruler 20",
-            "error: invalid value '20' for '--ruler <MM>': it is the line of 100 mm",
+            "error: invalid value '20' for '--ruler <MM>': must be between 85 and 115 mm",
         ),
         (
             "measure --gait walk",
@@ -315,46 +317,46 @@ fn impossible_measurements_are_refused_with_a_message() {
 }
 
 #[test]
-fn a_film_without_ffmpeg_says_what_to_install() {
-    let film = scratch_folder().join("film.mp4");
-    fs::write(&film, "a film").expect("the file is written");
+fn the_error_for_a_video_without_ffmpeg_names_the_program_to_install() {
+    let video = scratch_folder().join("video.mp4");
+    fs::write(&video, "a video").expect("the file is written");
     let program = env!("CARGO_BIN_EXE_lizard");
     let mut command = std::process::Command::new(program);
     command
         .args(["measure", "--gait", "walk"])
-        .arg(&film)
+        .arg(&video)
         .env("PATH", "");
-    let output = lizard_time_limit::LIMIT
-        .output(&mut command, b"")
+    let output = lizard_time_limit::TIME_LIMIT
+        .run_command(&mut command, b"")
         .expect("the program exits");
     let message = String::from_utf8_lossy(&output.stderr);
-    assert_contains(&message, "install ffmpeg, or give a folder of pictures");
+    assert_contains(&message, "install ffmpeg, or give a folder of frames");
     assert_eq!(output.status.code(), Some(1));
 }
 
-/// Replaces ffmpeg and ffprobe by scripts: ffmpeg prints decoded pictures, ffprobe the uneven times of a phone's film.
+/// Replaces ffmpeg and ffprobe by scripts: ffmpeg prints decoded frames, ffprobe the uneven times of a phone's video.
 #[test]
 #[cfg(unix)]
-fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
+fn measure_reads_frames_from_ffmpeg_and_times_from_ffprobe() {
     use std::fmt::Write as _;
     use std::os::unix::fs::PermissionsExt;
     let folder = scratch_folder().join("ffmpeg");
     fs::create_dir_all(&folder).expect("the folder is created");
-    let mut film = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
+    let mut video = b"YUV4MPEG2 W640 H360 F8:1 Ip A1:1 Cmono\n".to_vec();
     let mut times = String::new();
-    let (background, walk) = (studio(), varied_walk());
+    let walk = varied_walk();
     let mut rng = Rng::with_seed(9);
-    let background = background.background(&mut rng);
-    for i in 0..(walk.duration_s() * PICTURES_PER_SECOND) as usize {
-        let seconds = i as f64 / PICTURES_PER_SECOND + 0.01 * f64::from(i as u32 % 3);
-        let picture = background.picture(seconds, |time| walk.pose_at(time), &mut rng);
-        film.extend(b"FRAME\n");
-        film.extend(picture.grey());
+    let background = studio().render_background(&mut rng);
+    for i in 0..(walk.duration_s() * FRAMES_PER_SECOND) as usize {
+        let seconds = i as f64 / FRAMES_PER_SECOND + 0.01 * f64::from(i as u32 % 3);
+        let frame = background.render_frame(seconds, |time| walk.pose_at(time), &mut rng);
+        video.extend(b"FRAME\n");
+        video.extend(frame.grey());
         let _ = write!(times, "{seconds:.6},\n\n");
     }
-    fs::write(folder.join("film"), film).expect("the file is written");
+    fs::write(folder.join("video"), video).expect("the file is written");
     fs::write(folder.join("times"), times).expect("the file is written");
-    for (program, file) in [("ffmpeg", "film"), ("ffprobe", "times")] {
+    for (program, file) in [("ffmpeg", "video"), ("ffprobe", "times")] {
         let path = folder.join(program);
         let script = format!("#!/bin/sh\nexec cat '{}'\n", folder.join(file).display());
         fs::write(&path, script).expect("the file is written");
@@ -365,9 +367,9 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
     let path = format!("{}:/usr/bin:/bin", folder.display());
     command.args(["measure", "--gait", "walk", "--height", "95", "--json"]);
     command.args(["--robot", &robot_path("paper")]);
-    command.arg(folder.join("film")).env("PATH", path);
-    let output = lizard_time_limit::LIMIT
-        .output(&mut command, b"")
+    command.arg(folder.join("video")).env("PATH", path);
+    let output = lizard_time_limit::TIME_LIMIT
+        .run_command(&mut command, b"")
         .expect("the program exits");
     let object: Value = serde_json::from_slice(&output.stdout).expect("the output is JSON");
     let forward_mm = object["gaits"][0]["forward"]["mean"].as_f64();
@@ -379,7 +381,7 @@ fn a_film_is_read_through_ffmpeg_at_the_times_from_ffprobe() {
 }
 
 #[test]
-fn every_number_in_the_json_of_a_film_is_finite() {
+fn every_number_in_the_json_of_a_video_is_finite() {
     // serde_json writes NaN and infinity as null.
     let folder = render_walk("numbers", |i| format!("{i}.jpg"));
     let options = ["--fps", "8", "--gait", "walk", "--json"];

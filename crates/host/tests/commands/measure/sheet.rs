@@ -1,8 +1,8 @@
-//! Tests of the sheet's PDF: it is rasterised, and the tag detector reads the picture.
+//! Tests of the sheet's PDF: the page is rasterised, and the tag detector reads it.
 
 use std::fs;
 
-use lizard_film::{Picture, read_tags, sheet};
+use lizard_video::{Frame, read_tags, sheet};
 
 use crate::program::{run, scratch_folder};
 
@@ -11,8 +11,11 @@ const PIXELS_PER_MM: f64 = 3.0;
 /// Size of a PDF point, mm.
 const MM_PER_POINT: f64 = 25.4 / 72.0;
 
-/// The operands of each line of `text` that ends in the PDF operator `operator`.
-fn operands<'a>(text: &'a str, operator: &'a str) -> impl Iterator<Item = Vec<f64>> + Clone + 'a {
+/// Returns the operands of each line in `text` that ends in the PDF operator `operator`.
+fn parse_operands<'a>(
+    text: &'a str,
+    operator: &'a str,
+) -> impl Iterator<Item = Vec<f64>> + Clone + 'a {
     let lines = text
         .lines()
         .filter_map(move |line| line.strip_suffix(operator));
@@ -39,9 +42,9 @@ fn write_sheet(paper: &str) -> (String, [f64; 2]) {
     (text, size)
 }
 
-/// Draws the filled rectangles of a page as a picture. Also returns the extent of the ink: the smallest and largest
+/// Draws the filled rectangles of a page into a frame. Also returns the extent of the ink: the smallest and largest
 /// distances from the left edge, then from the lower edge, mm.
-fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64; 2]; 2]) {
+fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Frame, [[f64; 2]; 2]) {
     let columns = (page_width * PIXELS_PER_MM) as usize;
     let rows = (page_height * PIXELS_PER_MM) as usize;
     let mut pixels = vec![255; columns * rows];
@@ -49,10 +52,10 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
     let mut lines = text.lines().peekable();
     let mut fill = 0;
     while let Some(line) = lines.next() {
-        if let Some(operands) = operands(line, " g").next() {
+        if let Some(operands) = parse_operands(line, " g").next() {
             fill = (255.0 * operands[0]) as u8;
         }
-        let Some(rectangle) = operands(line, " re").next() else {
+        let Some(rectangle) = parse_operands(line, " re").next() else {
             continue;
         };
         let [x, y, width, height] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
@@ -63,7 +66,7 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
         if lines.peek() != Some(&"f") {
             continue;
         }
-        // A pixel is filled if its centre lies in the rectangle.
+        // A pixel is filled if its centre is in the rectangle.
         let pixel_range = |start: f64, end: f64| {
             (start * PIXELS_PER_MM + 0.5) as usize..(end * PIXELS_PER_MM + 0.5) as usize
         };
@@ -73,15 +76,15 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Picture, [[f64
             }
         }
     }
-    let picture = Picture::new(columns, rows, pixels).expect("the page has pixels");
-    (picture, ink_extent)
+    let frame = Frame::new(columns, rows, pixels).expect("the page has pixels");
+    (frame, ink_extent)
 }
 
 #[test]
-fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
+fn a_printed_sheet_shows_all_tags_at_actual_size() {
     for (paper, paper_mm) in [("a4", [297.0_f64, 210.0]), ("letter", [279.4, 215.9])] {
         let (text, page_mm) = write_sheet(paper);
-        let (picture, ink_extent) = rasterize(&text, page_mm);
+        let (frame, ink_extent) = rasterize(&text, page_mm);
         for (axis, [low, high]) in ink_extent.into_iter().enumerate() {
             assert!((page_mm[axis] - paper_mm[axis]).abs() < 0.1, "{page_mm:?}");
             assert!(
@@ -89,7 +92,7 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
                 "ink outside the printable area: {ink_extent:?}"
             );
         }
-        let mut tags = read_tags(&picture);
+        let mut tags = read_tags(&frame);
         tags.sort_by_key(|tag| tag.id);
         let ids: Vec<usize> = tags.iter().map(|tag| tag.id).collect();
         assert_eq!(ids, [0, 1, 2, 3, 4], "{paper}");
@@ -99,28 +102,32 @@ fn a_printed_sheet_has_the_tags_of_the_strips_and_the_card_at_actual_size() {
             let [left, right, ..] = tag.corners;
             let edge_mm = distance_mm(left, right);
             let error_mm = edge_mm - sheet::tag_edge(tag.id);
-            assert!(error_mm.abs() < 0.4, "{paper} {}: {edge_mm}", tag.id);
+            assert!(
+                error_mm.abs() < 0.4,
+                "{paper}, tag {}: {edge_mm} mm",
+                tag.id
+            );
             let is_upright = left[0] < right[0] && (left[1] - right[1]).abs() < 1.0;
-            assert!(is_upright, "{paper} {}", tag.id);
+            assert!(is_upright, "{paper}, tag {}", tag.id);
         }
         for strip in [0, 2] {
             let spacing_mm = distance_mm(tags[strip].corners[0], tags[strip + 1].corners[0]);
             let error_mm = spacing_mm - sheet::TAG_SPACING;
-            assert!(error_mm.abs() < 0.4, "{paper}: {spacing_mm}");
+            assert!(error_mm.abs() < 0.4, "{paper}: {spacing_mm} mm");
         }
     }
 }
 
 #[test]
-fn a_strip_has_a_line_of_100_mm_from_end_to_end() {
+fn the_ruler_line_of_a_strip_is_100_mm_long() {
     let (text, _) = write_sheet("a4");
-    let rectangles =
-        operands(&text, " re").map(|rectangle| [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT));
+    let rectangles = parse_operands(&text, " re")
+        .map(|rectangle| [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT));
     let rulers = rectangles
         .clone()
         .filter(|rectangle| (rectangle[2] - sheet::RULER_LENGTH).abs() < 0.01);
     assert_eq!(rulers.count(), sheet::STRIP_COUNT);
-    // The outer edges of the two end ticks, 8 mm high, are at the ends of the line.
+    // The outer edges of the two 8 mm end ticks are at the ends of the line.
     let ticks = rectangles.filter(|rectangle| (rectangle[3] - 8.0).abs() < 0.01);
     let ticks: Vec<[f64; 2]> = ticks.map(|[x, _, width, _]| [x, x + width]).collect();
     assert_eq!(ticks.len(), 2 * sheet::STRIP_COUNT);

@@ -1,13 +1,13 @@
-//! Tests of invalid input: each case has its message and exit code, and leaves no incomplete output.
+//! Tests of invalid input: messages, exit codes, and no incomplete output.
 
-use lizard_time_limit::LIMIT;
+use lizard_time_limit::TIME_LIMIT;
 
 use crate::program::{assert_contains, run_line, scratch_folder, with_paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
 #[test]
-fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
+fn the_refusal_of_an_invalid_row_names_the_line_and_column() {
     let cases: &[(&str, &str)] = &[
         (
             "138,42,x,221\n",
@@ -17,7 +17,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
         ("138,,221,318\n", "line 2, column 2 (theta4): no value"),
         (
             "138,42,318,221,5\n",
-            "line 2, column 5: \"5\" is one value too many",
+            "line 2, column 5: unexpected value \"5\"",
         ),
         (
             "nan,42,318,221\n",
@@ -33,7 +33,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
         ),
         (
             "138,42,318,1e308\n",
-            "line 2, column 4 (theta5): \"1e308\" is not within -1000000 to 1000000 degrees",
+            "line 2, column 4 (theta5): \"1e308\" is not between -1000000 and 1000000 degrees",
         ),
         (
             "138,42,318,221\n\n138;42;318;221\n",
@@ -51,7 +51,7 @@ fn a_malformed_row_names_line_and_column_and_ends_with_code_2() {
 }
 
 #[test]
-fn rows_before_a_malformed_row_are_answered_in_full() {
+fn rows_before_an_invalid_row_are_solved_completely() {
     let input = format!("{HEADER}138,42,318,221\n138,42,318,221\n?,42,318,221\n");
     let outcome = run_line("pose --json", input);
     assert_eq!((outcome.code, outcome.stdout.lines().count()), (Some(2), 2));
@@ -64,7 +64,7 @@ fn rows_before_a_malformed_row_are_answered_in_full() {
 #[test]
 fn an_invalid_header_is_refused() {
     let header_hint =
-        "; the header is theta1,theta4,theta8,theta5, in any order, and seconds if you like";
+        "; expected the header theta1,theta4,theta8,theta5 in any order, optionally with seconds";
     let cases: &[(&[u8], String)] = &[
         (
             b"",
@@ -81,7 +81,7 @@ fn an_invalid_header_is_refused() {
         ),
         (
             b"theta1,theta4,theta5,theta5\n",
-            format!("line 1, column 4: \"theta5\" comes twice{header_hint}"),
+            format!("line 1, column 4: duplicate column \"theta5\"{header_hint}"),
         ),
         (
             b"theta1,theta4,\xff,theta8\n",
@@ -101,7 +101,7 @@ fn an_invalid_header_is_refused() {
 }
 
 #[test]
-fn invalid_arguments_end_with_code_2_and_a_message_that_names_the_reason() {
+fn the_refusal_of_invalid_arguments_states_the_reason() {
     let cases: &[(&str, &str)] = &[
         ("pose --theta1 138", "--theta4"),
         (
@@ -117,27 +117,27 @@ fn invalid_arguments_end_with_code_2_and_a_message_that_names_the_reason() {
         ("pose --head 5 nan", "it is not a finite number"),
         (
             "pose --head 5 1e308",
-            "it is not within -1000000 to 1000000 mm",
+            "it is not between -1000000 and 1000000 mm",
         ),
         (
             "pose --theta1 1e308 --theta4 42 --theta8 318 --theta5 221",
-            "it is not within -1000000 to 1000000 degrees",
+            "it is not between -1000000 and 1000000 degrees",
         ),
         (
             "pose --show rates --omega8 1e200",
-            "it is not within -1000000 to 1000000 deg/s",
+            "it is not between -1000000 and 1000000 deg/s",
         ),
         (
             "pose --show rates --alpha5 -1e200",
-            "it is not within -1000000000 to 1000000000 deg/s^2",
+            "it is not between -1000000000 and 1000000000 deg/s^2",
         ),
         (
             "design --l0 1e308",
-            "it is not within -1000000 to 1000000 mm",
+            "it is not between -1000000 and 1000000 mm",
         ),
         (
             "design --r1 0.4 --r3 1e-300",
-            "r3 is 1.0e-300, too short to build: it must be at least 0.001",
+            "r3 is 1.0e-300, but must be at least 0.001",
         ),
         (
             "gaits --robot /dev/zero",
@@ -145,18 +145,21 @@ fn invalid_arguments_end_with_code_2_and_a_message_that_names_the_reason() {
         ),
         ("gaits --robot /", "cannot be read"),
         ("pose --show rates --omega1 fast", "it is not a number"),
-        ("design --r1 0.3", "give two or three of --r1, --r2, --r3"),
+        (
+            "design --r1 0.3",
+            "two or three of --r1, --r2, --r3 are required",
+        ),
         (
             "design --r1 0.3 --r2 0.3 --r3 0.1",
-            "it must be 0.9; the same shape is r1 0.385714",
+            "but must be 0.9; the same shape has r1 0.385714",
         ),
         (
             "design --r1 0.1 --r2 0.2 --r3 0.6",
-            "r3 is 0.6, it must lie between 0 and 0.45",
+            "r3 is 0.6, but must be between 0 and 0.45",
         ),
-        ("design --l0 -5", "it must be at least 0.001 mm"),
-        ("design --l0 0", "it must be at least 0.001 mm"),
-        ("design --chart --step 0", "it must be 0.002 to 0.2"),
+        ("design --l0 -5", "must be at least 0.001 mm"),
+        ("design --l0 0", "must be at least 0.001 mm"),
+        ("design --chart --step 0", "must be between 0.002 and 0.2"),
         ("errata --samples 0", "0 is not in"),
         ("pose --robot no/such/robot.toml", "no/such/robot.toml"),
         ("draw charts", "<DIR>"),
@@ -192,7 +195,7 @@ fn an_impossible_request_ends_with_code_1() {
 
 #[cfg(unix)]
 #[test]
-fn a_closed_pipe_is_not_a_failure() {
+fn a_closed_pipe_is_not_an_error() {
     let mut input = HEADER.to_string();
     input += &"138,42,318,221\n".repeat(50_000);
     let file = scratch_folder().join("poses.csv");
@@ -203,7 +206,9 @@ fn a_closed_pipe_is_not_a_failure() {
         file.display()
     );
     let mut bash = std::process::Command::new("bash");
-    let output = LIMIT.output(bash.args(["-c", &script]), b"").unwrap();
+    let output = TIME_LIMIT
+        .run_command(bash.args(["-c", &script]), b"")
+        .unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
     assert!(output.status.success());
 }

@@ -1,4 +1,4 @@
-//! Tests that the pages in docs/ agree with the program's output.
+//! Tests that the pages in docs/ match the program's output.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use lizard_paper::errata::{SAMPLE_COUNT, format_markdown, measure};
 use crate::program::{assert_contains, read_file, repo_root, run_line, with_paper};
 
 #[test]
-fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
+fn the_errata_page_is_up_to_date_and_every_correction_holds() {
     let entries = measure(SAMPLE_COUNT, &|| {});
     assert!(entries.iter().all(|entry| entry.is_settled()));
     // Each printed form has one entry, so no erratum is counted twice.
@@ -25,7 +25,7 @@ fn the_errata_page_has_the_measured_figures_and_every_correction_holds() {
 }
 
 #[test]
-fn every_command_of_the_page_on_the_paper_prints_the_output_that_the_page_shows() {
+fn every_command_in_docs_paper_prints_the_output_on_the_page() {
     let page = read_file("docs/paper.md");
     let mut command_count = 0;
     for block in page.split("```console\n").skip(1) {
@@ -40,11 +40,11 @@ fn every_command_of_the_page_on_the_paper_prints_the_output_that_the_page_shows(
         );
         command_count += 1;
     }
-    assert!(command_count >= 6, "{command_count}");
+    assert!(command_count >= 6, "{command_count} commands");
 }
 
 #[test]
-fn charts_are_written_as_svg_only_and_are_those_of_the_docs() {
+fn draw_charts_writes_the_svg_files_in_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
     let robot = repo_root().join("robots/paper.toml");
     let (folder_path, robot) = (folder.display(), robot.display());
@@ -71,7 +71,7 @@ fn charts_are_written_as_svg_only_and_are_those_of_the_docs() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Table 1 of the paper as printed: names of links, and their lengths, mm.
+/// Table 1 of the paper as printed: link names and lengths, mm.
 const TABLE_1: [(&str, f64); 7] = [
     ("l0 l5", 20.0),
     ("l1 l4 l6 l9 l14 l11 l16 l19", 30.0),
@@ -83,9 +83,9 @@ const TABLE_1: [(&str, f64); 7] = [
 ];
 
 #[test]
-fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_twice() {
+fn table_1_matches_the_papers_robot_except_for_the_link_listed_twice() {
     let robot = read_file("robots/paper.toml");
-    let value_of = |name: &str| -> f64 {
+    let read_length = |name: &str| -> f64 {
         let line = robot
             .lines()
             .find_map(|line| line.strip_prefix(name)?.trim().strip_prefix('='));
@@ -95,21 +95,21 @@ fn table_1_of_the_paper_agrees_with_its_robot_except_for_the_link_that_it_names_
     let rows = TABLE_1
         .iter()
         .flat_map(|(names, mm)| names.split(' ').map(move |name| (name, *mm)));
-    let differing_rows = rows.clone().filter(|(name, mm)| value_of(name) != *mm);
+    let differing_rows = rows.clone().filter(|(name, mm)| read_length(name) != *mm);
     assert_eq!(differing_rows.collect::<Vec<_>>(), [("l16", 45.0)]);
     let names = rows.map(|(name, _)| name);
     let links: BTreeSet<&str> = names.filter(|name| name.starts_with('l')).collect();
     assert_eq!(links.len(), 19);
-    assert!(!links.contains("l17") && value_of("l17") == 45.0);
+    assert!(!links.contains("l17") && read_length("l17") == 45.0);
     let page = read_file("docs/paper.md");
     assert_contains(
         &page,
-        "19 of 20 links; l17 is missing and l16 is there twice",
+        "19 of 20 links; l17 is missing and l16 is listed twice",
     );
 }
 
 #[test]
-fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
+fn docs_paper_lists_every_figure_of_the_paper_with_its_command_and_files() {
     let page = read_file("docs/paper.md");
     let table = page.split_once("| in the paper |");
     let (_, table) = table.expect("the page has the table");
@@ -139,7 +139,7 @@ fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
             continue;
         };
         let command = command.trim_end_matches('`');
-        // Commands with a DIR take seconds, and other tests run them.
+        // Commands with a DIR take seconds and are run by other tests.
         if let Some(base_command) = command.strip_suffix(" DIR") {
             run_line(&format!("{base_command} --help"), "").expect_success();
             let chart_names = files
@@ -155,40 +155,38 @@ fn the_page_lists_every_figure_of_the_paper_once_with_its_command_and_files() {
 }
 
 #[test]
-fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
+fn docs_paper_states_the_computed_movements_of_the_papers_gaits() {
     let page = read_file("docs/paper.md").replace('\n', " ");
     let rows = run_line(&with_paper("gaits --json"), "").expect_json_lines();
-    let prediction_of = |gait: &str, key: &str| -> f64 {
+    let find_prediction = |gait: &str, key: &str| -> f64 {
         let row = rows.iter().find(|row| row["gait"] == gait).expect(gait);
         row["predicted"][key].as_f64().expect(key)
     };
-    let (walk_mm, left_deg) = (
-        prediction_of("walk", "forward"),
-        prediction_of("left", "turn"),
-    );
+    let walk_mm = find_prediction("walk", "forward");
+    let left_deg = find_prediction("left", "turn");
     let foot_travel_mm = 80.0_f64.hypot(55.0) * left_deg.to_radians();
     let table = run_line(&with_paper("gaits --sensitivity"), "").expect_success();
-    let numbers_of = |heading: &str, name: &str| -> Vec<f64> {
+    let find_numbers = |heading: &str, name: &str| -> Vec<f64> {
         let (_, rows) = table.split_once(heading).expect(heading);
         let prefix = format!("{name} ");
         let row = rows.lines().find_map(|line| line.strip_prefix(&prefix));
         let words = row.expect(name).split_whitespace();
         words.filter_map(|word| word.parse().ok()).collect()
     };
-    // The third column of mounts is for 41.4 deg, and the fourth of friction for a ratio of 1.25. The row of a turn has
-    // two numbers in each column.
+    // The third mount column is for 41.4 deg, and the fourth friction column is for a ratio of 1.25. The row of a turn
+    // has two numbers in each column.
     let [mounted_walk_mm, mounted_turn_deg] = [
-        numbers_of("mount, deg", "walk")[2],
-        numbers_of("mount, deg", "left")[5],
+        find_numbers("mount, deg", "walk")[2],
+        find_numbers("mount, deg", "left")[5],
     ];
     assert!(table.contains("41.4") && table.contains("1.25"));
-    let uneven_walk_mm = numbers_of("friction", "walk")[3];
+    let uneven_walk_mm = find_numbers("friction", "walk")[3];
     for phrase in [
         format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk_mm),
         format!("`left` turns {left_deg:.1} deg in a cycle"),
         format!(
             "`trot`, {:.1} mm in a cycle",
-            prediction_of("trot", "forward")
+            find_prediction("trot", "forward")
         ),
         format!("in a cycle `walk` makes {walk_mm:.1} mm"),
         format!("the feet, 97 mm from the middle, move by {foot_travel_mm:.1} mm"),
@@ -198,7 +196,7 @@ fn the_figures_of_the_papers_walk_on_the_page_are_those_of_the_gaits() {
     ] {
         assert!(
             page.contains(&phrase),
-            "docs/paper.md does not say: {phrase}"
+            "docs/paper.md does not contain: {phrase}"
         );
     }
 }

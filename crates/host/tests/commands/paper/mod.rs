@@ -1,7 +1,7 @@
-//! Tests of the paper's subcommands as a user runs them: their output, their exit codes, and the pages in docs/ that
-//! they make. Tests of figures use the paper's robot, robots/paper.toml; the others hold for any robot.toml.
+//! Tests of the paper's commands: their output, their exit codes, and the pages in docs/ that they write. Tests of
+//! values use the paper's robot, robots/paper.toml; the other tests hold for any robot.toml.
 
 mod bad_input;
 mod documents;
-mod figures;
 mod solve;
+mod values;

@@ -1,4 +1,4 @@
-//! Tests of `lizard pose`, mostly on the paper's robot.
+//! Tests of `lizard pose`, mostly with the paper's robot.
 
 use lizard_kinematics::wrap;
 use serde_json::Value;
@@ -7,28 +7,28 @@ use crate::program::{RobotFile, assert_contains, run_line, with_paper};
 
 const HEADER: &str = "theta1,theta4,theta8,theta5\n";
 
-fn solve_lines(input: &str) -> Vec<Value> {
+fn solve_rows(input: &str) -> Vec<Value> {
     run_line(&with_paper("pose --json"), input).expect_json_lines()
 }
 
 #[test]
-fn a_solution_in_json_has_exactly_the_documented_keys() {
-    let solution = &solve_lines(&format!("{HEADER}138,42,318,221\n"))[0];
-    let keys_of = |value: &Value| {
+fn a_solution_has_exactly_the_documented_json_keys() {
+    let solution = &solve_rows(&format!("{HEADER}138,42,318,221\n"))[0];
+    let join_keys = |value: &Value| {
         let keys = value.as_object().unwrap().keys().map(String::as_str);
         let keys: std::collections::BTreeSet<&str> = keys.collect();
         Vec::from_iter(keys).join(" ")
     };
     assert_eq!(
-        keys_of(solution),
+        join_keys(solution),
         "head left legs margins right safe tail theta2 theta3 theta6 theta7 why"
     );
-    assert_eq!(keys_of(&solution["left"]), "phi s");
-    assert_eq!(keys_of(&solution["right"]), "phi s");
-    assert_eq!(keys_of(&solution["legs"]), "lf lh rf rh");
-    assert_eq!(keys_of(&solution["legs"]["lf"]), "coupler follower");
+    assert_eq!(join_keys(&solution["left"]), "phi s");
+    assert_eq!(join_keys(&solution["right"]), "phi s");
+    assert_eq!(join_keys(&solution["legs"]), "lf lh rf rh");
+    assert_eq!(join_keys(&solution["legs"]["lf"]), "coupler follower");
     assert_eq!(
-        keys_of(&solution["margins"]),
+        join_keys(&solution["margins"]),
         "leg_lf leg_lh leg_rf leg_rh type1_a1 type1_a2 type1_a3 type1_a4 type2_head type2_tail"
     );
     assert_eq!(solution["safe"], true);
@@ -40,20 +40,20 @@ fn every_printed_solution_closes_all_loops() {
     let mut input = HEADER.to_string();
     let mut poses = Vec::new();
     for i in 0..2000 {
-        let angle_at = |min: f64, stride: usize| min + (i * stride % 997) as f64 * 90.0 / 997.0;
         let starts_and_strides = [(85.0, 31), (10.0, 57), (265.0, 211), (190.0, 101)];
-        let pose = starts_and_strides.map(|(min, stride)| angle_at(min, stride));
+        let pose = starts_and_strides
+            .map(|(start, stride)| start + (i * stride % 997) as f64 * 90.0 / 997.0);
         input += &(pose.map(|angle| angle.to_string()).join(",") + "\n");
         poses.push(pose);
     }
-    let solutions = solve_lines(&input);
+    let solutions = solve_rows(&input);
     assert_eq!(solutions.len(), poses.len());
     let vector = |length: f64, degrees: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
         [length * cos, length * sin]
     };
     for ([t1, t4, t8, t5], solution) in poses.into_iter().zip(&solutions) {
-        let angle_of = |key: &str| {
+        let find_angle = |key: &str| {
             let angle = solution[key].as_f64().unwrap();
             assert!(angle > -180.0 && angle <= 180.0);
             angle
@@ -62,12 +62,12 @@ fn every_printed_solution_closes_all_loops() {
             let [a, b, c, d] = links;
             let x = a[0] + b[0] - c[0] - d[0] - ground[0];
             let y = a[1] + b[1] - c[1] - d[1] - ground[1];
-            assert!(x.hypot(y) < 1e-9, "{x} {y}");
+            assert!(x.hypot(y) < 1e-9, "gap ({x}, {y}) mm");
         };
         for (left, coupler, right_coupler, right) in
             [(t1, "theta2", "theta3", t4), (t5, "theta6", "theta7", t8)]
         {
-            let couplers = [coupler, right_coupler].map(|key| vector(50.0, angle_of(key)));
+            let couplers = [coupler, right_coupler].map(|key| vector(50.0, find_angle(key)));
             let [left, right] = [left, right].map(|theta| vector(30.0, theta));
             assert_closed([left, couplers[0], couplers[1], right], [20.0, 0.0]);
         }
@@ -83,7 +83,7 @@ fn every_printed_solution_closes_all_loops() {
             );
         }
         let head = vector(30.0, t1);
-        let coupler = vector(50.0, angle_of("theta2"));
+        let coupler = vector(50.0, find_angle("theta2"));
         let x = solution["head"][0].as_f64().unwrap() - (-10.0 + head[0] + coupler[0]);
         let y = solution["head"][1].as_f64().unwrap() - (67.5 + head[1] + coupler[1]);
         assert!(x.hypot(y) < 1e-9);
@@ -106,8 +106,8 @@ fn every_printed_solution_closes_all_loops() {
 }
 
 #[test]
-fn a_singular_row_states_its_reason_and_the_next_rows_are_solved() {
-    let solutions = solve_lines(&format!(
+fn the_rows_after_a_singular_row_are_solved() {
+    let solutions = solve_rows(&format!(
         "{HEADER}70.528779365509308,109.47122063449069,318.59,221.41\n60,60,318,221\n138.59,41.41,318.59,221.41\n"
     ));
     assert_eq!(solutions.len(), 3);
@@ -122,29 +122,29 @@ fn a_singular_row_states_its_reason_and_the_next_rows_are_solved() {
 }
 
 #[test]
-fn columns_come_in_any_order_and_line_ends_and_quotes_do_not_matter() {
-    let plain_solutions = solve_lines(&format!("{HEADER}138,42,318,221\n"));
+fn the_order_of_columns_line_ends_and_quotes_do_not_matter() {
+    let plain_solutions = solve_rows(&format!("{HEADER}138,42,318,221\n"));
     let reordered_solutions =
-        solve_lines("\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"");
+        solve_rows("\u{feff}theta8, theta1,theta4,\"theta5\"\r\n\r\n318,138,42,\"221\"");
     assert_eq!(plain_solutions, reordered_solutions);
 }
 
 #[test]
-fn angles_by_options_and_by_input_give_the_same_solution() {
+fn angles_from_options_and_from_input_have_the_same_solution() {
     let line = with_paper("pose --json --theta1 138 --theta4 42 --theta8 -42 --theta5 -139");
     assert_eq!(
         run_line(&line, "").expect_json(),
-        solve_lines(&format!("{HEADER}138,42,-42,-139\n"))[0]
+        solve_rows(&format!("{HEADER}138,42,-42,-139\n"))[0]
     );
 }
 
 #[test]
-fn a_long_stream_keeps_its_order() {
+fn solutions_of_a_long_stream_keep_their_order() {
     let mut input = HEADER.to_string();
     for i in 0..30_000 {
         input += &format!("{},42,318,221\n", 100.0 + f64::from(i) / 1000.0);
     }
-    let solutions = solve_lines(&input);
+    let solutions = solve_rows(&input);
     assert_eq!(solutions.len(), 30_000);
     for (i, solution) in solutions.iter().enumerate() {
         let follower = solution["legs"]["lf"]["follower"].as_f64().unwrap();
@@ -167,18 +167,18 @@ fn the_table_is_aligned_and_marks_safe_poses() {
 
 #[test]
 fn without_a_header_the_columns_are_the_servos_in_order() {
-    let named_solutions = solve_lines(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
+    let named_solutions = solve_rows(&format!("{HEADER}138,42,318,221\n100,40,-50,220\n"));
     for input in [
         "138,42,318,221\n100,40,-50,220\n",
         "\u{feff}138,42,318,221\n\"100\",40,-50,220",
     ] {
-        assert_eq!(solve_lines(input), named_solutions);
+        assert_eq!(solve_rows(input), named_solutions);
     }
 }
 
 #[test]
-fn a_time_is_passed_through() {
-    let solutions = solve_lines("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
+fn the_times_of_rows_are_copied_to_the_output() {
+    let solutions = solve_rows("theta1,seconds,theta4,theta8,theta5\n138,0.02,42,318,221\n");
     assert_eq!(solutions[0]["seconds"], 0.02);
     let input = "seconds,theta1,theta4,theta8,theta5\n0.02,138,42,318,221\n";
     let table = run_line(&with_paper("pose"), input).stdout;
@@ -190,8 +190,8 @@ fn a_time_is_passed_through() {
 }
 
 #[test]
-fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
-    // This holds for any robot.toml: every gait of a valid file keeps the file's limits.
+fn every_pose_in_the_trace_of_every_gait_is_safe() {
+    // This holds for any robot.toml, since every gait of a valid file respects the file's limits.
     for gait in run_line("gaits --json", "").expect_json_lines() {
         let name = gait["gait"].as_str().unwrap();
         let trace = run_line(&format!("gaits --trace {name}"), "").stdout;
@@ -211,8 +211,8 @@ fn the_trace_of_every_gait_can_be_solved_and_is_safe() {
 }
 
 #[test]
-fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
-    // A3 can turn only 20 degrees from neutral in one direction: 400 us at 20 us per degree.
+fn an_angle_beyond_a_servos_travel_is_not_safe() {
+    // In one direction, A3 can turn only 20 degrees from neutral: 400 us at 20 us per degree.
     let robot = RobotFile::from_paper(
         "short-travel",
         &[(
@@ -220,27 +220,27 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
             "pin = \"D11\"\nneutral = 318.590378\nneutral_us = 2050.0\nus_per_degree = 20.0\nmin_us = 1000.0\nmax_us = 2450.0",
         )],
     );
-    let pose_at = |theta8: f64| {
+    let solve_with_theta8 = |theta8: f64| {
         let pose =
             format!("pose --json --theta1 138.59 --theta4 41.41 --theta8 {theta8} --theta5 221.41");
-        run_line(&robot.add_option_to(&pose), "").expect_json()
+        run_line(&robot.add_option(&pose), "").expect_json()
     };
-    let end_of_travel = pose_at(318.590378 + 20.0);
+    let end_of_travel = solve_with_theta8(318.590378 + 20.0);
     assert_eq!(end_of_travel["safe"], true);
-    let beyond_travel = pose_at(318.590378 + 20.1);
+    let beyond_travel = solve_with_theta8(318.590378 + 20.1);
     assert_eq!(beyond_travel["safe"], false);
     assert_eq!(
         beyond_travel["why"][0],
-        "servo A3 would turn +20.1 deg from neutral to 338.7 deg, its travel is 266.1 to 338.6 deg"
+        "servo A3 would turn +20.1 deg from neutral to 338.7 deg; its travel is 266.1 to 338.6 deg"
     );
     let line = "pose --theta1 138.59 --theta4 41.41 --theta8 338.8 --theta5 221.41";
-    let page = run_line(&robot.add_option_to(line), "").stdout;
+    let page = run_line(&robot.add_option(line), "").stdout;
     assert_contains(&page, "safe     no, servo A3 would turn +20.2");
-    let table = run_line(&robot.add_option_to("pose"), "138.59,41.41,338.8,221.41\n").stdout;
+    let table = run_line(&robot.add_option("pose"), "138.59,41.41,338.8,221.41\n").stdout;
     assert_contains(&table, "| servo A3 would turn");
-    // The inverse kinematics, too, reports the tail point of that pose as unreachable.
+    // The inverse kinematics also reports the tail point of this pose as unreachable.
     let [x, y] = [0, 1].map(|axis| beyond_travel["tail"][axis].as_f64().unwrap());
-    let line = robot.add_option_to(&format!("pose --json --tail {x} {y}"));
+    let line = robot.add_option(&format!("pose --json --tail {x} {y}"));
     let inverse = run_line(&line, "").expect_json();
     assert_eq!(inverse["safe"], false);
     let mut reasons = inverse["why"].as_array().unwrap().iter();
@@ -250,7 +250,7 @@ fn an_angle_that_a_servo_cannot_reach_is_not_safe() {
 }
 
 #[test]
-fn zero_is_printed_without_a_minus() {
+fn zero_is_printed_without_a_sign() {
     for args in [
         "pose --theta1 138.59038 --theta4 41.40962 --theta8 318.59038 --theta5 221.40962",
         "pose --theta1 180 --theta4 0 --theta8 -0 --theta5 -180",

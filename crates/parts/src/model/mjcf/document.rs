@@ -10,8 +10,7 @@ use crate::model::writer::Writer;
 const TIME_STEP_S: f64 = 0.0002;
 /// `solref` of constraints and limits: time constant, s, and damping ratio.
 const CONSTRAINT_SOLREF: &str = "0.002 1";
-/// `solref` of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's
-/// excess length.
+/// `solref` of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's excess length.
 pub(super) const CONTACT_SOLREF: &str = "0.001 1";
 /// `solimp` of constraints and limits: least and largest impedance, and the width of the transition, m or rad.
 const CONSTRAINT_SOLIMP: &str = "0.99 0.999 0.0001";
@@ -27,8 +26,8 @@ impl Writer<'_> {
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
         self.xml.write_empty_element(data);
         if self.scene.drives_in_bursts {
-            self.xml
-                .write_empty_element(r#"numeric name="bursts" data="1""#);
+            let data = r#"numeric name="bursts" data="1""#;
+            self.xml.write_empty_element(data);
         }
         if let Some(course) = &self.scene.course {
             let (start, period) = (round(course.measure_start), round(course.period));
@@ -51,7 +50,7 @@ impl Writer<'_> {
         // Feet of a few grams chatter with MuJoCo's default contact settings.
         xml.write_empty_element(format!(
             r#"option timestep="{TIME_STEP_S}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
-            self.scene.floor.gravity()
+            self.scene.floor.format_gravity()
         ));
         xml.open("visual");
         xml.write_empty_element(r#"map znear="0.01""#);
@@ -104,7 +103,7 @@ impl Writer<'_> {
     }
 }
 
-/// The attributes that make a joint's range limits stiff.
-pub(super) fn stiff_limit_attributes() -> String {
+/// Formats the attributes that make a joint's range limits stiff.
+pub(super) fn format_stiff_limits() -> String {
     format!(r#"solreflimit="{CONSTRAINT_SOLREF}" solimplimit="{CONSTRAINT_SOLIMP}""#)
 }

@@ -12,12 +12,10 @@ use crate::model::writer::Writer;
 impl Writer<'_> {
     pub(super) fn write_loops(&mut self) {
         self.xml.open("equality");
-        for loop_joint in loops::cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+        for loop_joint in loops::list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
             let [first, second] = loop_joint.bodies.map(Node::name);
-            let (name, anchor) = (
-                loop_joint.name,
-                format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]),
-            );
+            let name = loop_joint.name;
+            let anchor = format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]);
             self.xml.write_empty_element(format!(
                 r#"connect name="{name}" body1="{first}" body2="{second}" anchor="{anchor}""#
             ));
@@ -29,28 +27,25 @@ impl Writer<'_> {
         self.xml.open("actuator");
         for (servo, name) in SERVO_NAMES.iter().enumerate() {
             let motor = self.scene.motors.per_servo[servo];
-            let stall = motor.stall_torque * MILLI;
-            let (gain, stall) = (
-                round(stall / motor.full_torque_error.to_radians()),
-                round(stall),
-            );
+            let stall_torque = motor.stall_torque * MILLI;
+            let gain = round(stall_torque / motor.full_torque_error.to_radians());
+            let stall_torque = round(stall_torque);
             let joint = match self.has_play() {
                 true => Node::Horn(servo),
                 false => Node::OnMount(Mount::Link(servo)),
             };
-            let (joint, (smallest, largest)) =
-                (joint.name(), self.assembly.robot().servos()[servo].travel());
-            let range = join_numbers([smallest, largest].map(|angle| round(angle.to_radians())));
+            let joint = joint.name();
+            let (min, max) = self.assembly.robot().servos()[servo].travel();
+            let range = join_numbers([min, max].map(|angle| round(angle.to_radians())));
             self.xml.write_empty_element(format!(
-                r#"position name="{name}" joint="{joint}" kp="{gain}" forcerange="{} {stall}" ctrlrange="{range}""#,
-                -stall
+                r#"position name="{name}" joint="{joint}" kp="{gain}" forcerange="{} {stall_torque}" ctrlrange="{range}""#,
+                -stall_torque
             ));
         }
         self.xml.close();
     }
 
-    /// Writes one keyframe for each frame of 20 ms, with its time and the servos' target angles, and then one for
-    /// the standing robot.
+    /// Writes a keyframe for each frame of 20 ms, with time and servo targets, and one for the standing robot.
     pub(super) fn write_keyframes(&mut self) {
         self.xml.open("keyframe");
         if let Some(course) = &self.scene.course {

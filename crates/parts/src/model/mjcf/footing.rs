@@ -11,15 +11,15 @@ use lizard_robot::servo::LEG_NAMES;
 /// Height of a flat pad, mm.
 const FLAT_PAD_HEIGHT: f64 = 3.0;
 
-/// The MJCF attributes of a disc of this radius and height, mm.
-fn disc_attributes(radius: f64, height: f64) -> String {
+/// Formats the MJCF attributes of a disc with this radius and height, mm.
+fn format_disc(radius: f64, height: f64) -> String {
     let [radius, half_height] = [radius, height / 2.0].map(|length| round(length * MILLI));
     format!(r#"type="cylinder" size="{radius} {half_height}""#)
 }
 
 impl Floor {
-    /// Gravity in the frame of the inclined floor: right, forward, up, m/s^2.
-    pub(super) fn gravity(&self) -> String {
+    /// Formats gravity in the frame of the inclined floor: right, forward, up, m/s^2.
+    pub(super) fn format_gravity(&self) -> String {
         let (sin, cos) = self.slope.to_radians().sin_cos();
         join_numbers([0.0, -GRAVITY * sin, -GRAVITY * cos].map(round))
     }
@@ -36,12 +36,10 @@ impl Writer<'_> {
                 size,
                 rotation,
             } = block;
-            // The box is twice as high as the block; its lower half is under the floor.
+            // The box is twice as high as the block, with its lower half under the floor.
             let [width, length, height] = *size;
-            let (half_size, position) = (
-                format_metres([width / 2.0, length / 2.0, height]),
-                format_metres([*x, *y, 0.0]),
-            );
+            let half_size = format_metres([width / 2.0, length / 2.0, height]);
+            let position = format_metres([*x, *y, 0.0]);
             self.xml.write_empty_element(format!(
                 r#"geom type="box" size="{half_size}" pos="{position}" euler="0 0 {}" rgba="0.7 0.6 0.5 1" conaffinity="1""#,
                 round(rotation.to_radians())
@@ -49,12 +47,11 @@ impl Writer<'_> {
         }
     }
 
-    /// Writes a pad's contact shapes. Viewers hide them (group 3) and show the printed part instead. The pad has
-    /// friction against sliding only, not against turning or rolling. `priority` makes the pad's friction count on
-    /// the floor and on its blocks.
+    /// Writes a pad's contact shapes. Viewers hide these shapes (group 3) and show the printed part instead. The pad
+    /// has friction only against sliding, not against turning or rolling. `priority` selects the pad's friction.
     pub(super) fn write_pad(&mut self, servo: usize) {
         let pad = self.assembly.robot().parts().pad;
-        let [x, y, middle_z] = self.pad_middle(servo);
+        let [x, y, middle_z] = self.dome_centre(servo);
         let lowest_z = middle_z - pad.radius;
         match self.scene.pads {
             Pads::Domes(radius) => {
@@ -62,7 +59,7 @@ impl Writer<'_> {
                 self.write_pad_shape(servo, "", &shape, [x, y, lowest_z + radius]);
             }
             Pads::Terraces(layer_height) => {
-                // A layer has the dome's radius at the middle of the layer's height.
+                // A layer has the dome's radius at half of the layer's height.
                 let radius_at = |height: f64| (height * (2.0 * pad.radius - height)).sqrt();
                 let heights =
                     (0..).map(|layer_index| (f64::from(layer_index) + 0.5) * layer_height);
@@ -70,32 +67,21 @@ impl Writer<'_> {
                 for (layer_index, height) in heights.enumerate() {
                     let suffix = format!(" {layer_index}");
                     let position = [x, y, lowest_z + height];
-                    self.write_pad_shape(
-                        servo,
-                        &suffix,
-                        &disc_attributes(radius_at(height), layer_height),
-                        position,
-                    );
+                    let shape = format_disc(radius_at(height), layer_height);
+                    self.write_pad_shape(servo, &suffix, &shape, position);
                 }
             }
             Pads::Flat(diameter) => {
                 let position = [x, y, lowest_z + FLAT_PAD_HEIGHT / 2.0];
-                self.write_pad_shape(
-                    servo,
-                    "",
-                    &disc_attributes(diameter / 2.0, FLAT_PAD_HEIGHT),
-                    position,
-                );
+                let shape = format_disc(diameter / 2.0, FLAT_PAD_HEIGHT);
+                self.write_pad_shape(servo, "", &shape, position);
             }
         }
     }
 
     fn write_pad_shape(&mut self, servo: usize, suffix: &str, shape: &str, position: [f64; 3]) {
-        let (leg, position, friction) = (
-            LEG_NAMES[servo],
-            format_metres(position),
-            self.scene.floor.friction_coefficients[servo],
-        );
+        let (leg, position) = (LEG_NAMES[servo], format_metres(position));
+        let friction = self.scene.floor.friction_coefficients[servo];
         self.xml.write_empty_element(format!(
             r#"geom name="pad {leg}{suffix}" {shape} pos="{position}" group="3" contype="1" priority="1" condim="3" friction="{friction} 0 0" solref="{CONTACT_SOLREF}" solimp="0.95 0.99 0.0005""#
         ));

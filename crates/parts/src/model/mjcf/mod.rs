@@ -1,4 +1,4 @@
-//! The file for MuJoCo: the robot on its floor, the motors, and the angles that they follow.
+//! The file for MuJoCo: the robot on its floor, the motors, and their target angles.
 //!
 //! MuJoCo requires a tree of bodies, so each closed loop is cut, and a constraint closes it again.
 

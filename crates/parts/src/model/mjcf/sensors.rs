@@ -5,12 +5,12 @@ use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use crate::model::text::{MILLI, format_metres, round};
 use crate::model::writer::Writer;
 
-/// Radius of a pad's site as a share of its dome's: contacts lie a little outside the dome.
-const SITE_RADIUS_SHARE: f64 = 1.05;
+/// Ratio of a pad site's radius to its dome's radius: contacts lie slightly outside the dome.
+const SITE_RADIUS_RATIO: f64 = 1.05;
 
 impl Writer<'_> {
-    /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the
-    /// position, the orientation and the velocities of the chassis.
+    /// Writes sensors for the servos' angles, rates and torques, the force on each pad, and the chassis's position,
+    /// orientation and velocities.
     pub(super) fn write_sensors(&mut self) {
         self.xml.open("sensor");
         for name in SERVO_NAMES {
@@ -36,11 +36,11 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Writes the site on a servo's pad at which the pad's load is measured.
+    /// Writes the site that measures the load of a servo's pad.
     pub(super) fn write_pad_site(&mut self, servo: usize) {
         let radius = self.assembly.robot().parts().pad.radius;
-        let (leg, position) = (LEG_NAMES[servo], format_metres(self.pad_middle(servo)));
-        let size = round(SITE_RADIUS_SHARE * radius * MILLI);
+        let (leg, position) = (LEG_NAMES[servo], format_metres(self.dome_centre(servo)));
+        let size = round(SITE_RADIUS_RATIO * radius * MILLI);
         self.xml.write_empty_element(format!(
             r#"site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3""#
         ));

@@ -2,7 +2,7 @@
 
 use lizard_robot::SLOT_LENGTH;
 
-use super::document::stiff_limit_attributes;
+use super::document::format_stiff_limits;
 use crate::layers::body::Mount;
 use crate::model::material::Material;
 use crate::model::node::{Freedom, Node};
@@ -12,38 +12,30 @@ use crate::model::writer::Writer;
 
 impl Writer<'_> {
     pub(super) fn write_body(&mut self, node: Node) {
-        let placement = self.place_on_parent(node);
+        let placement = self.placement_on_parent(node);
         let is_chassis = self.parent(node).is_none();
-        let height = if is_chassis {
-            self.chassis_height()
-        } else {
-            0.0
+        let height = match is_chassis {
+            true => self.chassis_height(),
+            false => 0.0,
         };
         let half_angle = placement.x_axis.angle().to_radians() / 2.0;
-        let (name, position) = (
-            node.name(),
-            format_metres([placement.origin.x, placement.origin.y, height]),
-        );
+        let name = node.name();
+        let position = format_metres([placement.origin.x, placement.origin.y, height]);
         let (cos, sin) = (round(half_angle.cos()), round(half_angle.sin()));
         self.xml.open(format!(
             r#"body name="{name}" pos="{position}" quat="{cos} 0 0 {sin}""#
         ));
         self.write_joint(node);
-        let inertia = self.inertia(node);
-        let (centre, kilograms) = (
-            format_metres(inertia.mass_centre()),
-            round(inertia.mass * MILLI),
-        );
-        let tensor = join_numbers(inertia.formatted_tensor());
+        let inertia = self.compute_inertia(node);
+        let centre = format_metres(inertia.centre_of_mass());
+        let kilograms = round(inertia.mass * MILLI);
+        let tensor = join_numbers(inertia.format_tensor());
         self.xml.write_empty_element(format!(
             r#"inertial pos="{centre}" mass="{kilograms}" fullinertia="{tensor}""#
         ));
-        for piece in self
-            .visible_pieces()
-            .iter()
-            .filter(|piece| piece.node == node)
-        {
-            let (name, colour) = (&piece.name, Material::of(piece.kind).colour);
+        let pieces = self.visible_pieces().iter();
+        for piece in pieces.filter(|piece| piece.node == node) {
+            let (name, colour) = (&piece.name, Material::for_kind(piece.kind).colour);
             self.xml
                 .write_empty_element(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
@@ -80,28 +72,25 @@ impl Writer<'_> {
             Freedom::SlidesVertically => ("slide", "0 0 1"),
         };
         let mut joint = format!(r#"joint name="{name}" type="{kind}" axis="{axis}""#);
-        let joints = self.scene.motors.joints;
+        let joint_friction = self.scene.motors.joint_friction;
         if let Some(servo) = self.driving_servo(node) {
-            // Back-EMF reduces the motor's torque as it turns faster. Seen through the gears, its rotor has far
-            // more inertia than a leg, so it smooths the steps of the pulses.
+            // Back-EMF reduces the motor's torque as its speed rises. Reflected through the gears, the rotor's inertia
+            // is far larger than a leg's, so the rotor smooths the steps of the pulses.
             let motor = self.scene.motors.per_servo[servo];
             let damping = round(motor.damping() * MILLI);
-            let armature = round(motor.inertia() * MILLI);
+            let armature = round(motor.reflected_inertia() * MILLI);
             joint += &format!(r#" damping="{damping}" armature="{armature}""#);
-            joint += &friction_attributes(joints.pin_torque * MILLI);
+            joint += &format_friction(joint_friction.pin_torque * MILLI);
         } else if matches!(node.freedom(), Freedom::TurnsAboutZ) {
-            joint += &friction_attributes(self.scene.pin_friction * MILLI);
+            joint += &format_friction(self.scene.pin_friction * MILLI);
         }
         if matches!(node.freedom(), Freedom::SlidesAlongX) && !matches!(node, Node::SlotPin(_)) {
-            joint += &friction_attributes(joints.slider_force);
+            joint += &format_friction(joint_friction.slider_force);
         }
         match (node, self.scene.strut_spring) {
             (Node::OnMount(Mount::Link(_)), _) if self.has_play() => {
-                let (play, limits) = (
-                    round(self.scene.play.to_radians()),
-                    stiff_limit_attributes(),
-                );
-                // Grease: it damps a link that moves freely within its play.
+                let (play, limits) = (round(self.scene.play.to_radians()), format_stiff_limits());
+                // Grease damps a link that moves freely within its play.
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
             (Node::Pad(_), _) => {
@@ -109,7 +98,7 @@ impl Writer<'_> {
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
             (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
-                let (slot_end, limits) = (round(SLOT_LENGTH * MILLI), stiff_limit_attributes());
+                let (slot_end, limits) = (round(SLOT_LENGTH * MILLI), format_stiff_limits());
                 let (stiffness, rest_position) =
                     (round(rate / MILLI), round(-preload / rate * MILLI));
                 joint += &format!(
@@ -122,10 +111,10 @@ impl Writer<'_> {
     }
 }
 
-/// The attributes for a joint's dry friction, N or N m; empty for a joint without friction.
-fn friction_attributes(friction: f64) -> String {
+/// Formats the attributes for a joint's dry friction, N or N m; empty for a joint without friction.
+fn format_friction(friction: f64) -> String {
     match friction > 0.0 {
-        // MuJoCo's default friction constraint is soft: a servo that hardly moves would have less friction.
+        // MuJoCo's default friction constraint is soft, so a servo that hardly moves would have less friction.
         true => format!(
             r#" frictionloss="{}" solreffriction="0.001 1" solimpfriction="0.99 0.999 0.001""#,
             round(friction)

@@ -1,4 +1,4 @@
-//! Tests of the audit with gaits at their limits and just beyond them.
+//! Tests of the audit with gaits at their limits and just beyond their limits.
 
 use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 use crate::{CheckedGait, Robot};
@@ -7,8 +7,8 @@ use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
-/// The smallest and largest slider travel on each side over a gait, mm.
-fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
+/// Finds the smallest and largest slider travel on each side over a gait, mm.
+fn find_slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     let mut travels = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
         let solution = robot.lizard().solve(&gait.table_angles(phase).into());
@@ -21,12 +21,12 @@ fn slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     travels
 }
 
-/// A gait without movement, which every robot needs.
+/// The gait without movement that every robot needs.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
-/// The robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`, moves the
-/// legs of one side, so that only that slider moves.
-fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
+/// Reads the robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`,
+/// moves the legs of one side, so that only this side's slider moves.
+fn read_leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
     let legs = if is_right {
         "LF = 0.0, LH = 0.0"
     } else {
@@ -45,27 +45,33 @@ fn leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, cra
 }
 
 #[test]
-fn the_stroke_covers_the_sliders_of_both_sides() {
+fn the_stroke_range_covers_both_sliders() {
     for is_right in [false, true] {
-        let robot = leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+        let robot = read_leaning_robot(is_right, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
-        let (min_travel, max_travel) = slider_travels(&robot, gait)[usize::from(is_right)];
+        let (min_travel, max_travel) = find_slider_travels(&robot, gait)[usize::from(is_right)];
         let (min_stroke, max_stroke) = gait.audit().stroke_range;
         assert!(
             min_travel < -5.0 && max_travel > 3.0,
-            "{min_travel} {max_travel}"
+            "slider travel {min_travel} to {max_travel} mm"
         );
-        assert!((min_travel - min_stroke).abs() < 0.05, "{min_stroke}");
-        assert!((max_stroke - max_travel).abs() < 0.05, "{max_stroke}");
+        assert!(
+            (min_travel - min_stroke).abs() < 0.05,
+            "smallest stroke {min_stroke} mm"
+        );
+        assert!(
+            (max_stroke - max_travel).abs() < 0.05,
+            "largest stroke {max_stroke} mm"
+        );
     }
 }
 
 #[test]
-fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
+fn the_message_names_the_slider_that_hits_its_end_stop() {
     for (is_right, side) in [(false, "left"), (true, "right")] {
-        let robot = leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+        let robot = read_leaning_robot(is_right, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
-        let (min_stroke, max_stroke) = slider_travels(&robot, gait)[usize::from(is_right)];
+        let (min_stroke, max_stroke) = find_slider_travels(&robot, gait)[usize::from(is_right)];
         for (old, new, word) in [
             (
                 "stroke_min = -19.0",
@@ -78,11 +84,11 @@ fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
                 "above",
             ),
         ] {
-            let message = leaning_robot(is_right, &[(old, new)])
+            let message = read_leaning_robot(is_right, &[(old, new)])
                 .expect_err("the stroke is too small for the gait")
                 .to_string();
             let expected_start = format!(
-                "in \"lean\" the {side} slider would run into its end: {side} slider travel "
+                "in \"lean\" the {side} slider would hit its end stop: {side} slider travel "
             );
             assert!(message.starts_with(&expected_start), "{message}");
             assert!(message.ends_with(": gait.lean)"), "{message}");
@@ -98,12 +104,12 @@ fn a_slider_that_reaches_its_end_on_one_side_only_is_named() {
                 format!("stroke_max = {:.2}", max_stroke + 0.2),
             ),
         ];
-        assert!(leaning_robot(is_right, &wide_limits).is_ok());
+        assert!(read_leaning_robot(is_right, &wide_limits).is_ok());
     }
 }
 
 #[test]
-fn each_hazard_of_the_guard_corresponds_to_the_check_of_the_same_condition() {
+fn each_hazard_corresponds_to_the_check_of_its_condition() {
     let margin_hazard = |margin| Hazard::Margin {
         margin,
         value: Sine(0),
@@ -127,11 +133,15 @@ fn each_hazard_of_the_guard_corresponds_to_the_check_of_the_same_condition() {
 fn every_sample_of_every_servo_is_checked() {
     for (name, robot) in all_robots() {
         for gait in robot.gaits() {
-            let phases = super::phases_to_check(gait.table());
-            for channel in gait.table().channels {
+            let phases = super::list_phases(gait.table_gait());
+            for channel in gait.table_gait().channels {
                 for sample in (0..=u16::MAX).step_by(1024) {
                     let phase = sample.wrapping_sub(channel.offset);
-                    assert!(phases.contains(&phase), "{name} {} {phase}", gait.name());
+                    assert!(
+                        phases.contains(&phase),
+                        "{name} {}: phase {phase} is missing",
+                        gait.name()
+                    );
                 }
             }
         }
@@ -143,15 +153,15 @@ fn a_backward_swing_has_the_same_peak_speed_as_a_forward_swing() {
     // All legs have a negative gain, so they swing backward.
     let table = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
     let robot = robot_with("unequal", &[("[gait.trot]", table)]).expect("the gait is valid");
-    let speed_of = |name: &str| robot.gait(name).expect(name).audit().peak_speed.speed;
-    assert!((speed_of("against") - speed_of("walk")).abs() < 1e-9);
+    let peak_speed = |name: &str| robot.gait(name).expect(name).audit().peak_speed.speed;
+    assert!((peak_speed("against") - peak_speed("walk")).abs() < 1e-9);
 }
 
 #[test]
 fn a_gait_may_be_as_fast_as_the_limit_but_no_faster() {
     let unequal = robot("unequal");
-    let speed_of = |gait: &CheckedGait| gait.audit().peak_speed.speed;
-    let largest_speed = unequal.gaits().iter().map(speed_of).fold(0.0, f64::max);
+    let peak_speed = |gait: &CheckedGait| gait.audit().peak_speed.speed;
+    let largest_speed = unequal.gaits().iter().map(peak_speed).fold(0.0, f64::max);
     let limit_line = |speed: f64| format!("gait_slew = {speed:?}");
     assert!(
         robot_with(
@@ -160,16 +170,16 @@ fn a_gait_may_be_as_fast_as_the_limit_but_no_faster() {
         )
         .is_ok()
     );
-    let refusal = robot_with(
+    let result = robot_with(
         "unequal",
         &[("gait_slew = 330.0", &limit_line(largest_speed - 1e-6))],
     );
-    let refusal = refusal.expect_err("the gait is too fast").to_string();
-    assert!(refusal.contains("limits.gait_slew is"), "{refusal}");
+    let message = result.expect_err("the gait is too fast").to_string();
+    assert!(message.contains("limits.gait_slew is"), "{message}");
 }
 
 #[test]
-fn a_gait_may_use_all_of_a_servos_travel_but_no_more() {
+fn a_gait_may_use_the_whole_travel_but_no_more() {
     // A held leg swings exactly its amplitude to either side of neutral.
     let robot_with_travel = |degrees: f64| {
         let servo_keys = format!("us_per_degree = 8.5\nmin_us = {:?}", 1500.0 - degrees * 8.5);
@@ -231,7 +241,7 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         ("leg = 0.38 ", &Check::LEG),
     ] {
         let name = key.split(' ').next().expect("the text begins with a key");
-        let least_margin_of = |gait: &CheckedGait| {
+        let find_least_margin = |gait: &CheckedGait| {
             let audit = gait.audit();
             let [least_margin] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
@@ -245,7 +255,7 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         let least_margin = unequal
             .gaits()
             .iter()
-            .map(least_margin_of)
+            .map(find_least_margin)
             .fold(1.0, f64::min);
         let limit_line = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is accurate to one or two thousandths.
@@ -253,17 +263,17 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
             robot_with("unequal", &[(key, &limit_line(least_margin - 0.003))]).is_ok(),
             "{name}"
         );
-        let refusal = robot_with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
-        let refusal = refusal.expect_err(name).to_string();
-        assert!(refusal.contains(&format!("margin {name}_")), "{refusal}");
+        let result = robot_with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
+        let message = result.expect_err(name).to_string();
+        assert!(message.contains(&format!("margin {name}_")), "{message}");
     }
 }
 
 #[test]
-fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
+fn gaits_that_only_the_firmwares_guard_rejects_are_rejected() {
     // If the limit is only slightly below the gaits' smallest margin, by one or two units of the firmware's integers,
-    // the floating-point check still accepts every gait, but the guard of at least one robot refuses one.
-    let mut refusals = Vec::new();
+    // the floating-point check still accepts every gait, but the guard of at least one robot rejects a gait.
+    let mut messages = Vec::new();
     for (name, key) in [
         ("paper", "leg = 0.3 "),
         ("unequal", "leg = 0.38 "),
@@ -271,7 +281,7 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
         ("unequal", "type1 = 0.27 "),
     ] {
         let robot = robot(name);
-        let least_margin_of = |gait: &CheckedGait| {
+        let find_least_margin = |gait: &CheckedGait| {
             if key.starts_with("leg") {
                 gait.audit().leg.value
             } else {
@@ -281,29 +291,29 @@ fn a_gait_that_only_the_firmwares_guard_rejects_is_refused() {
         let least_margin = robot
             .gaits()
             .iter()
-            .map(least_margin_of)
+            .map(find_least_margin)
             .fold(1.0, f64::min);
         let limit_name = key.split(' ').next().expect("the text begins with a key");
         for i in 1..10 {
             let limit_line = format!("{limit_name} = {:?} ", least_margin - f64::from(i) * 1e-5);
-            let refusal = robot_with(name, &[(key, &limit_line)]).err();
-            refusals.extend(refusal.map(|error| error.to_string()));
+            let error = robot_with(name, &[(key, &limit_line)]).err();
+            messages.extend(error.map(|error| error.to_string()));
         }
     }
     assert!(
-        !refusals.is_empty(),
-        "no limit was refused by the guard alone"
+        !messages.is_empty(),
+        "no limit was rejected by the guard alone"
     );
-    for refusal in refusals {
+    for message in messages {
         assert!(
-            refusal.contains(": margin or travel ") && refusal.contains("leave it a little room ("),
-            "{refusal}"
+            message.contains("place it beyond the limit; leave more room ("),
+            "{message}"
         );
     }
 }
 
 #[test]
-fn each_least_margin_is_the_margin_at_its_reported_phase() {
+fn each_least_margin_occurs_at_its_reported_phase() {
     for (name, robot) in all_robots() {
         for gait in robot.gaits() {
             let audit = gait.audit();

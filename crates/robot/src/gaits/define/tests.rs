@@ -4,14 +4,14 @@ use crate::testing::{robot, text_before_gaits};
 use crate::{Error, Robot};
 use lizard_core::console::word::Word;
 
-/// The paper's robot with these gaits instead of its own.
+/// Parses the paper's robot with these gaits instead of its own.
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
 }
 
 /// The first gait of every robot.
 const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-/// A gait with a waveform of its own.
+/// A gait with its own waveform.
 const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 10.0\nstart = { LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }\n";
 
 #[test]
@@ -40,7 +40,7 @@ fn a_gait_reversed_twice_runs_forward() {
 }
 
 #[test]
-fn a_mirrored_gait_exchanges_left_and_right_before_its_gains_apply() {
+fn a_mirrored_gait_exchanges_left_and_right_before_the_gains_apply() {
     let robot = robot("own-gaits");
     let amplitudes_and_starts = |name| {
         let strides = robot.gait(name).expect(name).strides();
@@ -83,39 +83,48 @@ fn each_leg_swings_at_its_position_in_the_order() {
 }
 
 #[test]
-fn a_path_moves_the_end_that_it_names_and_leaves_the_other_at_neutral() {
+fn a_path_moves_only_the_end_that_it_names() {
     let robot = robot("own-gaits");
     let neutral: [f64; 4] = robot.neutral_pose().into();
     let wag = robot.gait("wag").expect("the robot has the gait wag");
     let nod = robot.gait("nod").expect("the robot has the gait nod");
     for i in 0..64 {
         let phase = f64::from(i) / 64.0;
-        let angle = std::f64::consts::TAU * phase;
+        let cycle_angle = std::f64::consts::TAU * phase;
         let solution = robot
             .lizard()
             .solve(&wag.pose(phase))
             .expect("a checked gait closes its loops");
         let tail = solution.tail.end_point;
-        let (x, y) = (
-            9.0 * angle.sin(),
-            54.0 + 3.0 * (2.0 * angle + 0.5 * std::f64::consts::PI).sin(),
+        let (expected_x, expected_y) = (
+            9.0 * cycle_angle.sin(),
+            54.0 + 3.0 * (2.0 * cycle_angle + 0.5 * std::f64::consts::PI).sin(),
         );
-        assert!((tail.x - x).hypot(tail.y - y) < 1e-9, "{tail:?}");
+        assert!(
+            (tail.x - expected_x).hypot(tail.y - expected_y) < 1e-9,
+            "{tail:?}"
+        );
         assert_eq!(wag.angles(phase)[..2], neutral[..2]);
         let solution = robot
             .lizard()
             .solve(&nod.pose(phase))
             .expect("a checked gait closes its loops");
         let head = solution.head.end_point;
-        let (x, y) = (4.0 + 2.0 * angle.sin(), 56.0 + 5.0 * angle.sin());
-        assert!((head.x - x).hypot(head.y - y) < 1e-9, "{head:?}");
+        let (expected_x, expected_y) = (
+            4.0 + 2.0 * cycle_angle.sin(),
+            56.0 + 5.0 * cycle_angle.sin(),
+        );
+        assert!(
+            (head.x - expected_x).hypot(head.y - expected_y) < 1e-9,
+            "{head:?}"
+        );
         assert_eq!(nod.angles(phase)[2..], neutral[2..]);
     }
 }
 
 #[test]
-fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
-    let refusal_of = |end: &str, centre: &str| {
+fn a_path_out_of_reach_is_rejected_at_either_end_and_on_either_side() {
+    let path_error = |end: &str, centre: &str| {
         let gaits =
             format!("{STAND}[gait.point]\nperiod = 4.0\n[gait.point.{end}]\ncentre = {centre}\n");
         paper_with_gaits(&gaits).expect_err(&gaits).to_string()
@@ -126,9 +135,9 @@ fn a_path_out_of_reach_is_refused_at_either_end_and_to_either_side() {
             ("[-45.0, 60.0]", "(-45.00, 60.00)"),
             ("[0.0, 82.0]", "(0.00, 82.00)"),
         ] {
-            let message = refusal_of(end, centre);
+            let message = path_error(end, centre);
             let expected = format!(
-                "in \"point\" the {end} would not reach its line: the point {point} mm at phase 0.0000 is out of reach of the {end} ("
+                "in \"point\" the {end} would not reach its path: the point {point} mm at phase 0.0000 is out of reach of the {end} ("
             );
             assert!(message.starts_with(&expected), "{message}");
         }
@@ -156,61 +165,59 @@ fn a_name_may_have_48_characters_but_not_49() {
         .expect_err("49 characters are too many")
         .to_string();
     assert!(
-        message.contains("has 49 characters") && message.ends_with("so it may have 48"),
+        message.contains("it has 49 characters; at most 48 are allowed"),
         "{message}"
     );
 }
 
 /// The end of the message for a robot whose gaits do not fit into the section.
-const NO_ROOM_ADVICE: &str = "leave out gaits, first those whose waveform no other has";
+const NO_ROOM_ADVICE: &str = "remove gaits, starting with those whose waveform no other gait uses";
 
 #[test]
 fn a_robot_may_have_as_many_gaits_as_its_section_has_room_for() {
-    let text_of_gaits = |count: usize| {
+    let gaits_toml = |count: usize| {
         let derive_gait = |i| format!("[gait.walk{i}]\nlike = \"walk\"\n");
         let derived_gaits: String = (2..count).map(derive_gait).collect();
         format!("{STAND}{WALK}{derived_gaits}")
     };
-    let robot_with_80 = paper_with_gaits(&text_of_gaits(80)).expect("80 gaits fit");
+    let robot_with_80 = paper_with_gaits(&gaits_toml(80)).expect("80 gaits fit");
     assert_eq!(robot_with_80.gaits().len(), 80);
     let [walk, walk79] = ["walk", "walk79"].map(|name| robot_with_80.gait(name).expect(name));
     assert_eq!(walk79.index(), 79);
     assert_eq!(walk79.table_sweeps(99), walk.table_sweeps(99));
-    // More gaits leave no room for the maps of cells but are accepted until the section is full.
+    // More gaits leave no room for the maps of certified cells but are accepted until the section is full.
     for count in 80..255 {
-        match paper_with_gaits(&text_of_gaits(count)) {
+        match paper_with_gaits(&gaits_toml(count)) {
             Ok(robot) => {
                 assert!(
                     robot.section().len()
-                        <= usize::from(lizard_core::numbers::section::SPACE_BYTES)
+                        <= usize::from(lizard_core::numbers::section::REGION_BYTES)
                 )
             }
             Err(error) => {
-                assert!(count > 85, "{count}");
+                assert!(count > 85, "only {count} gaits fit");
                 assert!(error.to_string().ends_with(NO_ROOM_ADVICE), "{error}");
                 break;
             }
         }
     }
-    let message_at_255 = paper_with_gaits(&text_of_gaits(255))
+    let message_at_255 = paper_with_gaits(&gaits_toml(255))
         .expect_err("255 gaits do not fit")
         .to_string();
     assert!(message_at_255.ends_with(NO_ROOM_ADVICE), "{message_at_255}");
-    let message_at_256 = paper_with_gaits(&text_of_gaits(256))
+    let message_at_256 = paper_with_gaits(&gaits_toml(256))
         .expect_err("256 gaits are too many")
         .to_string();
     assert!(
-        message_at_256.ends_with(
-            "gait holds 256 gaits; the firmware numbers them with a byte, so leave at most 255"
-        ),
+        message_at_256.ends_with("gait has 256 gaits; the firmware supports at most 255"),
         "{message_at_256}"
     );
 }
 
 #[test]
-fn more_waveforms_than_the_section_has_room_for_are_refused() {
-    // The walk needs one waveform; each nod follows its own line, so it needs two.
-    let text_of_gaits = |count: usize| {
+fn more_waveforms_than_the_section_has_room_for_are_rejected() {
+    // The walk needs one waveform; each nod follows its own path, which takes two waveforms.
+    let gaits_toml = |count: usize| {
         let make_nod = |i: usize| {
             let x = 0.03 * (i as f64 + 1.0);
             format!(
@@ -220,22 +227,27 @@ fn more_waveforms_than_the_section_has_room_for_are_refused() {
         let nods: String = (0..count).map(make_nod).collect();
         format!("{STAND}{WALK}{nods}")
     };
-    let robot = paper_with_gaits(&text_of_gaits(6)).expect("13 waveforms fit");
+    let robot = paper_with_gaits(&gaits_toml(6)).expect("13 waveforms fit");
     assert_eq!(robot.firmware().waves().len(), 13);
     for count in [14, 127] {
-        let message = paper_with_gaits(&text_of_gaits(count))
+        let message = paper_with_gaits(&gaits_toml(count))
             .expect_err("the waveforms are too many")
             .to_string();
         assert!(message.ends_with(NO_ROOM_ADVICE), "{message}");
     }
-    let message = paper_with_gaits(&text_of_gaits(128))
+    let message = paper_with_gaits(&gaits_toml(128))
         .expect_err("257 waveforms are too many")
         .to_string();
-    assert!(message.contains("gait.nod127 needs one waveform more than the 255 that the firmware can number with a byte; gaits"), "{message}");
+    assert!(
+        message.contains(
+            "gait.nod127 needs more than the 255 waveforms that the firmware supports; gaits"
+        ),
+        "{message}"
+    );
 }
 
 #[test]
-fn a_mistake_in_an_added_gait_is_reported_with_its_line_in_the_added_text() {
+fn an_error_in_an_added_gait_is_reported_with_its_line_in_the_added_text() {
     let paper = paper_with_gaits(STAND).expect("the robot with stand alone is valid");
     for (table, line, phrase) in [
         (
@@ -246,7 +258,7 @@ fn a_mistake_in_an_added_gait_is_reported_with_its_line_in_the_added_text() {
         (
             "\n[gait.a]\nperiod = 1.0\nperiod = 2.0\n",
             4,
-            "first in line 3",
+            "first on line 3",
         ),
     ] {
         let error = paper.with_gait(table).expect_err(table);

@@ -6,9 +6,8 @@ use std::f64::consts::TAU;
 use lizard_core::numbers::units::STEPS_PER_TURN;
 use lizard_kinematics::Vector;
 
-/// Largest number of times that a cell is divided in four before it counts as undecided. A bound over a cell is too
-/// wide by an amount roughly proportional to the cell's size, so each division proves cells that are half as far from
-/// a limit.
+/// Largest number of divisions of a cell into four before it counts as undecided. The excess width of a bound over a
+/// cell is roughly proportional to the cell's size, so each division proves cells that are half as far from a limit.
 const MAX_DIVISIONS: u32 = 4;
 
 /// Allowance for floating-point errors, both of a sine and of a length in mm. It is far larger than these errors.
@@ -25,7 +24,7 @@ pub(super) struct Span {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell(pub [Span; 2]);
 
-/// The verdict on a condition over a cell.
+/// The verdict on a condition in a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// Every pose of the cell meets the condition, as the firmware computes it in integers.
@@ -41,8 +40,8 @@ pub(super) trait Condition {
     /// The indices of the servo of the rows and the servo of the columns.
     fn servos(&self) -> [usize; 2];
 
-    /// Judges the condition over a cell.
-    fn judge(&self, cell: &Cell) -> Verdict;
+    /// Evaluates the condition over a cell.
+    fn evaluate(&self, cell: &Cell) -> Verdict;
 }
 
 impl Span {
@@ -85,7 +84,7 @@ impl Cell {
 
     /// Proves a condition as [`Cell::proves`] does, with at most this many further divisions.
     fn proves_within(&self, condition: &impl Condition, divisions: u32) -> bool {
-        match condition.judge(self) {
+        match condition.evaluate(self) {
             Verdict::Proven => true,
             Verdict::Violated => false,
             Verdict::Undecided => {

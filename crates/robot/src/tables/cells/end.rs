@@ -5,16 +5,16 @@
 //! the angle of the crank's turn, and the vector `k` between the tips changes by at most the sum `|dk|` of both. Three
 //! bounds follow:
 //!
-//! * The distance of the tips is within a range, and so is the type-2 margin, the sine of the angle between the
-//!   couplers; [`bounds::EndErrors::min_type2`] is its smallest value. The tips cannot cross if their distance along
-//!   the base is more than both tips together can move.
+//! * The tip distance is within a range, and so is the type-2 margin, the sine of the angle between the couplers;
+//!   [`bounds::EndErrors::min_type2`] is the margin's smallest value. The tips cannot cross if their distance along the
+//!   base is more than both tips together can move.
 //! * The couplers close the loop: `a u2 - b u3 = k`, with their lengths `a` and `b` and their directions `u2` and `u3`.
-//!   So the left coupler turns by at most `|dk| / (a sin(theta3 - theta2))`, and the right one by at most the same with
-//!   `b` instead of `a`. Each crank turns by at most half the width of its range. The type-1 margin is a sine, so it
-//!   is smaller than at the centre by at most the sum of the turns of crank and coupler.
-//! * A leg's margin is the sine of its own crank angle, and this sine is smallest at an end point of the angle's range.
+//!   The left coupler therefore turns by at most `|dk| / (a sin(theta3 - theta2))`, and the right coupler by at most
+//!   the same with `b` instead of `a`. Each crank turns by at most half the width of its range. The type-1 margin is a
+//!   sine, so it is smaller than at the centre by at most the sum of both rotations.
+//! * A leg's margin is the sine of its own crank angle, which is smallest at an end point of the angle's range.
 //!
-//! The guard computes with integers. Its margins are smaller than the true ones by at most their error bounds, and
+//! The guard computes with integers. Its margins are smaller than the true margins by at most their error bounds, and
 //! must still meet the guard's limits.
 
 use lizard_core::guard::bounds::{self, MAX_DIRECTION_ERROR};
@@ -31,7 +31,7 @@ pub(super) struct EndConditions {
     end: End,
     /// The five-bar with its true lengths.
     five_bar: FiveBar,
-    /// The scale and the couplers as the guard's integers have them.
+    /// The scale and the couplers in the guard's integers.
     rounded_bars: bounds::RoundedBars,
     /// Smallest type-2 margin that the guard allows, a sine.
     type2_limit: f64,
@@ -42,11 +42,11 @@ pub(super) struct EndConditions {
 }
 
 impl EndConditions {
-    /// The conditions of one end of a robot, with the guard's limits.
+    /// Creates the conditions of one end of a robot, with the guard's limits.
     pub fn new(lizard: &Lizard, numbers: &Content, end: End) -> Self {
         let five_bar_lengths = &numbers.ends[end as usize];
         let Limits { type2, type1, leg } = numbers.limits;
-        let sine_of = |limit: Sine| f64::from(limit.0) / ONE_Q15;
+        let to_sine = |limit: Sine| f64::from(limit.0) / ONE_Q15;
         Self {
             end,
             five_bar: lizard.end(end),
@@ -54,14 +54,13 @@ impl EndConditions {
                 scale: five_bar_lengths.scale,
                 couplers: five_bar_lengths.couplers,
             },
-            type2_limit: sine_of(type2),
-            type1_limit: sine_of(type1),
-            leg_limit: sine_of(leg),
+            type2_limit: to_sine(type2),
+            type1_limit: to_sine(type1),
+            leg_limit: to_sine(leg),
         }
     }
 
-    /// Returns the smallest sine of a leg over a range of its servo's angles. The range must be narrower than half a
-    /// turn.
+    /// Returns a leg's smallest sine over a range of its servo's angles, which must be narrower than half a turn.
     fn min_leg_sine(&self, span: &Span) -> f64 {
         let half_width = span.half_width_rad();
         let Vector { x: cos, y: sin } = self.end.mirror(span.direction());
@@ -78,7 +77,7 @@ impl Condition for EndConditions {
         }
     }
 
-    fn judge(&self, cell: &Cell) -> Verdict {
+    fn evaluate(&self, cell: &Cell) -> Verdict {
         let [left, right] = match self.end {
             End::Head => cell.0,
             End::Tail => [cell.0[1], cell.0[0]],
@@ -108,18 +107,18 @@ impl Condition for EndConditions {
             tip_distance + crank_movement,
         ];
         let errors =
-            bounds::EndErrors::between(&self.five_bar, self.rounded_bars, tip_distance_range);
+            bounds::EndErrors::over_range(&self.five_bar, self.rounded_bars, tip_distance_range);
         let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
         if !(errors.are_margins_known && is_uncrossed) {
             return Verdict::Undecided;
         }
-        let coupler_turn = |coupler: f64| crank_movement / (coupler * errors.min_type2);
+        let coupler_rotation = |coupler: f64| crank_movement / (coupler * errors.min_type2);
         let type1_losses = [
             left.half_width_rad()
-                + coupler_turn(self.five_bar.left_coupler_length)
+                + coupler_rotation(self.five_bar.left_coupler_length)
                 + errors.type1_left,
             right.half_width_rad()
-                + coupler_turn(self.five_bar.right_coupler_length)
+                + coupler_rotation(self.five_bar.right_coupler_length)
                 + errors.type1_right,
         ];
         let is_proven = errors.min_type2 - errors.type2 >= self.type2_limit + ROUNDING_ALLOWANCE
@@ -142,16 +141,17 @@ mod tests {
     use super::*;
     use crate::testing::robot;
 
-    /// Makes conditions whose limits every pose meets, for the head of a robot without symmetry, and a cell of a single
-    /// pose, the neutral one.
-    fn span_of_one(angle: f64) -> Span {
+    /// Creates a span of a single angle.
+    fn single_angle(angle: f64) -> Span {
         Span {
             low: angle,
             high: angle,
         }
     }
 
-    fn neutral_cell() -> (EndConditions, Cell) {
+    /// Creates conditions whose limits every pose meets, for the head of an asymmetrical robot, and a cell of the
+    /// neutral pose alone.
+    fn create_neutral_cell() -> (EndConditions, Cell) {
         let robot = robot("unequal");
         let numbers = robot.content();
         let conditions = EndConditions {
@@ -160,24 +160,24 @@ mod tests {
             leg_limit: 0.0,
             ..EndConditions::new(robot.lizard(), numbers, End::Head)
         };
-        let span_of = |servo: usize| span_of_one(f64::from(numbers.neutral_angles[servo].0));
-        (conditions, Cell([0, 1].map(span_of)))
+        let spans = [0, 1].map(|servo| single_angle(numbers.neutral_angles[servo].0.into()));
+        (conditions, Cell(spans))
     }
 
     /// A function that selects one of the limits.
-    type Limit = fn(&mut EndConditions) -> &mut f64;
+    type LimitSelector = fn(&mut EndConditions) -> &mut f64;
 
     #[test]
     fn a_single_pose_is_proven_if_it_clears_each_limit_by_the_error_bound() {
-        let (mut conditions, cell) = neutral_cell();
+        let (mut conditions, cell) = create_neutral_cell();
         // Without limits every pose is proven.
-        assert_eq!(conditions.judge(&cell), Verdict::Proven);
+        assert_eq!(conditions.evaluate(&cell), Verdict::Proven);
         let cranks = cell.0.map(|span| span.direction());
         let [left, right] = cranks;
         let pose = conditions.five_bar.close(AssemblyMode::Ahead, left, right);
         let pose = pose.expect("the neutral pose closes");
         let tip_distance = pose.gap.length();
-        let errors = bounds::EndErrors::between(
+        let errors = bounds::EndErrors::over_range(
             &conditions.five_bar,
             conditions.rounded_bars,
             [tip_distance; 2],
@@ -187,7 +187,7 @@ mod tests {
         } else {
             (pose.type1_right(), errors.type1_right)
         };
-        let limits: [(Limit, f64, f64); 3] = [
+        let limits: [(LimitSelector, f64, f64); 3] = [
             (
                 |conditions| &mut conditions.type2_limit,
                 pose.type2,
@@ -200,27 +200,31 @@ mod tests {
                 MAX_DIRECTION_ERROR,
             ),
         ];
-        for (limit, value, bound) in limits {
-            assert!(bound > 1e-5 && bound < 0.01, "{bound}");
-            let unlimited = *limit(&mut conditions);
+        for (select_limit, value, bound) in limits {
+            assert!(bound > 1e-5 && bound < 0.01, "the bound is {bound}");
+            let unlimited = *select_limit(&mut conditions);
             for (clearance, verdict) in [
                 (1.01 * bound, Verdict::Proven),
                 (0.99 * bound, Verdict::Undecided),
                 (0.01 * bound, Verdict::Undecided),
                 (-0.01 * bound, Verdict::Violated),
             ] {
-                *limit(&mut conditions) = value - clearance;
-                assert_eq!(conditions.judge(&cell), verdict, "{value} {clearance}");
+                *select_limit(&mut conditions) = value - clearance;
+                assert_eq!(
+                    conditions.evaluate(&cell),
+                    verdict,
+                    "value {value}, clearance {clearance}"
+                );
             }
-            *limit(&mut conditions) = unlimited;
+            *select_limit(&mut conditions) = unlimited;
         }
     }
 
     #[test]
     fn crank_tips_that_may_be_crossed_leave_a_cell_undecided() {
-        let (conditions, _) = neutral_cell();
+        let (conditions, _) = create_neutral_cell();
         let mm_per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
-        let span_at = |degrees: f64| span_of_one(degrees * 65536.0 / 360.0);
+        let span_at = |degrees: f64| single_angle(degrees * 65536.0 / 360.0);
         // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
         let right = span_at(165.0);
         let gap_at = |left: Span| {
@@ -242,14 +246,14 @@ mod tests {
                 crossed_deg = middle;
             }
         }
-        let judge_at = |mm: f64| {
+        let evaluate_at = |mm: f64| {
             let slope = conditions.five_bar.left_crank_length * apart_deg.to_radians().sin();
             let left = span_at(apart_deg + (mm / slope).to_degrees());
             assert!((gap_at(left) - mm).abs() < mm_per_step);
-            conditions.judge(&Cell([left, right]))
+            conditions.evaluate(&Cell([left, right]))
         };
-        assert_eq!(judge_at(-mm_per_step), Verdict::Violated);
-        assert_eq!(judge_at(mm_per_step), Verdict::Undecided);
-        assert_eq!(judge_at(20.0 * mm_per_step), Verdict::Proven);
+        assert_eq!(evaluate_at(-mm_per_step), Verdict::Violated);
+        assert_eq!(evaluate_at(mm_per_step), Verdict::Undecided);
+        assert_eq!(evaluate_at(20.0 * mm_per_step), Verdict::Proven);
     }
 }

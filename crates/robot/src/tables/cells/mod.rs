@@ -1,11 +1,11 @@
 //! The maps of cells in which the integer guard is proven to accept every pose.
 //!
-//! On the chip, computing the distance of a pose from every hazard takes most of a frame's time. But each condition
-//! depends only on one servo, on the two servos of the head or tail five-bar, or on the two servos of a side. So the
-//! poses that are far from every limit can be listed in advance, in four maps over pairs of servos
+//! On the chip, computing a pose's distance from every hazard takes most of a frame's time. But each condition depends
+//! only on one servo, on the two servos of the head or tail five-bar, or on the two servos of a side. The poses that
+//! are far from every limit can therefore be listed in advance, in four maps over pairs of servos
 //! ([`lizard_core::numbers::cells`]). This module computes the maps from the robot's true lengths, with bounds over
-//! whole cells and bounds of the errors of the guard's integers. It samples no poses, so the proof is valid for every
-//! pose of a cell.
+//! whole cells and error bounds of the guard's integers. It samples no poses, so the proof is valid for every pose of a
+//! cell.
 
 mod cell;
 mod end;
@@ -22,7 +22,7 @@ use lizard_kinematics::{End, Lizard, Side};
 
 use cell::{Cell, Condition, Span};
 
-/// The maps of a robot. A pose is certified if all four contain it.
+/// The maps of a robot. A pose is certified if all four maps contain it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CellMaps {
     /// Map of the head: rows A1, columns A2.
@@ -39,7 +39,7 @@ pub struct CellMaps {
 const EMPTY_ROW: [i8; 2] = [1, 0];
 
 impl CellMaps {
-    /// Computes the maps from the true lengths and from the integers with which the firmware computes.
+    /// Computes the maps from the true lengths and from the firmware's integers.
     pub(crate) fn new(lizard: &Lizard, numbers: &Content) -> Self {
         let certify_end =
             |end: End| certify(&end::EndConditions::new(lizard, numbers, end), numbers);
@@ -63,7 +63,7 @@ impl CellMaps {
     }
 }
 
-/// Makes the map of the cells in which a condition is proven.
+/// Computes the map of the cells in which a condition is proven.
 fn certify(condition: &impl Condition, numbers: &Content) -> Map {
     let [row, column] = condition.servos().map(|servo| DividedServo {
         neutral: numbers.neutral_angles[servo],

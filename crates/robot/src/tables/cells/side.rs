@@ -1,7 +1,7 @@
-//! The condition of a side over a cell: its slider stays within its stroke.
+//! The condition of a side over a cell: the slider stays within its stroke.
 //!
-//! Between the cell's centre and any other pose of the cell, the tip of each arm moves by at most the arm's length
-//! times the angle of its turn, and the slider's length changes by at most the sum of both movements. With the error
+//! Between the cell's centre and any other pose of the cell, each arm tip moves by at most the arm's length times the
+//! arm's rotation, and the slider's length changes by at most the sum of both movements. With the error
 //! bound of the guard's integers added, the length must still be within the guard's stroke.
 
 use lizard_core::guard::bounds;
@@ -9,13 +9,13 @@ use lizard_core::numbers::section::Content;
 use lizard_kinematics::{Lizard, Side, Slider};
 
 use super::cell::{Cell, Condition, ROUNDING_ALLOWANCE, Verdict};
-use crate::measures::scale;
+use crate::config::scale;
 
 /// The condition that a side's slider stays within its stroke.
 pub(super) struct StrokeCondition {
     side: Side,
     slider: Slider,
-    /// Bound of the error of the guard's integers, mm.
+    /// Error bound of the guard's integers, mm.
     error_bound: f64,
     /// Smallest length of the slider within its stroke, mm.
     min_length: f64,
@@ -24,21 +24,21 @@ pub(super) struct StrokeCondition {
 }
 
 impl StrokeCondition {
-    /// The condition of one side of a robot, with the guard's stroke.
+    /// Creates the condition of one side of a robot, with the guard's stroke.
     pub fn new(lizard: &Lizard, numbers: &Content, side: Side) -> Self {
         let core_slider = &numbers.sliders[side as usize];
         let slider = lizard.side(side);
-        let mm_of = |steps: u16| f64::from(steps) / scale::steps_per_mm(core_slider.scale);
+        let to_mm = |steps: u16| f64::from(steps) / scale::steps_per_mm(core_slider.scale);
         Self {
             side,
             slider,
             error_bound: bounds::slider_error(&slider, core_slider),
-            min_length: mm_of(core_slider.stroke_min),
-            max_length: mm_of(core_slider.stroke_max),
+            min_length: to_mm(core_slider.stroke_min),
+            max_length: to_mm(core_slider.stroke_max),
         }
     }
 
-    /// Length of the slider at the centre of a cell, mm.
+    /// The slider's length at the centre of a cell, mm.
     fn length(&self, cell: &Cell) -> f64 {
         let [front, rear] = cell.0.map(|span| span.direction());
         let (rear, front) = (self.side.rear_arm(rear), self.side.front_arm(front));
@@ -51,7 +51,7 @@ impl Condition for StrokeCondition {
         self.side.servos()
     }
 
-    fn judge(&self, cell: &Cell) -> Verdict {
+    fn evaluate(&self, cell: &Cell) -> Verdict {
         let [front, rear] = cell.0;
         let length = self.length(cell);
         let clearance = (length - self.min_length).min(self.max_length - length);
@@ -88,7 +88,7 @@ mod tests {
                 }
             });
             let cell = Cell(spans);
-            assert_eq!(condition.judge(&cell), Verdict::Proven);
+            assert_eq!(condition.evaluate(&cell), Verdict::Proven);
             let length = condition.length(&cell);
             for (clearance, verdict) in [
                 (1.01, Verdict::Proven),
@@ -99,16 +99,16 @@ mod tests {
                 let (min, max) = (condition.min_length, condition.max_length);
                 condition.min_length = length - clearance * condition.error_bound;
                 assert_eq!(
-                    condition.judge(&cell),
+                    condition.evaluate(&cell),
                     verdict,
-                    "{side} {clearance} from the shortest"
+                    "{side} side, {clearance} error bounds from the shortest length"
                 );
                 condition.min_length = min;
                 condition.max_length = length + clearance * condition.error_bound;
                 assert_eq!(
-                    condition.judge(&cell),
+                    condition.evaluate(&cell),
                     verdict,
-                    "{side} {clearance} from the longest"
+                    "{side} side, {clearance} error bounds from the longest length"
                 );
                 condition.max_length = max;
             }

@@ -1,4 +1,4 @@
-//! Comparison of the maps with the integer guard: [`Clearance`] computes a pose's margins without the maps.
+//! Comparisons of the maps with the integer guard: [`Clearance`] computes a pose's margins without the maps.
 
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::numbers::gaits::GaitId;
@@ -10,20 +10,20 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 
 use super::*;
-use crate::measures::Measures;
+use crate::config::RobotConfig;
 use crate::tables::core_robot::{CoreRobot, flash};
 use crate::tables::numbers;
 use crate::tables::table::Tables;
 use crate::testing::{all_robots, robot};
 use crate::{Robot, Servo};
 
-/// Collects the measures of a robot, so that a test can change them.
-fn measures_of(robot: &Robot) -> Measures {
-    Measures {
+/// Collects the configuration of a robot, so that a test can change it.
+fn to_config(robot: &Robot) -> RobotConfig {
+    RobotConfig {
         lizard: *robot.lizard(),
         servos: *robot.servos(),
         servo_type: *robot.servo_type(),
-        joints: robot.motors().joints,
+        joint_friction: robot.motors().joint_friction,
         limits: *robot.limits(),
         speed_limits: *robot.speed_limits(),
         ground: *robot.ground(),
@@ -34,8 +34,8 @@ fn measures_of(robot: &Robot) -> Measures {
     }
 }
 
-/// Random robots without symmetry, with various links, limits and servos.
-fn random_measures() -> impl Strategy<Value = Measures> {
+/// Random asymmetrical robots, with various links, limits and servos.
+fn random_configs() -> impl Strategy<Value = RobotConfig> {
     let paper = robot("paper");
     let end_lengths = || (15.0..40.0, 22.0..45.0, 45.0..75.0, 45.0..75.0, 22.0..45.0);
     let side_lengths = || (20.0..42.0, 35.0..55.0, 35.0..55.0, 20.0..42.0);
@@ -66,7 +66,7 @@ fn random_measures() -> impl Strategy<Value = Measures> {
         }
         let (type2, type1, leg, stroke_min, stroke_max) = limits;
         let neutral = [130.0, 50.0, 310.0, 230.0];
-        Measures {
+        RobotConfig {
             lizard: Lizard {
                 links: Links::from(links),
                 ..*paper.lizard()
@@ -86,7 +86,7 @@ fn random_measures() -> impl Strategy<Value = Measures> {
                     ..paper.servos()[i]
                 }
             }),
-            ..measures_of(&paper)
+            ..to_config(&paper)
         }
     })
 }
@@ -98,8 +98,7 @@ struct CertifiedMap<'a> {
     servos: [usize; 2],
     /// Indices in [`Clearance::margins`] of the margins that the map certifies.
     margins: &'static [usize],
-    /// Index in [`Clearance::slider_lengths_sq`] of the slider that the map certifies; `None` in the maps of head and
-    /// tail.
+    /// Index in [`Clearance::slider_lengths_sq`] of the slider that the map certifies; `None` for head and tail.
     slider: Option<usize>,
 }
 
@@ -112,7 +111,7 @@ struct RobotWithMaps {
 
 impl RobotWithMaps {
     /// Computes the maps of a robot.
-    fn of(name: &str, robot: &Robot) -> Self {
+    fn new(name: &str, robot: &Robot) -> Self {
         Self {
             name: name.to_string(),
             robot: *robot.firmware(),
@@ -120,17 +119,17 @@ impl RobotWithMaps {
         }
     }
 
-    /// Makes a robot without gaits from its measures.
-    fn from_measures(name: &str, measures: &Measures) -> Self {
-        let content = numbers::section_content(
+    /// Creates a robot without gaits from its configuration.
+    fn from_config(name: &str, config: &RobotConfig) -> Self {
+        let content = numbers::build_content(
             name,
-            measures,
+            config,
             &Tables::new(&[]).expect("tables without gaits can be built"),
             &[],
         );
         Self {
             name: name.to_string(),
-            maps: CellMaps::new(&measures.lizard, &content),
+            maps: CellMaps::new(&config.lizard, &content),
             robot: CoreRobot::unchecked(flash(&content.section_bytes()))
                 .expect("the section is complete"),
         }
@@ -160,7 +159,7 @@ impl RobotWithMaps {
 
     /// Checks that the guard accepts seven pairs of angles in every cell: the four corners, the centre and two random
     /// pairs. Compares only the margins and sliders that the map certifies. Returns the number of cells, or a message
-    /// about the first pose that the guard refuses.
+    /// about the first pose that the guard rejects.
     fn check(&self, runner: &mut TestRunner) -> Result<usize, String> {
         let Limits { type2, type1, leg } = self.robot.limits();
         let min_margins = [type2, type2, type1, type1, type1, type1, leg, leg, leg, leg];
@@ -200,7 +199,7 @@ impl RobotWithMaps {
                             map.cells()
                                 .contains(pose.0[row_servo], pose.0[column_servo])
                         );
-                        let clearance = Clearance::of(&self.robot, &pose);
+                        let clearance = Clearance::measure(&self.robot, &pose);
                         let is_accepted = margins
                             .iter()
                             .all(|margin| clearance.margins[*margin] >= min_margins[*margin])
@@ -222,7 +221,7 @@ impl RobotWithMaps {
 fn the_guard_accepts_the_corners_the_centre_and_random_poses_of_every_cell() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all_robots() {
-        let result = RobotWithMaps::of(name, &robot).check(&mut runner);
+        let result = RobotWithMaps::new(name, &robot).check(&mut runner);
         let cell_count = result.unwrap_or_else(|message| panic!("{message}"));
         assert!(cell_count > 2000, "{name}: {cell_count}");
     }
@@ -231,13 +230,13 @@ fn the_guard_accepts_the_corners_the_centre_and_random_poses_of_every_cell() {
 #[test]
 fn the_guard_accepts_every_cell_of_random_robots() {
     let mut runner = TestRunner::deterministic();
-    let (strategy, mut cell_count) = (random_measures(), 0);
+    let (strategy, mut cell_count) = (random_configs(), 0);
     for number in 0..100 {
-        let measures = strategy
+        let config = strategy
             .new_tree(&mut runner)
             .expect("the strategy yields a robot")
             .current();
-        let robot = RobotWithMaps::from_measures(&format!("robot {number}"), &measures);
+        let robot = RobotWithMaps::from_config(&format!("robot {number}"), &config);
         let checked_cells = robot.check(&mut runner);
         cell_count += checked_cells.unwrap_or_else(|message| panic!("{message}"));
     }
@@ -248,7 +247,7 @@ fn the_guard_accepts_every_cell_of_random_robots() {
 fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
     let mut runner = TestRunner::deterministic();
     for (name, robot) in all_robots() {
-        let RobotWithMaps { robot, maps, .. } = RobotWithMaps::of(name, &robot);
+        let RobotWithMaps { robot, maps, .. } = RobotWithMaps::new(name, &robot);
         let travels = robot
             .calibration()
             .map(|servo| (servo.travel_min.0..=servo.travel_max.0).prop_map(Sweep));
@@ -262,9 +261,9 @@ fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
             if maps.contains(&pose) {
                 certified_count += 1;
                 assert_eq!(
-                    Clearance::of(&robot, &pose).first_hazard(&robot),
+                    Clearance::measure(&robot, &pose).first_hazard(&robot),
                     None,
-                    "{name} {pose:?}"
+                    "{name}: {pose:?}"
                 );
             }
         }
@@ -278,7 +277,7 @@ fn the_guard_accepts_every_pose_that_all_four_maps_contain() {
 /// Makes each limit in turn a little stricter than in the maps. Some cell then violates the limit, so the comparison
 /// would notice a wrong map.
 #[test]
-fn a_stricter_limit_than_that_of_the_maps_is_violated_in_a_cell() {
+fn cells_of_the_old_maps_violate_a_stricter_limit() {
     let robot = robot("unequal");
     let changes: [fn(&mut lizard_kinematics::Limits); 5] = [
         |limits| limits.type2 += 0.3,
@@ -288,9 +287,9 @@ fn a_stricter_limit_than_that_of_the_maps_is_violated_in_a_cell() {
         |limits| limits.stroke_max -= 1.0,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut stricter_measures = measures_of(&robot);
-        change(&mut stricter_measures.limits);
-        let stricter_robot = RobotWithMaps::from_measures("stricter", &stricter_measures);
+        let mut stricter_config = to_config(&robot);
+        change(&mut stricter_config.limits);
+        let stricter_robot = RobotWithMaps::from_config("stricter", &stricter_config);
         let maps = robot.cell_maps();
         assert_ne!(stricter_robot.maps, maps, "limit {index}");
         let robot_with_old_maps = RobotWithMaps {
@@ -303,9 +302,9 @@ fn a_stricter_limit_than_that_of_the_maps_is_violated_in_a_cell() {
 }
 
 #[test]
-fn maps_have_at_most_max_rows_and_begin_and_end_with_a_cell() {
+fn maps_begin_and_end_with_a_cell_and_have_at_most_max_rows() {
     for (name, robot) in all_robots() {
-        for CertifiedMap { map, .. } in RobotWithMaps::of(name, &robot).certified_maps() {
+        for CertifiedMap { map, .. } in RobotWithMaps::new(name, &robot).certified_maps() {
             assert!(map.rows.len() <= MAX_ROWS, "{name}");
             let [first, .., last] = map.rows.as_slice() else {
                 panic!("{name}: a map of {} rows", map.rows.len());
@@ -317,8 +316,8 @@ fn maps_have_at_most_max_rows_and_begin_and_end_with_a_cell() {
     }
 }
 
-/// Returns the share of a gait's phases at which all four maps contain its pose.
-fn certified_share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
+/// Computes the fraction of a gait's phases at which all four maps contain the pose.
+fn compute_certified_fraction(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
     let gait = robot.gait(gait);
     let certified_count = (0..1u32 << 16)
         .filter(|phase| maps.contains(&gait.pose(robot.waves(), phase << 8)))
@@ -327,12 +326,12 @@ fn certified_share(robot: &CoreRobot, maps: &CellMaps, gait: GaitId) -> f64 {
 }
 
 #[test]
-fn every_gait_of_every_robot_is_within_certified_cells_at_every_phase() {
+fn every_gait_stays_within_certified_cells() {
     for (name, robot) in all_robots() {
         let maps = robot.cell_maps();
         for (gait, id) in robot.gaits().iter().zip(GaitId::all(robot.gaits().len())) {
-            let share = certified_share(robot.firmware(), &maps, id);
-            assert_eq!(share, 1.0, "{name} {}", gait.name());
+            let fraction = compute_certified_fraction(robot.firmware(), &maps, id);
+            assert_eq!(fraction, 1.0, "{name} {}", gait.name());
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Uploads of a robot alone, in which the board keeps its code.
+//! Tests of uploads of a robot alone, in which the board keeps its code.
 
 use super::*;
 
@@ -6,20 +6,21 @@ use super::*;
 const PAPER: &str = include_str!("../../../../../robots/paper.toml");
 
 #[test]
-fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
-    let run = run_with(board_with_robot("paper"), &robot_image("unequal"));
+fn the_first_page_of_a_robot_alone_is_blanked_first_and_written_last() {
+    let run = run_with_image(board_with_robot("paper"), &robot_image("unequal"));
     let counts = run.result.expect("the image is written");
-    let section = robot("unequal").section();
-    let pages: Vec<usize> = (0x6e00..0x6e00 + section.len()).step_by(128).collect();
+    let section = load_robot("unequal").section();
+    let mut expected_addresses: Vec<usize> =
+        (0x6e00..0x6e00 + section.len()).step_by(128).collect();
     assert_eq!(
         counts.written,
-        pages.len(),
+        expected_addresses.len(),
         "every page of the two robots differs"
     );
-    let expected_addresses = [&pages[..], &[0x6e00]].concat();
+    expected_addresses.push(0x6e00);
     assert_eq!(run.board.written_addresses, expected_addresses);
     let expected_image = firmware_image("unequal");
-    assert!(run.board.flash[..expected_image.end()] == *expected_image.bytes());
+    assert!(run.board.flash[..expected_image.end_address()] == *expected_image.bytes());
     assert!(run.board.has_started_program, "the firmware is started");
     let [contents] = &run.reported_contents[..] else {
         panic!("{:?}", run.reported_contents)
@@ -31,8 +32,8 @@ fn a_robot_alone_is_written_with_its_first_page_blank_first_and_filled_last() {
 fn a_changed_gait_takes_less_than_a_second_on_the_serial_line() {
     let slower_toml = PAPER.replacen("period = 1.25", "period = 1.5", 1);
     assert_ne!(slower_toml, PAPER);
-    let slower_robot = lizard_robot::Robot::parse(&slower_toml).expect("the robot file is valid");
-    let run = run_with(
+    let slower_robot = Robot::parse(&slower_toml).expect("the robot file is valid");
+    let run = run_with_image(
         board_with_robot("paper"),
         &Image::robot_alone(slower_robot.section()).expect("the image fits"),
     );
@@ -44,8 +45,8 @@ fn a_changed_gait_takes_less_than_a_second_on_the_serial_line() {
 }
 
 #[test]
-fn a_robot_that_the_board_already_has_is_not_written() {
-    let run = run_with(board_with_robot("paper"), &robot_image("paper"));
+fn an_upload_of_the_robot_that_the_board_has_writes_no_page() {
+    let run = run_with_image(board_with_robot("paper"), &robot_image("paper"));
     assert_eq!(run.result.expect("the upload succeeds").written, 0);
     assert!(run.board.written_addresses.is_empty() && run.board.has_started_program);
     assert!(
@@ -56,13 +57,13 @@ fn a_robot_that_the_board_already_has_is_not_written() {
 }
 
 #[test]
-fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
+fn after_an_interrupted_upload_the_firmware_finds_no_robot_until_the_next_upload() {
     let (old_flash, large) = (board_with_robot("own-gaits").flash, robot_image("large"));
     let code = old_flash[..0x6e00].to_vec();
-    for written in 1..=large.pages().len() {
-        let mut board = BoardDouble::with(&old_flash);
-        board.unplugged_after_pages = Some(written);
-        let interrupted_run = run_with(board, &large);
+    for page_count in 1..=large.pages().len() {
+        let mut board = BoardDouble::with_program(&old_flash);
+        board.unplugged_after_pages = Some(page_count);
+        let interrupted_run = run_with_image(board, &large);
         let message = interrupted_run.error_message();
         assert!(message.starts_with("the port is gone"), "{message}");
         assert!(
@@ -74,20 +75,20 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
             "the code is unchanged"
         );
         assert_eq!(
-            robot_name(&interrupted_run.board),
+            read_robot_name(&interrupted_run.board),
             None,
-            "after {written} pages"
+            "after {page_count} pages"
         );
         let mut board = interrupted_run.board;
         board.unplugged_after_pages = None;
-        let next_run = run_with(board, &large);
+        let next_run = run_with_image(board, &large);
         assert!(
             next_run.reported_contents[0].contains(" without a robot"),
             "{:?}",
             next_run.reported_contents
         );
         assert!(next_run.result.is_ok(), "{}", next_run.error_message());
-        assert_eq!(robot_name(&next_run.board).as_deref(), Some("large"));
+        assert_eq!(read_robot_name(&next_run.board).as_deref(), Some("large"));
     }
 }
 
@@ -95,34 +96,34 @@ fn after_a_cable_is_pulled_the_firmware_finds_no_robot_until_the_next_upload() {
 fn an_upload_of_a_robot_alone_recovers_from_the_loss_of_any_byte() {
     let (old_flash, paper) = (board_with_robot("own-gaits").flash, robot_image("paper"));
     let expected_image = firmware_image("paper");
-    let undisturbed_board = run_with(BoardDouble::with(&old_flash), &paper).board;
-    let assert_recovered = |run: &Run, lost_byte: usize| {
+    let undisturbed_board = run_with_image(BoardDouble::with_program(&old_flash), &paper).board;
+    let assert_recovered = |run: &UploadRun, lost_byte: usize| {
         run.assert_recovered(lost_byte);
         assert!(
-            run.board.flash[..expected_image.end()] == *expected_image.bytes(),
+            run.board.flash[..expected_image.end_address()] == *expected_image.bytes(),
             "byte {lost_byte}"
         );
     };
     for lost_byte in 0..undisturbed_board.received_count {
-        let mut board = BoardDouble::with(&old_flash);
+        let mut board = BoardDouble::with_program(&old_flash);
         board.lost_byte_to_board = Some(lost_byte);
-        assert_recovered(&run_with(board, &paper), lost_byte);
+        assert_recovered(&run_with_image(board, &paper), lost_byte);
     }
     for lost_byte in (0..undisturbed_board.sent_count).step_by(101) {
-        let mut board = BoardDouble::with(&old_flash);
+        let mut board = BoardDouble::with_program(&old_flash);
         board.lost_byte_from_board = Some(lost_byte);
-        assert_recovered(&run_with(board, &paper), lost_byte);
+        assert_recovered(&run_with_image(board, &paper), lost_byte);
     }
 }
 
 #[test]
-fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
+fn a_robot_alone_is_rejected_if_the_code_on_the_board_cannot_read_it() {
     let (paper_flash, large) = (board_with_robot("paper").flash, robot_image("large"));
     let error_after_change = |change: &dyn Fn(&mut BoardDouble)| {
-        let mut board = BoardDouble::with(&paper_flash);
+        let mut board = BoardDouble::with_program(&paper_flash);
         change(&mut board);
         let old_flash = board.flash.clone();
-        let run = run_with(board, &large);
+        let run = run_with_image(board, &large);
         assert!(run.board.flash == old_flash && run.board.written_addresses.is_empty());
         run.error_message()
     };
@@ -131,7 +132,7 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
         error_after_change(&|board| board.flash[..BOOT_ADDRESS].fill(0xff)),
         format!("the board has no program, and {reason}")
     );
-    // Another sketch, shorter than the firmware, whose rest is still in flash.
+    // Another sketch that is shorter than the firmware leaves the rest of the firmware in flash.
     assert_eq!(
         error_after_change(&|board| board.flash[..1000].fill(0x95)),
         format!("the board has another program, and {reason}")
@@ -141,12 +142,12 @@ fn a_robot_alone_is_refused_if_the_code_on_the_board_cannot_read_it() {
             board.flash[..PAGE_BYTES].fill(0xff);
             board.flash[..2].copy_from_slice(&IDLE_JUMP);
         }),
-        format!("the board has half a program, which does nothing, and {reason}")
+        format!("the board has an incomplete program, which does nothing, and {reason}")
     );
     let message = error_after_change(&|board| board.flash[ADDRESS + 4] += 1);
     assert!(
         message.ends_with(&format!(
-            ", whose robots are of format {}; this robot is of format {FORMAT}: write the \
+            ", which reads robots of format {}; this robot has format {FORMAT}: write the \
              firmware, too. Nothing was written",
             FORMAT + 1
         )),

@@ -1,5 +1,5 @@
-//! A test double: a board whose boot loader behaves byte for byte like optiboot.c, version 4.4, or
-//! ATmegaBOOT_168.c, with faults that a test can inject.
+//! A test double of a board. Its boot loader behaves byte for byte like optiboot.c, version 4.4, or ATmegaBOOT_168.c,
+//! and tests can inject faults.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -9,25 +9,25 @@ use crate::loader::LoaderKind;
 
 /// A simulated board: its flash, and the faults to inject.
 pub struct BoardDouble {
-    /// The 32 KiB of flash, with only the first four bytes of the boot loader.
+    /// The 32 KiB of flash; of the boot loader, only the first four bytes.
     pub flash: Vec<u8>,
-    /// The kind of boot loader. It receives nothing at a baud rate other than its own.
+    /// The kind of boot loader, which receives bytes only at its own baud rate.
     pub kind: LoaderKind,
     /// The chip signature that the loader reports.
     pub signature: [u8; 3],
-    /// The bytes that a running program sends before each reset, and that arrive after it.
+    /// The bytes that the running program sends before each reset, and that arrive after the reset.
     pub old_program_output: Vec<u8>,
     /// The number of calls that are ignored after each reset.
     pub ignored_calls_per_reset: usize,
     /// True if the loader never answers.
     pub is_mute: bool,
-    /// The number of the lost byte among those sent to the board, counted from 0.
+    /// The index of the lost byte among the bytes sent to the board.
     pub lost_byte_to_board: Option<usize>,
-    /// The number of the lost byte among those sent by the board, counted from 0.
+    /// The index of the lost byte among the bytes sent by the board.
     pub lost_byte_from_board: Option<usize>,
-    /// An address in flash, and the bits at that address that are stuck at 0.
+    /// A flash address, and its bits that are stuck at 0.
     pub stuck_bits: Option<(usize, u8)>,
-    /// The number of written pages after which the port vanishes.
+    /// The number of written pages after which the port disappears.
     pub unplugged_after_pages: Option<usize>,
     /// The addresses of written pages, in order.
     pub written_addresses: Vec<usize>,
@@ -39,32 +39,32 @@ pub struct BoardDouble {
     pub received_count: usize,
     /// The number of bytes sent by the board so far, lost ones included.
     pub sent_count: usize,
-    /// The number of bytes that ATmegaBOOT did not understand since the reset.
+    /// The number of invalid bytes that ATmegaBOOT has received since the reset.
     error_count: usize,
-    /// True while the boot loader runs and receives.
+    /// True while the boot loader runs and receives bytes.
     is_listening: bool,
-    /// The number of calls that are still to be ignored.
+    /// The number of remaining calls to ignore.
     calls_to_ignore: usize,
-    /// The address in flash at which the next page command begins.
+    /// The flash address of the next page command.
     address: usize,
     /// The bytes of the incomplete command.
     command: Vec<u8>,
-    /// The bytes that the board has sent and that have not been read.
+    /// The bytes that the board has sent and nobody has read.
     output: VecDeque<u8>,
 }
 
 impl BoardDouble {
-    /// A UNO with blank flash.
+    /// Creates a UNO with blank flash.
     pub fn blank() -> Self {
         Self::with_loader(LoaderKind::Optiboot, 0x7e00, [0x11, 0x24, 0x84, 0xb7])
     }
 
-    /// An old Nano with blank flash.
+    /// Creates an old Nano with blank flash.
     pub fn old_nano() -> Self {
         Self::with_loader(LoaderKind::AtmegaBoot, 0x7800, [0x0c, 0x94, 0x34, 0x3c])
     }
 
-    /// A board with a boot loader whose first bytes are given, and otherwise blank flash.
+    /// Creates a board whose flash holds the boot loader's first bytes and is blank otherwise.
     fn with_loader(kind: LoaderKind, loader_address: usize, loader_bytes: [u8; 4]) -> Self {
         let mut flash = vec![0xff; 0x8000];
         flash[loader_address..loader_address + 4].copy_from_slice(&loader_bytes);
@@ -93,8 +93,8 @@ impl BoardDouble {
         }
     }
 
-    /// A blank board with these bytes from address 0.
-    pub fn with(program: &[u8]) -> Self {
+    /// Creates a UNO with a program at address 0.
+    pub fn with_program(program: &[u8]) -> Self {
         let mut double = Self::blank();
         double.flash[..program.len()].copy_from_slice(program);
         double
@@ -102,10 +102,9 @@ impl BoardDouble {
 
     /// Fails if the board is unplugged.
     fn check_connection(&self) -> Result<(), BoardError> {
-        let page_limit = self.unplugged_after_pages;
-        match page_limit.is_some_and(|page_limit| self.written_addresses.len() >= page_limit) {
-            true => Err(BoardError::Gone),
-            false => Ok(()),
+        match self.unplugged_after_pages {
+            Some(count) if self.written_addresses.len() >= count => Err(BoardError::Gone),
+            _ => Ok(()),
         }
     }
 
@@ -126,12 +125,12 @@ impl BoardDouble {
         }
         if command[length - 1] != b' ' && self.kind == LoaderKind::AtmegaBoot {
             self.error_count += 1;
-            // At MAX_ERROR_COUNT the program starts.
+            // After MAX_ERROR_COUNT errors, the program starts.
             self.is_listening = self.error_count < 5;
             return;
         }
         if command[length - 1] != b' ' {
-            // In verifySpace() the watchdog resets the chip, and the program starts.
+            // In verifySpace(), the watchdog resets the chip, and the program starts.
             self.is_listening = false;
             return;
         }
@@ -149,7 +148,7 @@ impl BoardDouble {
             }
             b'd' => self.write_page(&command[4..length - 1]),
             b'Q' => {
-                // ATmegaBOOT keeps listening until nothing arrives for a while.
+                // ATmegaBOOT listens until nothing arrives for a while.
                 self.is_listening = self.kind == LoaderKind::AtmegaBoot;
                 self.has_started_program = true;
             }

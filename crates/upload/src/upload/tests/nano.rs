@@ -1,12 +1,12 @@
-//! Uploads to an old Nano: its boot loader has a lower baud rate and leaves less flash free.
+//! Tests of uploads to a Nano. An old Nano's boot loader has a lower baud rate and leaves less flash free.
 
 use super::*;
 
 #[test]
-fn an_old_nano_is_found_at_its_own_baud_rate_and_keeps_its_boot_loader() {
+fn an_upload_to_an_old_nano_finds_its_baud_rate_and_keeps_its_boot_loader() {
     let mut board = BoardDouble::old_nano();
     board.flash[..500].fill(9);
-    let run = run_with(board, &firmware_image("paper"));
+    let run = run_with_image(board, &firmware_image("paper"));
     assert!(run.result.is_ok(), "{}", run.error_message());
     assert_eq!(
         (run.board.reset_count, run.retry_count),
@@ -18,7 +18,7 @@ fn an_old_nano_is_found_at_its_own_baud_rate_and_keeps_its_boot_loader() {
         ["the board has another program, of 500 bytes"]
     );
     let image = firmware_image("paper");
-    assert!(run.board.flash[..image.end()] == *image.bytes());
+    assert!(run.board.flash[..image.end_address()] == *image.bytes());
     assert!(run.board.flash[0x7800..] == BoardDouble::old_nano().flash[0x7800..]);
     assert!(run.board.has_started_program, "the program is started");
 }
@@ -28,16 +28,16 @@ fn an_upload_to_an_old_nano_recovers_from_the_loss_of_any_byte_to_the_board() {
     let (code, large) = (firmware_image("paper"), robot_image("large"));
     let run_with_lost_byte = |lost_byte| {
         let mut board = BoardDouble::old_nano();
-        board.flash[..code.end()].copy_from_slice(code.bytes());
+        board.flash[..code.end_address()].copy_from_slice(code.bytes());
         board.lost_byte_to_board = lost_byte;
-        run_with(board, &large)
+        run_with_image(board, &large)
     };
     let byte_count = run_with_lost_byte(None).board.received_count;
     assert!(byte_count > 1000, "{byte_count} bytes");
     for lost_byte in 0..byte_count {
         let run = run_with_lost_byte(Some(lost_byte));
         run.assert_recovered(lost_byte);
-        let name = robot_name(&run.board);
+        let name = read_robot_name(&run.board);
         assert_eq!(name.as_deref(), Some("large"), "byte {lost_byte}");
         let reset_count = run.board.reset_count;
         assert!(reset_count <= 4, "byte {lost_byte}: {reset_count} resets");
@@ -45,11 +45,12 @@ fn an_upload_to_an_old_nano_recovers_from_the_loss_of_any_byte_to_the_board() {
 }
 
 #[test]
-fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_be_a_nano() {
-    // The robot with the most gaits in the repository.
+fn an_image_that_reaches_into_a_nanos_boot_section_is_rejected_for_a_possible_nano() {
+    // This robot has the most gaits of all robots in the repository.
     let image = firmware_image("own-gaits");
-    assert!(image.end() > 0x7800, "{:#x}", image.end());
-    let refusal_of = |mut board: BoardDouble, target: Target| {
+    let end_address = image.end_address();
+    assert!(end_address > 0x7800, "{end_address:#x}");
+    let reject = |mut board: BoardDouble, target: Target| {
         board.flash[..500].fill(9);
         let old_flash = board.flash.clone();
         let run = run_with_target(board, &image, target);
@@ -57,36 +58,34 @@ fn an_image_that_reaches_into_a_nanos_boot_section_is_refused_if_the_board_may_b
         run.error_message()
     };
     let unknown_model = Target::default();
-    let target_of_model = |model| Target {
+    let target_for_model = |model| Target {
         model: Some(model),
         may_be_nano: true,
     };
-    let message = refusal_of(BoardDouble::old_nano(), unknown_model);
-    let expected_start = format!(
-        "{} bytes of flash are needed, and a Nano has 30720",
-        image.end()
-    );
+    let message = reject(BoardDouble::old_nano(), unknown_model);
+    let expected_start =
+        format!("{end_address} bytes of flash are needed, but a Nano has only 30720");
     assert!(message.starts_with(&expected_start), "{message}");
     assert!(message.ends_with("Nothing was written"), "{message}");
     assert_eq!(
         message,
-        refusal_of(BoardDouble::blank(), target_of_model(Model::Nano))
+        reject(BoardDouble::blank(), target_for_model(Model::Nano))
     );
-    // A newer Nano answers like a UNO, and clones of the UNO have the same USB chip as a Nano.
+    // A newer Nano answers like a UNO, and UNO clones have the same USB chip as a Nano.
     let possible_nano = Target {
         may_be_nano: true,
         ..unknown_model
     };
-    let message = refusal_of(BoardDouble::blank(), possible_nano);
+    let message = reject(BoardDouble::blank(), possible_nano);
     assert!(
-        message.contains("; this board may be one, because of its USB chip. Nothing"),
+        message.contains("; according to its USB chip, this board may be a Nano. Nothing"),
         "{message}"
     );
-    for target in [unknown_model, target_of_model(Model::Uno)] {
+    for target in [unknown_model, target_for_model(Model::Uno)] {
         let run = run_with_target(BoardDouble::blank(), &image, target);
         assert!(run.result.is_ok(), "{}", run.error_message());
     }
-    // An image that also fits a Nano is written although the model is unknown.
+    // An image that also fits into a Nano is written although the model is unknown.
     let run = run_with_target(
         BoardDouble::blank(),
         &firmware_image("paper"),

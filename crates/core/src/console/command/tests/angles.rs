@@ -1,17 +1,17 @@
-//! The angles of `pose` in all their notations.
+//! Tests of the angles of `pose` in every notation.
 
 use super::*;
 
-/// Returns a `pose` line with the given angle for the servo at `index`, and neutral angles for the other three.
-fn pose_line(index: usize, angle: &str) -> String {
+/// Formats a `pose` line with `angle` for the servo at `index` and neutral angles for the other servos.
+fn format_pose_line(index: usize, angle: &str) -> String {
     let mut words = ["138.59", "41.41", "318.59", "221.41"].map(ToString::to_string);
     words[index] = angle.to_string();
     format!("pose {}", words.join(" "))
 }
 
-/// Parses a `pose` line with this angle; returns the angle in hundredths of a degree.
+/// Parses a `pose` line with `angle` for the servo at `index`; returns the angle in hundredths of a degree.
 fn parse_angle(index: usize, angle: &str) -> Result<i32, LineError> {
-    match with_shared_robot(|robot| parse(pose_line(index, angle).as_bytes(), robot)) {
+    match with_shared_robot(|robot| parse(format_pose_line(index, angle).as_bytes(), robot)) {
         Ok(Command::Order(Order::Pose(angles))) => Ok(angles[index].centideg().into()),
         Ok(command) => panic!("{command:?}"),
         Err(line_error) => Err(line_error),
@@ -19,7 +19,7 @@ fn parse_angle(index: usize, angle: &str) -> Result<i32, LineError> {
 }
 
 #[test]
-fn angles_within_a_turn_are_read_to_the_hundredth_and_larger_ones_are_refused() {
+fn angles_of_at_most_one_turn_are_parsed_to_the_hundredth_and_larger_angles_are_refused() {
     for centideg in (-36_100..36_100)
         .step_by(3)
         .chain([-36_000, -1, 36_000, 36_001])
@@ -38,7 +38,7 @@ fn angles_within_a_turn_are_read_to_the_hundredth_and_larger_ones_are_refused() 
 }
 
 #[test]
-fn an_angle_may_be_written_in_several_ways() {
+fn equal_angles_in_different_notations_are_parsed_alike() {
     for (notations, centideg) in [
         (["7.5", "7.50", "+7.5", "007.5", "-352.5"], 750),
         (["7", "7.", "7.0", "7.00", "+7"], 700),
@@ -64,10 +64,10 @@ fn an_invalid_angle_is_refused() {
 }
 
 #[test]
-fn angles_go_to_the_servos_in_order_and_the_first_one_too_large_is_named() {
+fn angles_are_assigned_in_servo_order_and_the_error_names_the_first_servo_out_of_range() {
     let Ok(Command::Order(Order::Pose(angles))) = parse_line("pose 138.59   41.42\t318.60 221.44")
     else {
-        panic!("the line is not read as a pose");
+        panic!("the line is not parsed as a pose");
     };
     let centideg = angles.map(Angle::centideg);
     assert_eq!(centideg, [13_859, 4_142, 31_860, 22_144]);

@@ -1,9 +1,9 @@
-//! Lines of random bytes, and lines that are refused.
+//! Tests of refused lines and of random bytes.
 
 use super::*;
 
 #[test]
-fn a_line_that_is_too_long_is_refused_and_the_next_one_is_read() {
+fn a_line_that_is_too_long_is_refused_and_the_next_line_is_executed() {
     let mut dialogue = wake_asymmetric_robot();
     let message = "err 6 a line has at most 63 characters";
     assert_eq!(dialogue.send_line(&"stand".repeat(13)), message);
@@ -23,7 +23,7 @@ const REFUSED_LINES: [&str; 9] = [
     "pose 170 130 309.64 226.18",
 ];
 
-/// Yields random bytes such as a person, a faulty program or a broken cable sends.
+/// Yields random bytes like those that a person, a faulty program or a broken cable sends.
 fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     let mut lines = GAIT_NAMES.to_vec();
     lines.extend([
@@ -48,8 +48,8 @@ fn any_bytes() -> impl Strategy<Value = Vec<u8>> {
     prop::collection::vec(piece, 0..12).prop_map(|pieces| pieces.concat())
 }
 
-/// Counts the final lines with which the robot must answer these bytes.
-fn count_answers_due(bytes: &[u8]) -> usize {
+/// Counts the final lines that these bytes must get as answers.
+fn count_expected_answers(bytes: &[u8]) -> usize {
     let mut line = Line::new();
     bytes
         .iter()
@@ -61,26 +61,26 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn every_line_of_random_bytes_gets_one_final_line_however_slowly_the_bytes_arrive(
+    fn every_random_line_gets_one_final_line_at_any_speed_of_the_bytes(
         bytes in any_bytes(),
         frames_between in 0u32..3,
     ) {
         let (mut burst_dialogue, mut bytewise_dialogue) = (wake_asymmetric_robot(), wake_asymmetric_robot());
-        let final_lines_of = |lines: Vec<String>| -> Vec<String> {
+        let keep_final_lines = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| is_answer(line)).collect()
         };
-        let burst_lines = final_lines_of(burst_dialogue.send(&bytes));
-        prop_assert_eq!(burst_lines.len(), count_answers_due(&bytes));
+        let burst_lines = keep_final_lines(burst_dialogue.send(&bytes));
+        prop_assert_eq!(burst_lines.len(), count_expected_answers(&bytes));
         let mut bytewise_lines = Vec::new();
         for byte in &bytes {
             bytewise_lines.extend(bytewise_dialogue.send(&[*byte]));
             bytewise_lines.extend(bytewise_dialogue.run_frames(frames_between));
         }
-        // Only the answer to `status` depends on time; it is the only one that contains `=`.
-        let time_independent_lines_of = |lines: Vec<String>| -> Vec<String> {
+        // Only the answer to `status` depends on time, and no other answer contains `=`.
+        let omit_status = |lines: Vec<String>| -> Vec<String> {
             lines.into_iter().filter(|line| !line.contains('=')).collect()
         };
-        prop_assert_eq!(time_independent_lines_of(final_lines_of(bytewise_lines)), time_independent_lines_of(burst_lines));
+        prop_assert_eq!(omit_status(keep_final_lines(bytewise_lines)), omit_status(burst_lines));
     }
 
     #[test]

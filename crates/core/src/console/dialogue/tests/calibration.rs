@@ -1,4 +1,4 @@
-//! The settings, most of which calibrate servos: changed, saved and loaded.
+//! Tests of the settings, most of which calibrate servos: changing, saving and loading them.
 
 use super::*;
 use crate::memory::copies::COPY_ADDRESSES;
@@ -12,7 +12,7 @@ fn read_cal(dialogue: &mut Dialogue) -> Vec<String> {
 }
 
 #[test]
-fn cal_prints_all_settings_and_no_state() {
+fn cal_prints_all_settings_independent_of_the_motion() {
     let mut dialogue = wake_asymmetric_robot();
     let initial_lines = read_cal(&mut dialogue);
     assert_eq!(initial_lines.len(), 7);
@@ -69,16 +69,16 @@ fn only_saved_settings_survive_a_loss_of_power() {
 }
 
 #[test]
-fn load_before_the_first_save_is_refused_and_so_is_save_to_a_worn_memory() {
+fn load_before_the_first_save_and_save_to_a_worn_memory_are_refused() {
     let mut dialogue = wake_asymmetric_robot();
-    dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
+    dialogue.expect_refused("load", "9 no saved calibration to load");
     dialogue.board.memory.is_worn = true;
-    dialogue.expect_refused("save", "9 the memory does not keep what is written");
+    dialogue.expect_refused("save", "9 the memory write failed");
     dialogue.expect_accepted("stand");
 }
 
 #[test]
-fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
+fn a_calibration_moves_only_its_servo_and_at_most_at_the_slew_limit() {
     for change in [
         "trim 1 20",
         "trim 1 -12.5",
@@ -123,7 +123,7 @@ fn a_change_of_calibration_moves_only_its_servo_and_within_the_slew_limit() {
 }
 
 #[test]
-fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
+fn a_calibration_interrupts_a_gait_until_the_pulses_have_settled() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(120);
@@ -140,7 +140,7 @@ fn a_calibration_during_a_gait_halts_it_until_the_pulses_have_settled() {
 }
 
 #[test]
-fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused_and_change_nothing() {
+fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused() {
     let mut dialogue = wake_asymmetric_robot();
     let lines_before = read_cal(&mut dialogue);
     for line in [
@@ -151,22 +151,24 @@ fn limits_too_narrow_for_the_gaits_or_the_pose_are_refused_and_change_nothing() 
     ] {
         let message = dialogue.send_line(line);
         assert!(message.starts_with("err 3 A"), "{line}: {message}");
-        assert!(message.contains(" would not reach what the gaits need, "));
+        assert!(message.contains("'s travel must cover the gaits' range, "));
         assert_eq!(read_cal(&mut dialogue), lines_before);
     }
     dialogue.send_line("pose 150 47.91 309.64 226.18");
     dialogue.run_frames(2);
     let message = dialogue.send_line("limit 1 61.37 149");
-    assert!(message.ends_with(" would not reach where it is or goes, send stand first"));
+    assert!(
+        message.ends_with("'s travel must cover its current and target angles; send stand first")
+    );
     assert_eq!(read_cal(&mut dialogue), lines_before);
     dialogue.send_line("stand");
     dialogue.run_frames(150);
     dialogue.expect_accepted("limit 1 61.37 149");
-    dialogue.expect_refused("pose 150 47.91 309.64 226.18", "3 A1 reaches 61.37..149.00");
+    dialogue.expect_refused("pose 150 47.91 309.64 226.18", "3 A1 must be 61.37..149.00");
 }
 
 #[test]
-fn a_factory_or_load_command_that_is_refused_changes_nothing() {
+fn a_refused_factory_or_load_command_changes_nothing() {
     let mut dialogue = wake_asymmetric_robot();
     for line in [
         "trim 1 10",
@@ -179,13 +181,13 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     dialogue.send_line("pose 155 47.91 309.64 226.18");
     dialogue.run_frames(150);
     let lines_before = read_cal(&mut dialogue);
-    dialogue.expect_refused("load", "3 A1 would not reach where it is");
+    dialogue.expect_refused("load", "3 A1's travel must cover its current");
     assert_eq!(read_cal(&mut dialogue), lines_before);
     let mut trimmed_dialogue = wake_asymmetric_robot();
     trimmed_dialogue.send_line("trim 3 4");
     let lines_before = read_cal(&mut trimmed_dialogue);
     trimmed_dialogue.board.memory.bytes_mut()[0] = 0;
-    trimmed_dialogue.expect_refused("load", "9 nothing is saved that could be loaded");
+    trimmed_dialogue.expect_refused("load", "9 no saved calibration to load");
     assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
     // Settings for other servos are not loaded, and the current ones stay.
     let mut dialogue = wake_asymmetric_robot();
@@ -194,7 +196,7 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     trimmed_dialogue.board.memory.bytes_mut()[44] ^= 1;
     trimmed_dialogue.expect_refused("load", "9 ");
     assert_eq!(read_cal(&mut trimmed_dialogue), lines_before);
-    // A trim shifts the travel: the pose below is within the shifted travel, but not within that of robot.toml.
+    // A trim shifts the travel: the pose below is within the shifted travel, but outside robot.toml's travel.
     let narrow_max = Sweep(2200);
     let robot =
         Sample::asymmetric().with_changes(|content| content.calibration[0].travel_max = narrow_max);
@@ -206,17 +208,17 @@ fn a_factory_or_load_command_that_is_refused_changes_nothing() {
     narrow_dialogue.expect_accepted(pose);
     narrow_dialogue.run_frames(150);
     let lines_before = read_cal(&mut narrow_dialogue);
-    narrow_dialogue.expect_refused("factory", "3 A1 would not reach where it is");
+    narrow_dialogue.expect_refused("factory", "3 A1's travel must cover its current");
     assert_eq!(read_cal(&mut narrow_dialogue), lines_before);
 }
 
 #[test]
-fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits() {
+fn saved_settings_are_loaded_only_if_their_travel_covers_the_gaits() {
     for servo in Servo::ALL {
         for (excess_steps, is_loaded) in [(1, true), (-1, false)] {
             let mut dialogue = wake_asymmetric_robot();
             let robot = Sample::asymmetric();
-            let mut settings = Settings::of(&robot);
+            let mut settings = Settings::for_robot(&robot);
             let mut adjustment = settings.adjustment(servo);
             adjustment.travel_min = Sweep(robot.needed_travel(servo).min.0 - excess_steps);
             settings.set_adjustment(servo, adjustment);
@@ -226,7 +228,7 @@ fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits()
             {}
             let lines_before = read_cal(&mut dialogue);
             let answer = dialogue.send_line("load");
-            let is_refused = answer == "err 9 nothing is saved that could be loaded";
+            let is_refused = answer == "err 9 no saved calibration to load";
             assert_eq!(is_refused, !is_loaded, "{servo:?}: {answer}");
             let is_unchanged = read_cal(&mut dialogue) == lines_before;
             assert_eq!(is_unchanged, is_refused, "{servo:?}");
@@ -235,7 +237,7 @@ fn saved_settings_are_loaded_only_if_their_travel_is_wide_enough_for_the_gaits()
 }
 
 #[test]
-fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
+fn center_leads_to_the_neutral_pulses_of_robot_toml_despite_trims() {
     let mut dialogue = wake_asymmetric_robot();
     for line in ["trim 1 3", "trim 2 -4.5", "trim 3 2", "trim 4 -1"] {
         dialogue.send_line(line);
@@ -247,7 +249,7 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
     let widths = run_frame_and_read_widths(&mut dialogue);
     for (width, servo) in widths.into_iter().zip(Sample::asymmetric().calibration()) {
         let neutral = servo.neutral_width.0;
-        assert!(width.abs_diff(neutral) <= 1, "{width} {neutral}");
+        assert!(width.abs_diff(neutral) <= 1, "{width} for {neutral}");
     }
     dialogue.send_line("stand");
     dialogue.run_frames(200);
@@ -259,18 +261,18 @@ fn center_goes_to_the_neutral_pulses_of_robot_toml_whatever_the_trims() {
 #[test]
 fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
     let names = ["walk 1", "walk 2", "walk 3", "walk 4"];
-    let make_robot = || {
+    let build_robot = || {
         names
             .iter()
             .fold(Sample::asymmetric(), |robot, name| robot.with_gait(name))
     };
     for name in names {
-        let mut dialogue = Dialogue::power_on(*make_robot());
+        let mut dialogue = Dialogue::power_on(*build_robot());
         dialogue.run_frames(30);
         dialogue.expect_accepted(&format!("boot {name}"));
         dialogue.expect_accepted("save");
         let memory = dialogue.board.memory.clone();
-        let mut restarted_dialogue = Dialogue::with_memory(*make_robot(), memory, Restart::NONE);
+        let mut restarted_dialogue = Dialogue::with_memory(*build_robot(), memory, Restart::NONE);
         restarted_dialogue.run_frames(151);
         assert_status(
             &mut restarted_dialogue,
@@ -280,10 +282,10 @@ fn boot_starts_the_named_gait_even_if_other_names_are_similar() {
 }
 
 #[test]
-fn the_servo_whose_saved_travel_is_too_narrow_for_the_gaits_is_found() {
+fn first_unfit_servo_finds_the_servo_with_too_narrow_a_travel() {
     for servo in Servo::ALL {
         let robot = Sample::asymmetric();
-        let mut settings = Settings::of(&robot);
+        let mut settings = Settings::for_robot(&robot);
         let mut adjustment = settings.adjustment(servo);
         adjustment.travel_max = Sweep(robot.needed_travel(servo).max.0 - 1);
         settings.set_adjustment(servo, adjustment);
@@ -292,16 +294,16 @@ fn the_servo_whose_saved_travel_is_too_narrow_for_the_gaits_is_found() {
 }
 
 #[test]
-fn limits_that_exclude_the_pose_the_robot_is_about_to_take_are_refused() {
+fn limits_that_exclude_the_target_pose_are_refused() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
-    // No gait reaches this pose. The gait brakes first, so the move to the pose has not begun yet.
+    // This pose is outside the range of all gaits. The gait brakes first, so the move to the pose has not begun yet.
     dialogue.expect_accepted("pose 152 50 311 224.5");
     dialogue.run_frames(2);
     let message = dialogue.send_line("limit 1 115 150");
     assert!(
-        message.starts_with("err 3 A1 would not reach where it is"),
+        message.starts_with("err 3 A1's travel must cover its current"),
         "{message}"
     );
     dialogue.run_frames(300);
@@ -312,7 +314,7 @@ fn limits_that_exclude_the_pose_the_robot_is_about_to_take_are_refused() {
 }
 
 #[test]
-fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace() {
+fn after_a_calibration_a_gait_accelerates_gradually_to_full_pace() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
@@ -332,7 +334,7 @@ fn after_a_change_of_calibration_a_gait_accelerates_gradually_to_its_full_pace()
     assert_eq!(advances.last(), Some(&full_advance));
 }
 
-/// Runs a frame; returns the advance of the phase in it, 1/2^24 cycle.
+/// Runs a frame. Returns the advance of the phase, 1/2^24 cycle.
 fn run_frame_and_measure_advance(dialogue: &mut Dialogue) -> u32 {
     let phase_before = dialogue.motion().phase();
     dialogue.run_frame();

@@ -1,12 +1,12 @@
-//! Counted gaits, which end after a number of cycles, and the events that end them early.
+//! Tests of counted gaits, which end after a number of cycles, and of the events that end them early.
 
 use super::*;
 
-/// A number of frames that is enough for the move to `sway`, three of its cycles, and the braking.
+/// Enough frames for the move to `sway`, three of its cycles, and the braking.
 const LONG_FRAMES: u32 = 400;
 
 #[test]
-fn a_counted_gait_ends_with_one_line_and_the_robot_holds_its_last_pose() {
+fn a_counted_gait_prints_done_at_its_end_and_holds_its_last_pose() {
     for name in ["sway", "sway left", "back"] {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.expect_accepted(&format!("{name}  2"));
@@ -33,12 +33,12 @@ fn a_wrong_count_is_refused_and_changes_nothing() {
         assert_eq!(dialogue.status_value("gait"), "stand");
     }
     dialogue.send_line("rest");
-    dialogue.expect_refused("sway 3", "7 servos are resting, send stand first");
+    dialogue.expect_refused("sway 3", "7 the servos are resting; send stand first");
     assert_eq!(dialogue.send_line("stand 1"), "ok stand 1");
 }
 
 #[test]
-fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
+fn another_motion_or_a_fault_ends_a_counted_gait_without_printing_done() {
     let start_counted_gait = || {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("sway 2");
@@ -55,7 +55,7 @@ fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
     let printed_lines = silent_dialogue.run_frames(LONG_FRAMES);
     assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
     assert!(
-        printed_lines[0].starts_with("# fault: no line"),
+        printed_lines[0].starts_with("# fault: no command"),
         "{printed_lines:?}"
     );
     let mut low_supply_dialogue = start_counted_gait();
@@ -72,7 +72,7 @@ fn another_motion_or_a_fault_ends_a_counted_gait_without_done() {
 }
 
 #[test]
-fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
+fn a_low_supply_slows_a_counted_gait_without_ending_it() {
     let count_frames_until_done = |supply_mv: Option<u16>| {
         let mut dialogue = wake_asymmetric_robot();
         if let Some(supply_mv) = supply_mv {
@@ -85,11 +85,11 @@ fn a_low_supply_slows_a_counted_gait_and_does_not_end_it() {
             .expect("the gait ends")
     };
     let [full_frames, slow_frames] = [None, Some(4_400)].map(count_frames_until_done);
-    // An upper bound, since a lower pace lengthens the cycles, but hardly the speeding up and the braking.
+    // An upper bound, because a lower pace lengthens the cycles but hardly the acceleration and the braking.
     let max_frames = full_frames * 100 / u32::from(SLOW_PACE);
     assert!(
         slow_frames > u32::midpoint(full_frames, max_frames) && slow_frames < max_frames,
-        "{full_frames} and {slow_frames}"
+        "{full_frames} frames, {slow_frames} on a low supply"
     );
 }
 

@@ -1,4 +1,4 @@
-//! A simulated robot, and helpers that converse with it over its serial line.
+//! A simulated robot, and helpers that send lines to it and read its answers.
 
 use std::collections::HashMap;
 use std::format;
@@ -13,7 +13,7 @@ use crate::virtual_board::{Eeprom, RunningRobot, compute_reading};
 /// The number of frames until the robot stands and may begin to move.
 pub(super) const WAKING_FRAMES: u32 = 21;
 
-/// A running robot that is commanded through its console.
+/// A running robot that is commanded over its console.
 pub(super) type Dialogue = RunningRobot;
 
 /// Powers on the asymmetric sample robot, reads its banner, and runs it until it is awake.
@@ -28,7 +28,7 @@ pub(super) fn wake_robot(robot: Sample) -> Dialogue {
     assert_eq!(
         printed_lines.len(),
         2,
-        "the banner and the notice that nothing is saved: {printed_lines:?}"
+        "only the banner and the notice of blank settings are printed: {printed_lines:?}"
     );
     dialogue.run_frames(WAKING_FRAMES);
     dialogue
@@ -47,7 +47,7 @@ pub(super) fn assert_status(dialogue: &mut Dialogue, values: &[(&str, &str)]) {
     }
 }
 
-/// Returns the name of the gait that the robot carries out, or of its other activity.
+/// Returns the name of the current gait, or of another activity.
 pub(super) fn activity_name(dialogue: &Dialogue) -> String {
     let motion = dialogue.motion();
     match motion.activity() {
@@ -56,30 +56,32 @@ pub(super) fn activity_name(dialogue: &Dialogue) -> String {
     }
 }
 
-/// Runs a frame and returns its pulse widths, in CPU cycles.
+/// Runs a frame and returns its pulse widths, CPU cycles.
 pub(super) fn run_frame_and_read_widths(dialogue: &mut Dialogue) -> [u16; 4] {
     dialogue.run_frame().0.map(|width| width.0)
 }
 
-/// Splits a text into `key=value` pairs, and checks that each key occurs once.
+/// Splits a text into `key=value` pairs and checks that each key occurs only once.
 pub(super) fn parse_pairs(text: &str) -> HashMap<String, String> {
     let mut pairs = HashMap::new();
     for word in text.split(' ') {
-        let (key, value) = word.split_once('=').expect("a word has the form key=value");
+        let (key, value) = word
+            .split_once('=')
+            .expect("each word has the form key=value");
         assert!(!key.is_empty() && !value.is_empty(), "{text}");
         assert!(pairs.insert(key.to_string(), value.to_string()).is_none());
     }
     pairs
 }
 
-/// Sets the supply voltage of the board, mV, and that of the servos' rail to 6 V.
-pub(super) fn set_supply(dialogue: &mut Dialogue, mv: u32) {
+/// Sets the board's supply voltage, and the voltage of the servos' rail to 6 V.
+pub(super) fn set_supply(dialogue: &mut Dialogue, board_mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
-    let reading = compute_reading(&supplies, mv, 6_000);
+    let reading = compute_reading(&supplies, board_mv, 6_000);
     dialogue.board.converter.set_true_reading(reading);
 }
 
 /// Returns the neutral pose in the format of `status`.
-pub(super) fn neutral_pose_text() -> String {
+pub(super) fn format_neutral_pose() -> String {
     NEUTRAL_COMMAND.replacen("pose ", "", 1).replace(' ', ",")
 }

@@ -1,4 +1,4 @@
-//! The declared effect of each console word on the servos, compared with the observed one.
+//! A test that compares the declared effect of each command word with its observed effect on the servos.
 
 use super::*;
 use crate::console::word::Effect;
@@ -6,14 +6,14 @@ use crate::console::word::Effect;
 /// The number of frames within which every effect is visible.
 const FRAME_COUNT: usize = 40;
 
-/// Runs [`FRAME_COUNT`] frames; returns the pulse widths of each.
+/// Runs [`FRAME_COUNT`] frames. Returns the pulse widths of each frame.
 fn run_frames_and_read_widths(dialogue: &mut Dialogue) -> Vec<[u16; 4]> {
     (0..FRAME_COUNT)
         .map(|_| run_frame_and_read_widths(dialogue))
         .collect()
 }
 
-/// Determines the effect of a line from its results: the pulses and the calibration of a robot.
+/// Determines the effect of a line from the pulses and the calibration of robots that execute it.
 fn observe_effect(line: &str) -> Effect {
     let mut walking_dialogue = wake_robot(Sample::paper());
     // These settings make `load` and `factory` change something.

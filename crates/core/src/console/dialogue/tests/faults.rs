@@ -1,15 +1,15 @@
-//! Faults, which stop the robot, and resets, after which it starts in a safe state.
+//! Tests of faults, which stop the robot, and of resets, after which it starts in a safe state.
 
 use super::*;
 
 #[test]
-fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
+fn boot_is_executed_three_seconds_after_power_on_unless_a_byte_arrives() {
     let mut dialogue = wake_asymmetric_robot();
     for boot in ["sway left", "rest"] {
         dialogue.send_line(&format!("boot {boot}"));
         dialogue.expect_accepted("save");
-        let start_again = || start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
-        let mut unattended_dialogue = start_again();
+        let restart_robot = || start_asymmetric_robot(&dialogue.board.memory, Restart::NONE);
+        let mut unattended_dialogue = restart_robot();
         let printed_lines = unattended_dialogue.run_frames(149);
         assert_eq!(printed_lines.len(), 1, "{printed_lines:?}");
         let activity = unattended_dialogue.motion().activity();
@@ -20,7 +20,7 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
             &mut unattended_dialogue,
             &[("gait", &boot.replace(' ', "-"))],
         );
-        let mut interrupted_dialogue = start_again();
+        let mut interrupted_dialogue = restart_robot();
         interrupted_dialogue.run_frames(100);
         interrupted_dialogue.board.send(b" ");
         interrupted_dialogue.run_frames(400);
@@ -29,7 +29,7 @@ fn boot_is_carried_out_three_seconds_after_power_on_unless_a_byte_arrives() {
 }
 
 #[test]
-fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
+fn a_lost_link_ends_a_gait_and_is_reported() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 400");
     dialogue.send_line("sway");
@@ -37,7 +37,7 @@ fn a_gait_ends_when_the_link_is_lost_and_the_robot_reports_it() {
         assert!(dialogue.run_frames(15).is_empty());
         dialogue.send_line("status");
     }
-    let notice = "# fault: no line for as long as deadman says, stopped";
+    let notice = "# fault: no command within the deadman time, stopped";
     assert_eq!(dialogue.run_frames(21), [notice]);
     assert_status(&mut dialogue, &[("gait", "stop"), ("fault", "link")]);
     dialogue.send_line("sway");
@@ -68,7 +68,8 @@ fn lines_that_are_not_commands_do_not_keep_a_gait_going() {
 
 #[test]
 fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
-    for (deadman_ms, wait_frames, is_obeyed) in [(400, 19, true), (400, 20, false), (0, 2000, true)]
+    for (deadman_ms, wait_frames, is_executed) in
+        [(400, 19, true), (400, 20, false), (0, 2000, true)]
     {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line(&format!("deadman {deadman_ms}"));
@@ -77,8 +78,8 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
         // The link has broken within `sway 12`, and noise ends the line.
         dialogue.board.send(b"\n");
         let printed_lines = dialogue.run_frames(2);
-        let gait = if is_obeyed { "sway" } else { "stand" };
-        let case = format!("{deadman_ms} {wait_frames} {printed_lines:?}");
+        let gait = if is_executed { "sway" } else { "stand" };
+        let case = format!("{deadman_ms} ms, {wait_frames} frames: {printed_lines:?}");
         assert_eq!(dialogue.status_value("gait"), gait, "{case}");
         // The next line is valid.
         assert_eq!(dialogue.send_line("swing"), "ok swing", "{case}");
@@ -86,7 +87,7 @@ fn an_unfinished_line_is_dropped_after_the_deadman_time_without_a_byte() {
 }
 
 #[test]
-fn each_byte_of_a_line_restarts_the_time_after_which_the_line_is_dropped() {
+fn each_byte_restarts_the_time_after_which_a_partial_line_is_dropped() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 400");
     for byte in b"sway 1" {
@@ -103,20 +104,20 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(150);
-    let measure_pace = |dialogue: &mut Dialogue| {
+    let measure_advance = |dialogue: &mut Dialogue| {
         let phase_before = dialogue.motion().phase();
         dialogue.run_frames(10);
         dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
     };
-    let full_pace = measure_pace(&mut dialogue);
+    let full_advance = measure_advance(&mut dialogue);
     set_supply(&mut dialogue, 4_400);
     let printed_lines = dialogue.run_frames(40);
     assert!(
         printed_lines[0].starts_with("# supply: 4.")
-            && printed_lines[0].ends_with(&format!("V, low: no saving, speed up to {SLOW_PACE}")),
+            && printed_lines[0].ends_with(&format!("V, low: no saving, speed at most {SLOW_PACE}")),
         "{printed_lines:?}"
     );
-    let slow_ratio = f64::from(measure_pace(&mut dialogue)) / f64::from(full_pace);
+    let slow_ratio = f64::from(measure_advance(&mut dialogue)) / f64::from(full_advance);
     let expected_ratio = f64::from(SLOW_PACE) / 100.0;
     assert!((slow_ratio - expected_ratio).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");
@@ -138,10 +139,10 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     dialogue.expect_accepted("stand");
 }
 
-/// Returns the state of servos that the pulses of robot.toml held in a pose.
-fn held_stance(sweeps: [i16; 4]) -> Stance {
+/// Returns the state of servos that hold a pose with robot.toml's calibration.
+fn held_servo_state(sweeps: [i16; 4]) -> ServoState {
     let pose = Pose(sweeps.map(crate::numbers::units::Sweep));
-    Stance {
+    ServoState {
         is_resting: false,
         frames_awake: crate::motion::AWAKE_FRAMES,
         pose,
@@ -149,30 +150,30 @@ fn held_stance(sweeps: [i16; 4]) -> Stance {
     }
 }
 
-/// Returns the restart after the last of `count` consecutive hangs, with this state of the servos before it.
-fn restart_after_hang(count: u8, stance: Stance) -> Restart {
+/// Returns the restart after `count` consecutive hangs; `servo_state` is the state before the last hang.
+fn restart_after_hang(count: u8, servo_state: ServoState) -> Restart {
     Restart {
         cause: Cause::Watchdog,
         reset_count: count,
-        stance_before: Some(stance),
+        servo_state_before: Some(servo_state),
         ..Restart::NONE
     }
 }
 
 #[test]
-fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
-    let stance = held_stance([400, -300, 200, -100]);
-    let restart = restart_after_hang(3, stance);
+fn a_robot_that_has_hung_holds_its_pose_and_reports_the_hang() {
+    let servo_state = held_servo_state([400, -300, 200, -100]);
+    let restart = restart_after_hang(3, servo_state);
     let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
     let printed_lines = dialogue.run_frames(1);
     assert!(
-        printed_lines.contains(&"# fault: the program hung and began anew".to_string()),
+        printed_lines.contains(&"# fault: the program hung and was restarted".to_string()),
         "{printed_lines:?}"
     );
     for _ in 0..400 {
         assert_eq!(
             dialogue.run_frame(),
-            stance.sent_pulses,
+            servo_state.sent_pulses,
             "the robot holds its pose from the first frame on"
         );
     }
@@ -187,7 +188,7 @@ fn after_a_hang_the_robot_holds_its_pose_and_reports_the_hang() {
     dialogue.send_line("stand");
     dialogue.run_frames(100);
     assert_eq!(dialogue.status_value("fault"), "none");
-    assert_eq!(dialogue.status_value("pose"), neutral_pose_text());
+    assert_eq!(dialogue.status_value("pose"), format_neutral_pose());
 }
 
 #[test]
@@ -196,7 +197,7 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
         for cause in [Cause::Watchdog, Cause::External] {
             let restart = Restart {
                 cause,
-                ..restart_after_hang(1, held_stance(sweeps))
+                ..restart_after_hang(1, held_servo_state(sweeps))
             };
             let mut dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
             for _ in 0..140 {
@@ -205,7 +206,7 @@ fn after_a_reset_in_an_unsafe_or_unreachable_pose_the_robot_rests() {
             assert_eq!(dialogue.status_value("gait"), "rest");
             dialogue.send_line("stand");
             dialogue.run_frames(50);
-            assert_eq!(dialogue.status_value("pose"), neutral_pose_text());
+            assert_eq!(dialogue.status_value("pose"), format_neutral_pose());
         }
     }
 }
@@ -216,17 +217,16 @@ fn after_a_reset_in_a_pose_outside_the_saved_limits_the_robot_rests() {
     dialogue.expect_accepted("limit 1 115 160");
     dialogue.expect_accepted("save");
     // A1 at its neutral 132.37 deg plus 30 deg is safe, but beyond the saved limit of 160 deg.
-    let restart = restart_after_hang(1, held_stance([5461, 0, 0, 0]));
-    let mut unlimited_dialogue = start_asymmetric_robot(&Eeprom::blank(), restart);
-    unlimited_dialogue.run_frames(10);
-    assert_eq!(unlimited_dialogue.status_value("gait"), "stop");
-    let mut narrow_dialogue = start_asymmetric_robot(&dialogue.board.memory, restart);
-    narrow_dialogue.run_frames(10);
-    assert_eq!(narrow_dialogue.status_value("gait"), "rest");
+    let restart = restart_after_hang(1, held_servo_state([5461, 0, 0, 0]));
+    for (memory, activity) in [(&Eeprom::blank(), "stop"), (&dialogue.board.memory, "rest")] {
+        let mut restarted_dialogue = start_asymmetric_robot(memory, restart);
+        restarted_dialogue.run_frames(10);
+        assert_eq!(restarted_dialogue.status_value("gait"), activity);
+    }
 }
 
 #[test]
-fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset() {
+fn unsaved_settings_are_undone_at_the_slew_limit_after_a_reset() {
     for (setting, servo, cause) in [
         ("trim 1 15", 0, Cause::Watchdog),
         ("trim 4 -15", 3, Cause::External),
@@ -254,7 +254,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
                 let change = pulse.0.abs_diff(last_pulse.0);
                 assert!(
                     change <= max_change + 1,
-                    "{setting} A{}: {change} of {max_change}",
+                    "{setting} A{}: {change} cycles, at most {max_change} allowed",
                     index + 1
                 );
                 moving_frame_count += usize::from(index == servo && change > 0);
@@ -267,7 +267,7 @@ fn settings_that_were_not_saved_are_undone_within_the_slew_limit_after_a_reset()
 }
 
 #[test]
-fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
+fn servos_still_wake_one_at_a_time_after_a_reset_during_waking() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         for frames in 1..25 {
             let mut dialogue = wake_asymmetric_robot();
@@ -288,9 +288,9 @@ fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
                     .clone()
                     .filter(|servo| !had_pulses_at_reset[*servo])
                     .count();
-                assert!(newly_woken_count <= 1, "{cause:?} after {frames}");
+                assert!(newly_woken_count <= 1, "{cause:?} after {frames} frames");
                 let woken_count = woken_servos.count();
-                assert!(woken_count <= 1, "{cause:?} after {frames}");
+                assert!(woken_count <= 1, "{cause:?} after {frames} frames");
                 had_pulses = has_pulses;
             }
             assert_eq!(had_pulses, [true; 4]);
@@ -299,7 +299,7 @@ fn after_a_reset_while_servos_wake_they_still_wake_one_at_a_time() {
 }
 
 #[test]
-fn after_a_reset_a_resting_robot_rests_until_boot_which_a_hang_cancels() {
+fn a_resting_robot_rests_after_a_reset_until_boot_which_a_hang_cancels() {
     for cause in [Cause::Watchdog, Cause::External, Cause::BrownOut] {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("pose 140 50 311 224.5");
@@ -315,7 +315,7 @@ fn after_a_reset_a_resting_robot_rests_until_boot_which_a_hang_cancels() {
         assert_eq!(*dialogue.board.memory.bytes(), memory_bytes, "{cause:?}");
         assert!(
             dialogue.board.memory.log.is_empty(),
-            "the rest is already recorded"
+            "the rest pose is already saved"
         );
         // `boot` is set to `stand`; a hang cancels it.
         let printed_lines = dialogue.run_frames(1);
@@ -347,8 +347,8 @@ fn a_rest_pose_whose_write_a_reset_interrupts_is_written_after_the_reset() {
 }
 
 #[test]
-fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() {
-    // A boot loader hides the cause of a reset, so with it, a press of the button counts like a brown-out.
+fn after_three_consecutive_brown_outs_or_button_resets_the_robot_rests_until_stand() {
+    // A boot loader hides the cause of a reset, so with a boot loader a press of the button counts as a brown-out.
     for (has_boot_loader, cause) in [
         (false, Cause::BrownOut),
         (true, Cause::BrownOut),
@@ -384,7 +384,7 @@ fn three_brown_outs_or_button_resets_in_a_row_end_in_rest_until_stand_is_sent() 
 }
 
 #[test]
-fn resets_that_are_each_followed_by_a_line_do_not_count_as_a_weak_supply() {
+fn resets_followed_by_a_line_do_not_count_as_a_weak_supply() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.board.has_boot_loader = true;
     for _ in 0..20 {

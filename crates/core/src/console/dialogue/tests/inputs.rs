@@ -1,4 +1,4 @@
-//! Steps of routines that end when a contact closes: a button, or a nose switch that touches a wall.
+//! Tests of routine steps that end when a contact closes: a button, or a nose switch that touches a wall.
 
 use super::*;
 use crate::numbers::gaits::{Input, Step};
@@ -11,8 +11,8 @@ const WAIT: u8 = Step::WAIT;
 const UNTIL: u8 = Step::UNTIL;
 const ENDLESS: u16 = Step::ENDLESS;
 
-/// The steps of a patrol: wait for the button, walk to a wall, walk back, turn. A step has a kind, a gait or an input,
-/// and a count.
+/// The steps of a patrol: wait for the button, walk to a wall, walk back, turn. A step consists of its kind, a gait or
+/// an input, and a count.
 const PATROL_STEPS: [(u8, &str, u16); 6] = [
     (UNTIL, "button", 0),
     (WAIT, "stand", ENDLESS),
@@ -25,10 +25,10 @@ const PATROL_STEPS: [(u8, &str, u16); 6] = [
 /// The number of frames after which a closed contact counts as closed.
 const DEBOUNCE_FRAMES: u32 = 3;
 
-/// More frames than any step with an end takes in these tests.
+/// More frames than any step without [`ENDLESS`] takes in these tests.
 const LONG_FRAMES: u32 = 600;
 
-/// Starts a robot on a routine of these steps, repeated this many times.
+/// Starts a robot on a routine that repeats these steps `rounds` times, or endlessly if that is 0.
 fn start_patrol(rounds: u16, steps: &[(u8, &str, u16)]) -> Dialogue {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", rounds, steps));
     dialogue.expect_accepted("patrol");
@@ -41,7 +41,7 @@ fn set_contact(dialogue: &mut Dialogue, input: Input, is_closed: bool) {
     dialogue.board.closed_pins |= bit * u32::from(is_closed);
 }
 
-/// Closes a contact for this many frames, then opens it; returns the lines printed meanwhile.
+/// Closes a contact for `frames` frames, then opens it. Returns the lines printed while the contact is closed.
 fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     set_contact(dialogue, input, true);
     let lines = dialogue.run_frames(frames);
@@ -49,8 +49,8 @@ fn press(dialogue: &mut Dialogue, input: Input, frames: u32) -> Vec<String> {
     lines
 }
 
-/// Runs until the robot's activity changes, at most [`LONG_FRAMES`] frames; returns the number of frames and the
-/// activity.
+/// Runs until the robot's activity changes, for at most [`LONG_FRAMES`] frames. Returns the number of frames and the
+/// new activity.
 fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
     let activity_before = activity_name(dialogue);
     for frames in 0..LONG_FRAMES {
@@ -63,7 +63,7 @@ fn run_until_change(dialogue: &mut Dialogue) -> (u32, String) {
 }
 
 #[test]
-fn in_every_round_the_robot_waits_for_the_button_walks_to_the_wall_and_turns() {
+fn in_each_round_the_robot_waits_for_the_button_walks_to_the_wall_and_turns() {
     let mut dialogue = start_patrol(2, &PATROL_STEPS);
     for _ in 0..2 {
         assert_eq!(dialogue.run_frames(LONG_FRAMES), ["# waiting for button"]);
@@ -166,7 +166,7 @@ fn a_step_of_every_kind_ends_by_its_contact_or_else_by_its_count_or_time() {
 }
 
 #[test]
-fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
+fn a_press_before_the_wait_for_it_has_no_effect() {
     for step in [
         (CYCLES, "sway", 2),
         (FRAMES, "sway", 150),
@@ -194,7 +194,7 @@ fn a_press_during_a_step_that_does_not_wait_for_it_is_not_remembered() {
 }
 
 #[test]
-fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
+fn a_wait_after_a_rest_sends_no_pulse_until_a_press_wakes_the_servos() {
     let steps = [
         (REST, "stand", 10),
         (UNTIL, "button", 0),
@@ -212,7 +212,7 @@ fn a_wait_after_a_rest_sends_no_pulse_and_the_press_wakes_the_servos() {
 }
 
 #[test]
-fn a_wait_brakes_the_gait_before_it_and_moves_no_servo_faster_than_the_gait() {
+fn a_wait_brakes_the_previous_gait_without_moving_a_servo_faster() {
     let steps = [
         (FRAMES, "sway", 90),
         (UNTIL, "button", 0),
@@ -244,8 +244,8 @@ fn a_wait_brakes_the_gait_before_it_and_moves_no_servo_faster_than_the_gait() {
     );
 }
 
-/// Returns two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
-fn start_waiting() -> [Dialogue; 2] {
+/// Starts two robots on patrol: the first waits for the button, the second walks until the nose switch closes.
+fn start_waiting_robots() -> [Dialogue; 2] {
     let mut button_dialogue = start_patrol(0, &PATROL_STEPS);
     button_dialogue.run_frames(100);
     let mut nose_dialogue = button_dialogue.clone();
@@ -264,16 +264,16 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
             assert_eq!(activity_name(&dialogue), activity_before, "{event}");
         }
     };
-    for waiting_dialogue in start_waiting() {
+    for waiting_dialogue in start_waiting_robots() {
         for line in ["stop", "rest", "stand", NEUTRAL_COMMAND] {
             let mut dialogue = waiting_dialogue.clone();
             dialogue.expect_accepted(line);
             dialogue.run_frames(300);
             assert_ignores_contacts(dialogue, line);
         }
-        for mv in [4_200, 3_900] {
+        for board_mv in [4_200, 3_900] {
             let mut low_supply_dialogue = waiting_dialogue.clone();
-            set_supply(&mut low_supply_dialogue, mv);
+            set_supply(&mut low_supply_dialogue, board_mv);
             low_supply_dialogue.run_frames(60);
             assert_eq!(low_supply_dialogue.status_value("fault"), "supply");
             set_supply(&mut low_supply_dialogue, 5_000);
@@ -301,8 +301,8 @@ fn whatever_ends_a_routine_ends_its_wait_and_then_no_contact_moves_the_robot() {
 }
 
 #[test]
-fn on_a_low_supply_the_contact_still_ends_the_walk() {
-    let [_, mut dialogue] = start_waiting();
+fn a_contact_ends_a_walk_even_on_a_low_supply() {
+    let [_, mut dialogue] = start_waiting_robots();
     set_supply(&mut dialogue, 4_400);
     dialogue.run_frames(60);
     assert_eq!(activity_name(&dialogue), "sway");
@@ -312,7 +312,7 @@ fn on_a_low_supply_the_contact_still_ends_the_walk() {
 }
 
 #[test]
-fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadman() {
+fn deadman_does_not_limit_the_waits_of_a_routine_started_by_boot() {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &PATROL_STEPS));
     for line in ["boot patrol", "deadman 200", "save"] {
         dialogue.expect_accepted(line);
@@ -331,7 +331,7 @@ fn a_routine_started_by_boot_waits_for_its_contacts_without_limit_despite_deadma
 }
 
 #[test]
-fn a_pin_gets_its_pull_up_when_its_contact_is_first_waited_for() {
+fn a_pins_pull_up_is_switched_on_at_the_first_wait_for_its_contact() {
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 1, &PATROL_STEPS));
     assert_eq!(dialogue.board.pulled_up_pins, 0);
     dialogue.expect_accepted("patrol");
@@ -359,15 +359,18 @@ fn only_a_free_pin_of_the_board_gets_a_pull_up() {
         dialogue.expect_accepted("patrol");
         dialogue.run_frames(10);
         let is_free = (2..=12).contains(&pin) || (15..=19).contains(&pin);
-        let is_pulled_up = is_free && !pins.contains(&pin);
-        let pulled_up = if is_pulled_up { 1 << pin } else { 0 };
-        assert_eq!(dialogue.board.pulled_up_pins, pulled_up, "{pin}");
+        let expected_pins = if is_free && !pins.contains(&pin) {
+            1 << pin
+        } else {
+            0
+        };
+        assert_eq!(dialogue.board.pulled_up_pins, expected_pins, "pin {pin}");
         assert_eq!(activity_name(&dialogue), "Stop");
     }
 }
 
 #[test]
-fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() {
+fn a_routine_brakes_its_last_gait_before_it_is_done() {
     for steps in [
         &[(FRAMES, "sway", 90)][..],
         &[(UNTIL, "nose", 0), (FRAMES, "sway", ENDLESS)],
@@ -384,7 +387,7 @@ fn a_routine_whose_last_gait_has_a_time_or_a_contact_brakes_before_it_is_done() 
 }
 
 #[test]
-fn a_routine_may_wait_once_and_repeat_the_steps_after_that() {
+fn a_routine_may_wait_once_and_repeat_only_the_later_steps() {
     let robot = Sample::asymmetric().with_routine("patrol", 3, &PATROL_STEPS);
     let robot = robot.with_changes(|content| {
         let routine = content.gaits.last_mut().expect("the robot has a routine");

@@ -1,6 +1,6 @@
-//! EEPROM writes: their content, their timing, and the record of the rest pose.
+//! Tests of EEPROM writes: their content, their timing, and the record of the rest pose.
 //!
-//! Byte 128 of the EEPROM marks this record: the byte is 0xa5 while a pose is recorded, and 0xff otherwise.
+//! Byte 128 of the EEPROM is the mark of this record: 0xa5 while a pose is saved, 0xff otherwise.
 
 use super::*;
 
@@ -23,7 +23,7 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     assert_eq!(
         restarted_dialogue.board.memory.bytes()[128],
         0xff,
-        "the pose is erased once the robot stands"
+        "the pose is invalidated once the robot stands"
     );
     restarted_dialogue.send_line("rest");
     restarted_dialogue.run_frames(10);
@@ -43,12 +43,12 @@ fn nothing_is_written_before_the_supply_has_been_measured_or_while_it_is_low() {
     assert_eq!(
         restarted_dialogue.board.memory.bytes()[128],
         0xff,
-        "the pose is erased once the supply is good"
+        "the pose is invalidated once the supply is good"
     );
 }
 
 #[test]
-fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
+fn a_falling_supply_ends_a_save_and_the_old_settings_stay() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("deadman 1000");
     dialogue.expect_accepted("save");
@@ -62,7 +62,7 @@ fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
     set_supply(&mut dialogue, 4_400);
     let mut printed_lines = Vec::new();
     for _ in 0..20 {
-        // With one step per frame, the main loop has no time for the memory.
+        // With only one step per frame, the main loop cannot access the memory.
         dialogue.board.tick();
         dialogue.main.step(&mut dialogue.board);
     }
@@ -77,7 +77,7 @@ fn a_save_during_which_the_supply_falls_is_refused_and_the_old_settings_stay() {
 }
 
 #[test]
-fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
+fn a_repeated_rest_writes_nothing_and_a_worn_memory_is_reported() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("rest");
     dialogue.run_frames(2);
@@ -92,7 +92,7 @@ fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
     dialogue.board.memory.is_worn = true;
     dialogue.board.send(b"rest\r");
     let printed_lines = dialogue.run_frames(3);
-    let notice = "# memory: does not keep the pose of this rest";
+    let notice = "# memory: could not save the rest pose";
     assert!(
         printed_lines.iter().any(|line| line == notice),
         "{printed_lines:?}"
@@ -100,7 +100,7 @@ fn a_repeated_rest_writes_nothing_and_a_worn_cell_is_reported() {
 }
 
 #[test]
-fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then_stands() {
+fn after_power_on_servos_wake_one_by_one_in_the_rest_pose_before_the_robot_stands() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("pose 140 50 311 224.5");
     dialogue.run_frames(150);
@@ -122,31 +122,39 @@ fn after_power_on_a_robot_that_rested_wakes_servo_by_servo_in_that_pose_and_then
                 let awake_width = rest_pulses.0[index].0;
                 let expected = if index < servo { awake_width } else { 0 };
                 // The fifth of these frames wakes `servo`.
-                assert!(width == expected || index == servo, "{servo} {index}");
+                assert!(
+                    width == expected || index == servo,
+                    "A{} while A{} wakes",
+                    index + 1,
+                    servo + 1
+                );
             }
         }
     }
     restarted_dialogue.run_frames(200);
-    assert_eq!(restarted_dialogue.status_value("pose"), neutral_pose_text());
-    // The rest pose of a robot that has moved since is no longer recorded.
+    assert_eq!(
+        restarted_dialogue.status_value("pose"),
+        format_neutral_pose()
+    );
+    // The robot has moved since its last rest, so no rest pose is saved.
     let moved_dialogue = start_asymmetric_robot(&restarted_dialogue.board.memory, Restart::NONE);
     assert_eq!(moved_dialogue.motion().pose(), &Pose::NEUTRAL);
 }
 
 #[test]
-fn the_rest_pose_is_erased_before_the_first_pulse() {
+fn the_rest_pose_is_invalidated_before_the_first_pulse() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("rest");
     assert_eq!(dialogue.board.memory.bytes()[128], 0xa5);
     dialogue.board.send(b"stand\r");
-    // The answer is written first; then the main loop writes the memory, long before the first servo wakes.
+    // The main loop writes first the answer, then the memory, long before the first servo wakes.
     dialogue.read_lines();
     assert_eq!(dialogue.board.memory.bytes()[128], 0xff);
     assert_eq!(dialogue.run_frame(), Pulses::default());
 }
 
 #[test]
-fn a_save_right_after_the_start_waits_at_most_half_a_second_for_the_supply() {
+fn a_save_after_the_start_waits_at_most_half_a_second_for_the_measurement_of_the_supply() {
     let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.read_lines();
     dialogue.board.send(b"save\r");

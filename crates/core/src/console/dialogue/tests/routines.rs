@@ -1,4 +1,4 @@
-//! Routines, which are sequences of steps, and the events that end them early.
+//! Tests of routines, which are sequences of steps, and of the events that end them early.
 
 use super::*;
 use crate::numbers::gaits::Step;
@@ -7,7 +7,8 @@ const CYCLES: u8 = Step::CYCLES;
 const FRAMES: u8 = Step::FRAMES;
 const REST: u8 = Step::REST;
 
-/// Steps, each a kind, a gait and a count of cycles or frames; the gait of two consecutive steps is `sway`.
+/// The steps of a routine, each with its kind, its gait and its count of cycles or frames. Two consecutive steps have
+/// the gait `sway`.
 const PATROL_STEPS: [(u8, &str, u16); 5] = [
     (FRAMES, "stand", 30),
     (CYCLES, "sway", 2),
@@ -16,31 +17,31 @@ const PATROL_STEPS: [(u8, &str, u16); 5] = [
     (CYCLES, "sway left", 1),
 ];
 
-/// More frames than a round of the routine takes.
+/// More frames than one round of the routine takes.
 const LONG_FRAMES: u32 = 1_500;
 
-/// Returns the asymmetric robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that
+/// Builds the asymmetric robot with the routine `patrol`, which repeats its steps `rounds` times, or endlessly if that
 /// is 0.
 fn robot_with_routine(rounds: u16) -> Sample {
     Sample::asymmetric().with_routine("patrol", rounds, &PATROL_STEPS)
 }
 
-/// Runs a robot for this many frames. Returns its gaits in order, each once per change, and the lines that it printed.
-fn run_recording_gaits(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
-    let (mut gaits, mut printed_lines): (Vec<String>, Vec<String>) = Default::default();
+/// Runs a robot for `frames` frames. Returns the sequence of its activities and the printed lines.
+fn run_and_record_activities(dialogue: &mut Dialogue, frames: u32) -> (Vec<String>, Vec<String>) {
+    let (mut activities, mut printed_lines): (Vec<String>, Vec<String>) = Default::default();
     for _ in 0..frames {
         printed_lines.extend(dialogue.run_frames(1));
-        let gait = activity_name(dialogue);
-        if gaits.last() != Some(&gait) {
-            gaits.push(gait);
+        let activity = activity_name(dialogue);
+        if activities.last() != Some(&activity) {
+            activities.push(activity);
         }
     }
-    (gaits, printed_lines)
+    (activities, printed_lines)
 }
 
-/// Starts the routine and returns snapshots of the dialogue at many moments of it.
-fn record_snapshots(make_robot: fn() -> Sample) -> Vec<Dialogue> {
-    let mut dialogue = wake_robot(make_robot());
+/// Starts the routine. Returns clones of the dialogue at many times during the routine.
+fn record_snapshots(build_robot: fn() -> Sample) -> Vec<Dialogue> {
+    let mut dialogue = wake_robot(build_robot());
     dialogue.send_line("patrol");
     let mut snapshots = Vec::new();
     for _ in 0..40 {
@@ -54,13 +55,13 @@ fn record_snapshots(make_robot: fn() -> Sample) -> Vec<Dialogue> {
 }
 
 #[test]
-fn a_routine_goes_through_its_steps_and_reports_once_that_it_is_done() {
+fn a_routine_executes_its_steps_in_order_and_prints_done_once() {
     for rounds in [1, 2, 3] {
         let mut dialogue = wake_robot(robot_with_routine(rounds));
         assert_eq!(dialogue.send_line("Patrol"), "ok patrol");
         assert_eq!(dialogue.status_value("gait"), "patrol");
         let (gaits, printed_lines) =
-            run_recording_gaits(&mut dialogue, LONG_FRAMES * u32::from(rounds));
+            run_and_record_activities(&mut dialogue, LONG_FRAMES * u32::from(rounds));
         assert_eq!(printed_lines, ["# done"]);
         let round_gaits = ["stand", "sway", "back", "sway left"];
         let (last_gait, earlier_gaits) = gaits.split_last().expect("the robot has had a gait");
@@ -72,15 +73,15 @@ fn a_routine_goes_through_its_steps_and_reports_once_that_it_is_done() {
 }
 
 #[test]
-fn a_count_sets_the_number_of_rounds_of_a_routine_that_is_otherwise_endless() {
+fn a_count_limits_the_rounds_of_an_endless_routine() {
     let mut counted_dialogue = wake_robot(robot_with_routine(0));
     counted_dialogue.send_line("patrol 2");
-    let (gaits, printed_lines) = run_recording_gaits(&mut counted_dialogue, 3 * LONG_FRAMES);
+    let (gaits, printed_lines) = run_and_record_activities(&mut counted_dialogue, 3 * LONG_FRAMES);
     assert_eq!(printed_lines, ["# done"]);
     assert_eq!(gaits.iter().filter(|gait| *gait == "back").count(), 2);
     let mut endless_dialogue = wake_robot(robot_with_routine(0));
     endless_dialogue.send_line("patrol");
-    let (gaits, printed_lines) = run_recording_gaits(&mut endless_dialogue, 20 * LONG_FRAMES);
+    let (gaits, printed_lines) = run_and_record_activities(&mut endless_dialogue, 20 * LONG_FRAMES);
     assert!(printed_lines.is_empty(), "{printed_lines:?}");
     assert!(gaits.iter().filter(|gait| *gait == "back").count() > 20);
 }
@@ -89,9 +90,9 @@ fn a_count_sets_the_number_of_rounds_of_a_routine_that_is_otherwise_endless() {
 fn a_timed_step_lasts_its_number_of_frames() {
     let mut dialogue = wake_robot(robot_with_routine(1));
     dialogue.send_line("patrol");
-    let (gaits, _) = run_recording_gaits(&mut dialogue, 29);
+    let (gaits, _) = run_and_record_activities(&mut dialogue, 29);
     assert_eq!(gaits, ["stand"]);
-    let (gaits, _) = run_recording_gaits(&mut dialogue, 1);
+    let (gaits, _) = run_and_record_activities(&mut dialogue, 1);
     assert_eq!(gaits, ["sway"]);
 }
 
@@ -113,7 +114,7 @@ fn help_boot_and_cal_treat_a_routine_as_a_gait() {
     );
     assert_eq!(unattended_dialogue.status_value("gait"), "patrol");
     dialogue.send_line("rest");
-    dialogue.expect_refused("patrol", "7 servos are resting, send stand first");
+    dialogue.expect_refused("patrol", "7 the servos are resting; send stand first");
 }
 
 #[test]
@@ -122,7 +123,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         for line in ["stop", "rest", "stand", "sway", "back 1", NEUTRAL_COMMAND] {
             let mut dialogue = snapshot.clone();
             dialogue.expect_accepted(line);
-            let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, 600);
+            let (gaits, printed_lines) = run_and_record_activities(&mut dialogue, 600);
             assert!(gaits.len() <= 2, "{line}: {gaits:?}");
             assert_eq!(
                 printed_lines.len(),
@@ -133,7 +134,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         }
         let mut repeated_dialogue = snapshot.clone();
         repeated_dialogue.send_line("patrol");
-        let (gaits, _) = run_recording_gaits(&mut repeated_dialogue, 30);
+        let (gaits, _) = run_and_record_activities(&mut repeated_dialogue, 30);
         assert_eq!(gaits.last().map(String::as_str), Some("sway"));
         let mut low_supply_dialogue = snapshot.clone();
         set_supply(&mut low_supply_dialogue, 4_200);
@@ -144,9 +145,9 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         );
         set_supply(&mut low_supply_dialogue, 5_000);
         assert_eq!(
-            run_recording_gaits(&mut low_supply_dialogue, 300).0,
+            run_and_record_activities(&mut low_supply_dialogue, 300).0,
             ["Stop"],
-            "the routine does not go on by itself"
+            "the routine does not continue by itself"
         );
         let mut failing_supply_dialogue = snapshot.clone();
         set_supply(&mut failing_supply_dialogue, 3_900);
@@ -155,7 +156,7 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
         for cause in [Cause::External, Cause::BrownOut, Cause::Watchdog] {
             let mut reset_dialogue = snapshot.clone();
             reset_dialogue.reset(cause);
-            let (gaits, printed_lines) = run_recording_gaits(&mut reset_dialogue, 400);
+            let (gaits, printed_lines) = run_and_record_activities(&mut reset_dialogue, 400);
             let is_standing_or_stopped = ["stand", "Stop"].contains(&gaits[0].as_str());
             assert!(
                 is_standing_or_stopped && gaits.len() == 1,
@@ -167,13 +168,13 @@ fn whatever_stops_or_moves_the_robot_ends_a_routine_at_any_of_its_steps() {
 }
 
 #[test]
-fn a_low_supply_slows_a_routine_and_does_not_end_it() {
+fn a_low_supply_slows_a_routine_without_ending_it() {
     let mut dialogue = wake_robot(robot_with_routine(1));
     set_supply(&mut dialogue, 4_400);
     dialogue.run_frames(40);
     dialogue.send_line("patrol");
     assert_eq!(
-        run_recording_gaits(&mut dialogue, 2 * LONG_FRAMES).1,
+        run_and_record_activities(&mut dialogue, 2 * LONG_FRAMES).1,
         ["# done"]
     );
 }
@@ -183,7 +184,7 @@ fn the_guard_ends_a_routine_as_it_ends_a_gait() {
     let stray_steps = [(CYCLES, "stray", 3), (CYCLES, "sway", 1)];
     let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 0, &stray_steps));
     dialogue.send_line("patrol");
-    let (gaits, printed_lines) = run_recording_gaits(&mut dialogue, LONG_FRAMES);
+    let (gaits, printed_lines) = run_and_record_activities(&mut dialogue, LONG_FRAMES);
     assert_eq!(gaits, ["stray", "Stop"]);
     assert_eq!(printed_lines.len(), 1);
     assert!(printed_lines[0].starts_with("# held"), "{printed_lines:?}");
@@ -195,7 +196,7 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     for snapshot in record_snapshots(|| robot_with_routine(0)) {
         let mut dialogue = snapshot;
         dialogue.send_line("deadman 200");
-        let notice = "# fault: no line for as long as deadman says, stopped";
+        let notice = "# fault: no command within the deadman time, stopped";
         assert_eq!(dialogue.run_frames(100), [notice]);
         assert_eq!(dialogue.status_value("gait"), "stop");
     }
@@ -213,13 +214,13 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
     let mut idle_dialogue = start_unattended();
     assert!(
         idle_dialogue.run_frames(5 * LONG_FRAMES).is_empty(),
-        "the routine goes on"
+        "the routine continues"
     );
-    // The first valid line arms the dead-man timer.
+    // The first valid line starts the `deadman` timeout.
     idle_dialogue.send_line("speed 90");
     assert_eq!(idle_dialogue.run_frames(100).len(), 1);
     assert_eq!(idle_dialogue.status_value("fault"), "link");
-    // Neither single bytes nor an invalid line arm the dead-man timer.
+    // Neither single bytes nor an invalid line starts the `deadman` timeout.
     let mut noisy_dialogue = start_unattended();
     noisy_dialogue.board.send(b"x");
     assert!(noisy_dialogue.run_frames(LONG_FRAMES).is_empty());
@@ -232,7 +233,7 @@ fn silence_ends_a_routine_that_a_command_began_but_not_one_that_boot_began() {
 }
 
 #[test]
-fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
+fn after_a_rest_in_a_routine_the_servos_wake_one_by_one() {
     let steps = [
         (CYCLES, "sway", 1),
         (REST, "stand", 50),
@@ -253,7 +254,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
     }
     assert_eq!(printed_lines, ["# done"]);
     assert_eq!(pulsing_counts, [4, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
-    // Each of the two rests takes 50 frames, and the first servo wakes five frames later.
+    // Each of the two rests takes 50 frames; the first servo wakes five frames later.
     assert!(
         (100..=112).contains(&frames_without_pulses),
         "{frames_without_pulses}"
@@ -261,7 +262,7 @@ fn a_rest_in_a_routine_ends_the_pulses_and_the_servos_wake_one_by_one() {
 }
 
 #[test]
-fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
+fn a_resting_routine_can_be_stopped_and_its_last_rest_pose_is_saved() {
     let steps = [(CYCLES, "sway", 1), (REST, "stand", 50)];
     let start_and_rest = || {
         let mut dialogue = wake_robot(Sample::asymmetric().with_routine("patrol", 2, &steps));
@@ -288,6 +289,6 @@ fn a_routine_can_be_stopped_while_it_rests_and_its_last_rest_is_saved() {
     assert_eq!(
         *dialogue.motion().pose(),
         pose,
-        "the robot wakes where it rested"
+        "the robot wakes in its rest pose"
     );
 }

@@ -1,4 +1,4 @@
-//! The lines that `status` and `watch` print.
+//! Tests of the lines that `status` and `watch` print.
 
 use super::*;
 
@@ -23,7 +23,7 @@ fn status_reports_each_value_under_its_key() {
             format!("{}.{:02}", centideg / 100, centideg % 100)
         })
         .collect();
-    let margin = Clearance::of(motion.robot(), motion.pose())
+    let margin = Clearance::measure(motion.robot(), motion.pose())
         .smallest_margin()
         .thousandths();
     let expected = format!(
@@ -36,7 +36,7 @@ fn status_reports_each_value_under_its_key() {
 }
 
 #[test]
-fn a_voltage_is_left_out_until_it_is_measured() {
+fn status_omits_a_voltage_until_it_is_measured() {
     let mut dialogue = Dialogue::power_on(*Sample::asymmetric());
     dialogue.read_lines();
     let line = dialogue.send_line("status");
@@ -46,7 +46,7 @@ fn a_voltage_is_left_out_until_it_is_measured() {
 }
 
 #[test]
-fn status_names_the_robots_activity() {
+fn status_shows_the_robots_activity() {
     let mut dialogue = wake_asymmetric_robot();
     assert_eq!(dialogue.status_value("gait"), "stand");
     for (command, name) in [
@@ -63,7 +63,7 @@ fn status_names_the_robots_activity() {
 }
 
 #[test]
-fn the_longest_possible_status_fits_a_line() {
+fn the_longest_possible_status_fits_into_an_output_line() {
     let name = "longest name of a gait that any robot may have..";
     assert_eq!(name.len(), crate::numbers::gaits::MAX_NAME_BYTES);
     let robot = Sample::asymmetric().with_gait(name);
@@ -73,7 +73,7 @@ fn the_longest_possible_status_fits_a_line() {
     dialogue.expect_accepted(name);
     let line = dialogue.send_line("status");
     let values = parse_pairs(line.strip_prefix("ok ").expect("the line is a status"));
-    // The longest possible value of each key whose value may be shorter in this line.
+    // The longest possible value of each key whose value in this line may be shorter.
     let longest_values = [
         ("phase", "0.999"),
         ("pose", "359.99,359.99,359.99,359.99"),
@@ -90,7 +90,7 @@ fn the_longest_possible_status_fits_a_line() {
 }
 
 #[test]
-fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
+fn watch_reports_the_pose_of_every_nth_frame_until_watch_0() {
     for interval in [1u32, 2, 7, 50] {
         let mut dialogue = wake_asymmetric_robot();
         dialogue.send_line("sway");
@@ -115,7 +115,7 @@ fn watch_reports_the_pose_of_every_nth_frame_until_it_is_ended() {
 }
 
 #[test]
-fn watch_continues_at_rest_and_a_new_watch_starts_its_own_interval() {
+fn watch_continues_at_rest_and_a_new_watch_starts_a_new_interval() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("watch 5");
     dialogue.send_line("rest");
@@ -127,7 +127,7 @@ fn watch_continues_at_rest_and_a_new_watch_starts_its_own_interval() {
 }
 
 #[test]
-fn several_unread_reports_are_written_as_one_and_watch_0_ends_the_reports() {
+fn several_unread_reports_are_written_as_one_report() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("watch 2");
     dialogue.run_without_reader(20);

@@ -1,4 +1,4 @@
-//! Random orders to random robots, in any sequence and at any time.
+//! A test with random orders to random robots, in any sequence and at any time.
 
 use std::vec::Vec;
 
@@ -44,7 +44,7 @@ proptest! {
                 TestOrder::Pose(sweeps) => {
                     let pose = Pose(sweeps.map(Sweep));
                     let travel_hazard = pose.first_servo_beyond_travel(motion.calibration()).map(Hazard::Travel);
-                    let hazard = Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot);
+                    let hazard = Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot);
                     let hazard = travel_hazard.or(hazard);
                     prop_assert_eq!(motion.go_to(&pose).err(), hazard);
                 }
@@ -55,7 +55,7 @@ proptest! {
             for _ in 0..frames {
                 let (pose_before, was_cycling) = (*motion.pose(), motion.is_cycling());
                 let pulses = motion.tick();
-                let clearance = Clearance::of(&motion.robot, motion.pose());
+                let clearance = Clearance::measure(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
                 for (actual, held_width) in pulses.0.into_iter().zip(motion.held_pulses().0) {
                     prop_assert!(actual == PulseWidth(0) || actual == held_width);

@@ -1,9 +1,9 @@
-//! Gaits with a count of cycles: they run that many cycles, then the robot stands still.
+//! Tests of gaits with a count of cycles, after which the robot stands still.
 
 use super::*;
 
-/// Runs a motion to its standstill. Returns the cycles that its last gait covers, and the number of frames. The cycles
-/// are counted independently of the motion, by adding the change of the phase in each frame.
+/// Runs a motion to its standstill. Returns the number of cycles that its last gait covers, and the number of frames.
+/// This function counts cycles independently of the motion, by adding the change of the phase in each frame.
 fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
     let (mut cycles_covered, mut frames) = (0.0, 0);
     loop {
@@ -16,7 +16,7 @@ fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
             return (cycles_covered, frames);
         }
         if motion.is_moving() {
-            // Until now, the previous gait was braking.
+            // The previous gait has been braking until now.
             cycles_covered = 0.0;
         } else if was_cycling && motion.is_cycling() {
             let step = motion.phase().wrapping_sub(phase_before) & (CYCLE - 1);
@@ -26,13 +26,14 @@ fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
     }
 }
 
-/// Returns the share of a cycle that a gait covers in a frame at full pace; negative for a gait that is read backwards.
+/// Returns the fraction of a cycle that a gait covers in a frame at full pace, which is negative for a gait that is
+/// read backwards.
 fn cycles_per_frame(motion: &Motion, name: &str) -> f64 {
     f64::from(motion.robot.gait(motion.robot.gait_id(name)).increment) / f64::from(CYCLE)
 }
 
 #[test]
-fn every_gait_runs_its_count_of_cycles_to_within_two_frames_at_any_pace() {
+fn every_gait_runs_for_its_count_within_two_frames_at_any_pace() {
     for name in GAIT_NAMES.into_iter().filter(|name| *name != "stray") {
         for (speed, is_slow) in [(100, false), (100, true), (37, false), (10, false)] {
             for count in [1, 2, 3, 17] {
@@ -66,7 +67,7 @@ fn every_gait_runs_its_count_of_cycles_to_within_two_frames_at_any_pace() {
 }
 
 #[test]
-fn a_gait_of_the_shortest_period_runs_its_count_to_within_two_frames() {
+fn a_gait_of_the_shortest_period_runs_for_its_count_within_two_frames() {
     for (is_forward, count) in [(true, 1), (false, 1), (true, 5), (false, 5)] {
         let robot = Sample::asymmetric();
         let index = robot.gait_id("sway").index();
@@ -84,7 +85,7 @@ fn a_gait_of_the_shortest_period_runs_its_count_to_within_two_frames() {
 }
 
 #[test]
-fn a_counted_gait_brakes_like_one_that_another_gait_replaces() {
+fn a_counted_gait_brakes_like_a_gait_replaced_by_another() {
     let mut counted_motion = Motion::standing();
     counted_motion.start_for("sway", 2);
     let mut endless_motion = Motion::standing();
@@ -130,7 +131,7 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
         }
         motion.run(2);
         let gait = motion.gait_name();
-        assert_eq!(gait, Some("sway"), "the gait is still under way");
+        assert_eq!(gait, Some("sway"), "the gait is still running");
         motion
     };
     let start_counted = || {
@@ -165,7 +166,7 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
 }
 
 #[test]
-fn a_new_calibration_interrupts_a_count_and_does_not_shorten_it() {
+fn a_new_calibration_interrupts_a_count_without_shortening_it() {
     let mut motion = Motion::in_gait("sway", 0);
     motion.start_for("sway", 2);
     motion.run(60);

@@ -1,4 +1,4 @@
-//! The guard's effect on a motion.
+//! Tests of the guard's effect on a motion.
 
 use super::*;
 
@@ -32,11 +32,11 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         assert_eq!(motion.tick(), last_pose.pulses(&motion.calibration));
         assert_eq!(motion.hazard(), hazard);
     }
-    // The reported hazard is one that the gait's poses have.
+    // The reported hazard occurs in the gait's poses.
     let gait = motion.robot.gait(motion.robot.gait_id("stray"));
     let mut hazards = (0..CYCLE).step_by(1000).filter_map(|phase| {
         let pose = gait.pose(motion.robot.waves(), phase);
-        Clearance::of(&motion.robot, &pose).first_hazard(&motion.robot)
+        Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot)
     });
     let is_same_kind = |other_hazard: Hazard| match (other_hazard, hazard) {
         (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => a == b,
@@ -47,7 +47,7 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
 }
 
 #[test]
-fn the_hazard_is_cleared_when_the_next_motion_begins_and_not_before() {
+fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
     let mut stopped_motion = run_until_guarded();
     stopped_motion.stop();
     stopped_motion.run(20);
@@ -74,8 +74,8 @@ fn a_refused_pose_changes_nothing_and_returns_its_hazard() {
         for frames in [0, 3, 20, 70] {
             let mut refusing_motion = Motion::in_gait(name, frames);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
-            let expected_hazard =
-                Clearance::of(&refusing_motion.robot, &pose).first_hazard(&refusing_motion.robot);
+            let expected_hazard = Clearance::measure(&refusing_motion.robot, &pose)
+                .first_hazard(&refusing_motion.robot);
             assert_eq!(refusing_motion.go_to(&pose).err(), expected_hazard);
             assert!(expected_hazard.is_some());
             assert_same_motion(refusing_motion, Motion::in_gait(name, frames));

@@ -1,9 +1,9 @@
-//! Settling: the gradual change of the pulses to the widths of a new calibration.
+//! Tests of settling, the gradual change of the pulses to the widths of a new calibration.
 
 use super::*;
 use crate::numbers::units::PulseWidth;
 
-/// Calibrates each servo so that its neutral pulse is 1000 cycles longer.
+/// Recalibrates each servo so that its neutral pulse is 1000 cycles longer.
 fn lengthen_neutral_pulses(motion: &mut Motion) {
     for (index, mut servo) in motion.calibration.into_iter().enumerate() {
         servo.neutral_width = PulseWidth(servo.neutral_width.0 + 1000);
@@ -12,13 +12,13 @@ fn lengthen_neutral_pulses(motion: &mut Motion) {
 }
 
 #[test]
-fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
+fn every_servo_settles_exactly_as_fast_as_its_gain_allows() {
     // The gains of this robot differ from servo to servo.
     let mut motion = Motion::standing();
     let pulses_before = motion.sent_pulses().0;
     let per_frame = f64::from(motion.robot.slew().per_frame);
     let max_changes = motion.calibration.map(|servo| {
-        // In CPU cycles per frame at the slew limit, rounded down.
+        // CPU cycles per frame at the slew limit, rounded down.
         (per_frame * f64::from(servo.gain).abs() / 16_384.0).floor() as u16
     });
     for (index, max_change) in max_changes.iter().enumerate() {
@@ -40,13 +40,13 @@ fn every_servo_settles_as_fast_as_its_own_gain_allows_and_no_faster() {
 }
 
 #[test]
-fn the_first_pulses_after_a_reset_repeat_the_last_ones_however_far_the_settings_differ() {
+fn the_first_pulses_after_a_reset_repeat_the_last_pulses_despite_other_settings() {
     // The reset may have occurred after the last pulses were computed and before they were sent.
-    let stance_before = *Motion::standing().stance();
+    let servo_state_before = *Motion::standing().servo_state();
     let mut motion = Motion::new(*Sample::asymmetric());
     lengthen_neutral_pulses(&mut motion);
-    assert!(motion.resume(&stance_before, false));
-    assert_eq!(motion.tick(), stance_before.sent_pulses);
+    assert!(motion.resume(&servo_state_before, false));
+    assert_eq!(motion.tick(), servo_state_before.sent_pulses);
     let next_pulses = motion.tick();
-    assert!((0..4).all(|index| next_pulses.0[index].0 > stance_before.sent_pulses.0[index].0));
+    assert!((0..4).all(|index| next_pulses.0[index].0 > servo_state_before.sent_pulses.0[index].0));
 }

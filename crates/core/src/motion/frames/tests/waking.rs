@@ -1,9 +1,9 @@
-//! Tests of a robot that rests, and of its servos, which wake one after another when the rest ends.
+//! Tests of a resting robot, and of its servos, which wake one after another when the rest ends.
 
 use super::*;
 
 #[test]
-fn while_the_robot_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
+fn at_rest_no_frame_has_a_pulse_and_the_pose_stays() {
     let mut motion = Motion::in_gait("sway", 90);
     let pose = *motion.pose();
     motion.rest();
@@ -18,7 +18,7 @@ fn while_the_robot_rests_no_frame_has_a_pulse_and_the_pose_is_kept() {
 #[test]
 fn stop_and_rest_change_nothing_while_the_robot_rests() {
     for order in [Motion::stop, Motion::rest] {
-        let mut motion = resting_motion();
+        let mut motion = make_resting_motion();
         order(&mut motion);
         assert_eq!(motion.activity(), Activity::Rest);
         assert_eq!(motion.tick(), Pulses::default());
@@ -26,9 +26,9 @@ fn stop_and_rest_change_nothing_while_the_robot_rests() {
 }
 
 #[test]
-fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
+fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
     for is_pose in [false, true] {
-        let mut motion = resting_motion();
+        let mut motion = make_resting_motion();
         let pose_before = *motion.pose();
         if is_pose {
             motion.go_to_sweeps(SWEEPS);
@@ -54,7 +54,7 @@ fn a_gait_or_a_pose_first_wakes_the_servos_where_they_were_left() {
 
 #[test]
 fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
-    let mut woken_motion = resting_motion();
+    let mut woken_motion = make_resting_motion();
     woken_motion.start("stand");
     for mut motion in [Motion::new(*Sample::asymmetric()), woken_motion] {
         let held_pulses = motion.held_pulses();
@@ -76,7 +76,7 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
 }
 
 #[test]
-fn a_rest_during_waking_makes_all_servos_wake_again_later() {
+fn after_a_rest_during_waking_all_servos_wake_again() {
     let mut motion = Motion::new(*Sample::asymmetric());
     motion.run(12);
     motion.rest();
@@ -92,8 +92,8 @@ fn a_rest_during_waking_makes_all_servos_wake_again_later() {
 }
 
 #[test]
-fn stop_during_waking_lets_the_servos_wake_but_nothing_move() {
-    let mut motion = resting_motion();
+fn after_stop_during_waking_the_servos_wake_but_do_not_move() {
+    let mut motion = make_resting_motion();
     motion.start("sway");
     motion.run(7);
     motion.stop();

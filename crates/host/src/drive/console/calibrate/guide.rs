@@ -1,7 +1,6 @@
-//! The guide through a calibration: the robot's movements in each step, and the effect of each key.
+//! The guide through a calibration: the robot's movements in each step, and each key's effect.
 //!
-//! The signs are checked before the trims: with the wrong sign a servo would turn against the
-//! arrow keys.
+//! The signs are checked before the trims: with a wrong sign, a servo would turn against the arrow keys.
 
 use std::io::{Read, Write};
 use std::time::Duration;
@@ -21,9 +20,9 @@ pub enum Key {
     Next,
     /// Go to the previous step.
     Back,
-    /// Leave the guide, and drop the changes since the last save.
+    /// Leave the guide, and discard the changes since the last save.
     Leave,
-    /// Perform the action of the step.
+    /// Perform the step's action.
     Act,
     /// Answer yes.
     Yes,
@@ -42,7 +41,7 @@ pub struct Guide<'a, P> {
     /// The neutral angles of A1 to A4, degrees.
     neutral_angles: [f64; 4],
     step_index: usize,
-    /// The angle by which this step has moved its servo, degrees; `None` if it has not.
+    /// The angle by which this step has moved its servo, degrees; `None` before the movement.
     moved_degrees: Option<f64>,
     /// True if the user skips the steps for scales and limits.
     skips_scales_and_limits: bool,
@@ -54,7 +53,7 @@ pub struct Guide<'a, P> {
 type Result<T> = std::result::Result<T, ConsoleError<LinkError>>;
 
 impl<'a, P: Read + Write> Guide<'a, P> {
-    /// Reads the robot's calibration, and makes the robot stand.
+    /// Reads the robot's calibration and makes the robot stand.
     ///
     /// # Errors
     /// Fails if there is no answer, or the robot cannot stand.
@@ -76,7 +75,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         STEPS[self.step_index]
     }
 
-    /// True if the active calibration is saved, which the last step shows.
+    /// True if the active calibration is saved.
     pub fn is_saved(&self) -> bool {
         self.step() == Step::Saved
     }
@@ -84,8 +83,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// Handles a key. Returns true when the user has finished or cancelled.
     ///
     /// # Errors
-    /// Fails if the connection breaks, or the robot refuses to restore the calibration when the
-    /// user leaves. Other refusals are not errors: they are shown.
+    /// Fails if the connection breaks, or the robot refuses the old calibration when the user leaves. Other refusals
+    /// are shown to the user.
     pub fn press_key(&mut self, key: Key) -> std::result::Result<bool, LinkError> {
         self.message.clear();
         let result = match (key, self.step()) {
@@ -125,7 +124,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             }
             (Key::Yes | Key::No, Step::Sign(servo)) => self.answer_sign(servo, key),
             (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Trim(servo)) => {
-                block_on(self.robot.trim(servo, degrees))
+                block_on(self.robot.change_trim(servo, degrees))
             }
             (Key::Act, Step::Walk) => self.set_walking(!self.is_walking),
             _ => Ok(()),
@@ -146,13 +145,13 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     pub fn read_messages(&mut self) -> std::result::Result<(), LinkError> {
         while let Some(line) = self.robot.console().read_line(Duration::ZERO)? {
             if line.starts_with(BANNER_START) {
-                self.message = "The board was reset: leave with q and begin again.".to_owned();
+                self.message = "The board was reset: leave with q and start again.".to_owned();
             } else if let Some(note) = line.strip_prefix("# ") {
-                self.message = format!("The robot says: {note}.");
+                self.message = format!("Message from the robot: {note}.");
             }
         }
         if self.is_walking {
-            // This question also keeps `deadman` from ending the gait.
+            // The line also prevents `deadman` from ending the gait.
             let reply = self.robot.console().ask("status")?;
             self.is_walking = Status::parse(&reply.answer).is_some_and(|status| status.is_moving());
         }
@@ -178,7 +177,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         match STEPS[index] {
             Step::Horns => {
                 self.stand()?;
-                block_on(self.robot.center())?;
+                block_on(self.robot.center_servos())?;
             }
             _ if self.step() == Step::Save => {}
             _ => self.stand()?,
@@ -194,19 +193,18 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    /// Moves one servo by the first of these angles (degrees) that the robot accepts.
+    /// Moves one servo by the first of `angles` (degrees) that the robot accepts.
     fn move_servo(&mut self, servo: usize, angles: &[f64]) -> Result<()> {
         self.moved_degrees = None;
-        self.moved_degrees = Some(block_on(self.robot.turn(servo, angles))?);
+        self.moved_degrees = Some(block_on(self.robot.turn_servo(servo, angles))?);
         self.message = format!("A{} has moved.", servo + 1);
         Ok(())
     }
 
-    /// Changes the scale of the servo that was moved, so that the servo turns this many degrees further
-    /// counter-clockwise.
+    /// Changes the scale of the moved servo so that it turns `degrees` further counter-clockwise.
     fn change_scale(&mut self, servo: usize, degrees: f64) -> Result<()> {
         let Some(commanded_degrees) = self.moved_degrees else {
-            self.message = "Press the space bar first, and look where it points.".to_owned();
+            self.message = "Press the space bar first, and look where the crank points.".to_owned();
             return Ok(());
         };
         let scale = self.robot.calibration().servos[servo].scale;
@@ -216,23 +214,24 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         )
     }
 
-    /// Moves the first (`index` 0) or the second (1) limit of a servo's travel by this many degrees.
+    /// Moves the first (`index` 0) or second (1) limit of a servo's travel by `degrees`.
     fn change_limit(&mut self, servo: usize, index: usize, degrees: f64) -> Result<()> {
         let mut limits = self.robot.calibration().servos[servo].limit;
         limits[index] += degrees;
-        block_on(self.robot.limit(servo, limits))
+        block_on(self.robot.set_limit(servo, limits))
     }
 
     fn answer_sign(&mut self, servo: usize, answer: Key) -> Result<()> {
         if self.moved_degrees.is_none() {
-            self.message = "Press the space bar first, and look which way it turns.".to_owned();
+            self.message =
+                "Press the space bar first, and look which way the servo turns.".to_owned();
             return Ok(());
         }
         if answer == Key::Yes {
             return self.enter_step(self.step_index + 1);
         }
         self.moved_degrees = None;
-        block_on(self.robot.reverse(servo))?;
+        block_on(self.robot.reverse_sign(servo))?;
         self.message = format!(
             "The sign of A{} is `{}` now. Press the space bar to look once more.",
             servo + 1,
@@ -245,11 +244,12 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         if !is_walking {
             return self.stand();
         }
-        let gait = block_on(self.robot.walk())?;
+        let gait = block_on(self.robot.start_walk())?;
         self.is_walking = gait.is_some();
-        self.message = gait.map_or("This robot has no gait but `stand`.".to_owned(), |gait| {
-            format!("The robot does `{gait}`.")
-        });
+        self.message = gait.map_or(
+            "This robot has no gait except `stand`.".to_owned(),
+            |gait| format!("The robot performs `{gait}`."),
+        );
         Ok(())
     }
 }

@@ -1,5 +1,4 @@
-//! `lizard calibrate`: a guided calibration, one key at a time, for a user who holds a
-//! screwdriver.
+//! `lizard calibrate`: a guided calibration, one key at a time, for a user who holds a screwdriver.
 
 mod guide;
 
@@ -19,9 +18,9 @@ use guide::{Guide, Key, View};
 
 /// Calibrate the robot, step by step
 ///
-/// Centres the servos for fitting the horns, finds out which way each of them turns,
-/// trims each with the arrow keys, walks, and saves. Nothing is saved before the last
-/// step; if you leave earlier, the robot keeps its old calibration.
+/// Centres the servos for fitting the horns, checks each servo's direction, trims each
+/// servo with the arrow keys, walks, and saves. Nothing is saved before the last step; if
+/// you leave earlier, the robot keeps its old calibration.
 #[derive(clap::Args, Debug)]
 pub struct Args {
     #[command(flatten)]
@@ -39,7 +38,7 @@ const KEY_INTERVAL: Duration = Duration::from_millis(20);
 /// Fails if there is no terminal or no board, or the connection breaks.
 pub fn run(args: Args) -> Result<(), Failure> {
     if !(io::stdin().is_terminal() && io::stdout().is_terminal()) {
-        let message = "calibrate asks for single keys; run it in a terminal";
+        let message = "calibrate reads single keys; run it in a terminal";
         return Err(Failure::Input(message.to_owned()));
     }
     let finder = args.connect.into_finder("calibrate")?;
@@ -48,7 +47,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let result = result.and_then(|mut guide| run_guide(&mut guide));
     match result {
         Ok(is_saved) => {
-            // The terminal may be gone; then nobody can read this.
+            // The terminal may be gone; a failed message is not an error.
             let message = if is_saved {
                 "the calibration is saved"
             } else {
@@ -61,7 +60,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Err(DialogueError::File(failure)) => Err(failure),
         // Opening the port again resets the board, so unsaved settings are lost then.
         Err(DialogueError::Link(error)) => Err(Failure::Impossible(format!(
-            "{}: {error}; what was not saved is lost when the port is opened again",
+            "{}: {error}; unsaved settings are lost when the port is opened again",
             board.name
         ))),
     }
@@ -92,8 +91,8 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
         if !terminal::is_open() {
             return Err(io::Error::from(io::ErrorKind::UnexpectedEof).into());
         }
-        // Polls without waiting: if the terminal is closed during a wait, crossterm never returns
-        // from it.
+        // Polls without waiting: if the terminal is closed during a wait, crossterm never returns from
+        // the wait.
         if !event::poll(Duration::ZERO)? {
             if last_read.elapsed() >= READ_INTERVAL {
                 guide.read_messages()?;
@@ -127,7 +126,7 @@ fn is_suspend_key(key: KeyEvent) -> bool {
     key.code == KeyCode::Char('z') && key.modifiers.contains(KeyModifiers::CONTROL)
 }
 
-/// Returns the meaning of a key in the guide; `None` if it has none, or was released.
+/// Returns a key's meaning in the guide; `None` if it has none or was released.
 fn interpret_key(key: KeyEvent) -> Option<Key> {
     if key.kind == KeyEventKind::Release {
         return None;

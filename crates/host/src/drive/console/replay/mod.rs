@@ -23,7 +23,7 @@ use session::Session;
 pub struct Args {
     /// The recorded session
     file: PathBuf,
-    /// The file for the picture
+    /// Output file for the picture
     #[arg(long, value_name = "FILE", default_value = "out/lizard-replay.svg")]
     svg: PathBuf,
     #[command(flatten)]
@@ -53,7 +53,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let (sender, text) = match &entry.event {
             Event::Sent(line) => (Sender::User, line.clone()),
             Event::Answer(line) | Event::Note(line) => (Sender::Robot, line.clone()),
-            Event::Gone => (Sender::Robot, "(the port was gone)".to_owned()),
+            Event::Gone => (Sender::Robot, "(the port disappeared)".to_owned()),
             Event::Begin { .. } | Event::Status(_) | Event::Pose { .. } => continue,
         };
         let ms = entry.ms as f64;
@@ -76,13 +76,13 @@ pub fn run(args: Args) -> Result<(), Failure> {
     {
         writeln!(
             out,
-            "picture     the session's robot is not that of this robot.toml: the angles are right, \
-             but the footfalls may not be"
+            "picture     the session's robot differs from robot.toml: the angles are correct, but \
+             the footfalls may be wrong"
         )?;
     }
-    let log = session.frame_log(&robot);
+    let log = session.build_frame_log(&robot);
     let (robot, log) = (&robot, &log);
-    let picture = timeline::draw(Run { robot, log }, &session.spans(), &CAPTION);
+    let picture = timeline::draw(Run { robot, log }, &session.compute_spans(), &CAPTION);
     crate::shared::files::write(&args.svg, picture.as_bytes())?;
     writeln!(out, "picture     {}", args.svg.display())?;
     Ok(())

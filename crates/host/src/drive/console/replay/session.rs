@@ -1,4 +1,4 @@
-//! A recorded session, read from its file: its events, frames and commands.
+//! A recorded session: its events, frames and commands.
 
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
@@ -11,28 +11,28 @@ use lizard_robot::Status;
 
 /// Length of a frame, ms.
 pub(super) const FRAME_MS: u64 = 20;
-/// Longest gap between two reported poses, in frames, that is filled with the earlier pose.
+/// Longest gap between two reported poses that is filled with the earlier pose, in frames.
 const MAX_HELD_FRAMES: usize = 50;
-/// Largest difference, in frames, between the robot's frame count and this machine's clock. A line may arrive late,
-/// and a simulated robot lags behind on a slow machine.
+/// Largest difference between the robot's frame count and this machine's clock, in frames. A line may arrive late, and
+/// a simulated robot lags behind on a slow machine.
 const MAX_CLOCK_DIFFERENCE_FRAMES: usize = 10;
 /// Longest valid session, ms: a day.
 const MAX_SESSION_MS: u64 = 86_400_000;
 
-/// The reason why a file is not a valid session.
+/// An error in a session's file.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub(super) enum SessionError {
     /// The file is not a session, or has another format.
     #[error(
-        "this is not a session of `lizard console --record`: its first line has no \"{FORMAT}\""
+        "this is not a session of `lizard console --record`: \"{FORMAT}\" is missing from its first line"
     )]
     Format,
     /// A line is not an event, or is out of place.
     #[error("line {line}: {problem}")]
     Line {
-        /// The number of the line, from 1.
+        /// The line number, starting at 1.
         line: usize,
-        /// The problem with this line.
+        /// The problem with the line.
         problem: String,
     },
 }
@@ -45,13 +45,12 @@ pub(super) struct Session {
 }
 
 impl Session {
-    /// Reads the lines of a file. A last line that was cut short, by a program that
-    /// was killed or a disk that was full, is left out.
+    /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored.
     pub(super) fn parse(text: &str) -> Result<Self, SessionError> {
         let mut entries: Vec<Entry> = Vec::new();
         for (index, line) in text.lines().enumerate() {
-            let is_cut = !text.ends_with('\n') && index + 1 == text.lines().count();
-            let error_of = |problem: String| match index {
+            let is_partial = !text.ends_with('\n') && index + 1 == text.lines().count();
+            let to_error = |problem: String| match index {
                 0 => SessionError::Format,
                 _ => SessionError::Line {
                     line: index + 1,
@@ -60,20 +59,20 @@ impl Session {
             };
             let entry: Entry = match serde_json::from_str(line) {
                 Ok(entry) => entry,
-                Err(_) if is_cut && index > 0 => break,
-                Err(error) => return Err(error_of(format!("it is not an event: {error}"))),
+                Err(_) if is_partial && index > 0 => break,
+                Err(error) => return Err(to_error(format!("not an event: {error}"))),
             };
             let is_begin = matches!(&entry.event, Event::Begin { format, .. } if format == FORMAT);
             if is_begin != (index == 0) {
-                return Err(error_of(
-                    "a session begins once, in its first line".to_owned(),
+                return Err(to_error(
+                    "`begin` must occur exactly once, in the first line".to_owned(),
                 ));
             }
             if entry.ms > MAX_SESSION_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
-                return Err(error_of(format!("{} ms is out of order", entry.ms)));
+                return Err(to_error(format!("{} ms is out of order", entry.ms)));
             }
             entries.push(Entry {
-                event: entry.event.with_escaped_controls(),
+                event: entry.event.escape_controls(),
                 ..entry
             });
         }
@@ -83,7 +82,7 @@ impl Session {
         Ok(Self { entries })
     }
 
-    /// The robot's first line of output, if it was recorded.
+    /// Returns the robot's banner, if it was recorded.
     pub(super) fn banner(&self) -> Option<&str> {
         match &self.entries.first()?.event {
             Event::Begin { banner, .. } => banner.as_deref(),
@@ -91,17 +90,17 @@ impl Session {
         }
     }
 
-    /// The time of the last event, ms.
+    /// Returns the time of the last event, ms.
     pub(super) fn end_ms(&self) -> u64 {
         self.entries.last().map_or(0, |last| last.ms)
     }
 
     /// Returns the pulse widths of the reported poses, one entry per frame since the start of the session; zero while
     /// the robot rested or was silent.
-    pub(super) fn frame_log(&self, robot: &Robot) -> FrameLog {
+    pub(super) fn build_frame_log(&self, robot: &Robot) -> FrameLog {
         let mut widths: Vec<[u16; 4]> = vec![[0; 4]; (self.end_ms() / FRAME_MS) as usize + 1];
         let mut is_resting = false;
-        // The robot's frame count and the index in `widths` of the pose from which later poses are counted.
+        // The robot's frame count and the index in `widths` of the reference pose for later poses.
         let mut anchor: Option<(u64, usize)> = None;
         let mut last_frame_count = 0;
         // The index in `widths` of the last pose; `None` if the robot has rested or was reset since then.
@@ -121,7 +120,7 @@ impl Session {
                         (anchor, last_index) = (None, None);
                     }
                     last_frame_count = *frame;
-                    // The robot's count is steadier than the time at which a line arrives.
+                    // The robot's frame count is steadier than the arrival time of a line.
                     let index_by_count = anchor.and_then(|(anchor_frame, anchor_index)| {
                         anchor_index
                             .checked_add(usize::try_from(frame.checked_sub(anchor_frame)?).ok()?)
@@ -168,8 +167,8 @@ impl Session {
         }
     }
 
-    /// Returns the commands, each with the time span in which it was in effect.
-    pub(super) fn spans(&self) -> Vec<Span> {
+    /// Returns the commands, each with the time span of its effect.
+    pub(super) fn compute_spans(&self) -> Vec<Span> {
         let mut steps = Vec::new();
         let mut answers = Vec::new();
         for entry in &self.entries {
@@ -192,7 +191,7 @@ impl Session {
             end_ms,
             ..Script::default()
         };
-        spans::command_spans(&script, &answers)
+        spans::list_command_spans(&script, &answers)
     }
 }
 
@@ -207,7 +206,7 @@ mod tests {
     const BEGIN: &str =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
 
-    fn session_of(lines: &[String]) -> Session {
+    fn parse_session(lines: &[String]) -> Session {
         let text = format!("{BEGIN}{}\n", lines.join("\n"));
         Session::parse(&text).expect("the session is valid")
     }
@@ -219,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn control_characters_of_a_session_do_not_reach_the_terminal() {
+    fn control_characters_in_a_session_are_escaped() {
         let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
             + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
         let session = Session::parse(&text).expect("the session is valid");
@@ -233,14 +232,14 @@ mod tests {
     }
 
     #[test]
-    fn a_pose_becomes_its_pulse_widths_and_a_missing_pose_repeats_the_previous_one() {
-        let session = session_of(&[
+    fn missing_pose_repeats_the_previous_pulse_widths() {
+        let session = parse_session(&[
             pose_line(104, 50, 138.590378),
             pose_line(131, 51, 139.590378),
-            // Late by a frame and a half; frame 52 is missing.
+            // The line is late by a frame and a half; frame 52 is missing.
             pose_line(190, 53, 140.590378),
         ]);
-        let log = session.frame_log(&built_in_robot("paper"));
+        let log = session.build_frame_log(&built_in_robot("paper"));
         let a1_widths: Vec<u16> = log.widths.iter().map(|widths| widths[0]).collect();
         assert_eq!(
             a1_widths,
@@ -250,17 +249,18 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_falls_behind_the_clock_leaves_no_gap() {
+    fn slow_robot_leaves_no_gap() {
         let slow_poses = (0..100).map(|n| pose_line(20 + 30 * n, n, 138.590378));
-        let log = session_of(&slow_poses.collect::<Vec<_>>()).frame_log(&built_in_robot("paper"));
+        let log = parse_session(&slow_poses.collect::<Vec<_>>())
+            .build_frame_log(&built_in_robot("paper"));
         let first = log.widths.iter().position(|widths| widths[0] > 0);
         assert_eq!(first, Some(1));
         assert!(log.widths[1..140].iter().all(|widths| widths[0] == 24_000));
     }
 
     #[test]
-    fn a_robot_has_no_pulses_while_it_rests_and_until_its_first_pose_after_a_reset() {
-        let session = session_of(&[
+    fn resting_or_reset_robot_has_no_pulses() {
+        let session = parse_session(&[
             pose_line(20, 1, 138.590378),
             "{\"ms\":30,\"answer\":\"ok rest\"}".to_owned(),
             pose_line(40, 2, 138.590378),
@@ -270,62 +270,59 @@ mod tests {
             // The robot was reset, so its frame count starts again.
             pose_line(160, 0, 138.590378),
             pose_line(180, 1, 138.590378),
-            // No robot counts that many frames.
+            // An impossible frame count has no effect.
             pose_line(190, u64::MAX, 138.590378),
         ]);
-        let log = session.frame_log(&built_in_robot("paper"));
+        let log = session.build_frame_log(&built_in_robot("paper"));
         let pulsed_frames: Vec<usize> = (0..10).filter(|n| log.widths[*n][0] > 0).collect();
         assert_eq!(pulsed_frames, [1, 4, 8, 9]);
     }
 
     #[test]
     fn commands_are_in_effect_unless_refused() {
-        let session = session_of(&[
+        let session = parse_session(&[
             "{\"ms\":1000,\"sent\":\"walk\"}".to_owned(),
             "{\"ms\":1001,\"answer\":\"ok walk\"}".to_owned(),
             "{\"ms\":2000,\"sent\":\"fly\"}".to_owned(),
             "{\"ms\":2001,\"answer\":\"err 1 no\"}".to_owned(),
             "{\"ms\":3000,\"sent\":\"stop\"}".to_owned(),
         ]);
-        let spans = session.spans();
+        let spans = session.compute_spans();
         let commands: Vec<(&str, f64)> = spans
             .iter()
-            .map(|span| (span.command.as_str(), span.from))
+            .map(|span| (span.command.as_str(), span.start_s))
             .collect();
         assert_eq!(commands, [("stand", 0.0), ("walk", 1.0), ("stop", 3.0)]);
     }
 
     #[test]
-    fn an_invalid_session_is_refused_with_the_line_number() {
-        let message_of = |text: &str| {
+    fn invalid_session_is_refused_with_the_line_number() {
+        let parse_error = |text: &str| {
             Session::parse(text)
                 .expect_err("an invalid session must be refused")
                 .to_string()
         };
         for text in ["", "{}\n", "walk\n", "{\"ms\":0,\"sent\":\"walk\"}\n"] {
             assert!(
-                message_of(text).starts_with("this is not a session"),
+                parse_error(text).starts_with("this is not a session"),
                 "{text}"
             );
         }
-        let message_of_third_line =
-            |line: &str| message_of(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
-        assert!(
-            message_of_third_line("{\"ms\":10,\"flew\":1}")
-                .starts_with("line 3: it is not an event: ")
-        );
+        let third_line_error =
+            |line: &str| parse_error(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
+        assert!(third_line_error("{\"ms\":10,\"flew\":1}").starts_with("line 3: not an event: "));
         assert_eq!(
-            message_of_third_line("{\"ms\":8,\"gone\":null}"),
+            third_line_error("{\"ms\":8,\"gone\":null}"),
             "line 3: 8 ms is out of order"
         );
         assert_eq!(
-            message_of_third_line("{\"ms\":99999999999,\"gone\":null}"),
+            third_line_error("{\"ms\":99999999999,\"gone\":null}"),
             "line 3: 99999999999 ms is out of order"
         );
     }
 
     #[test]
-    fn a_last_line_that_was_cut_short_is_left_out() {
+    fn partial_last_line_is_ignored() {
         let text = format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{{\"ms\":10,\"se");
         let session = Session::parse(&text).expect("the other lines are complete");
         assert_eq!(session.entries.len(), 2);

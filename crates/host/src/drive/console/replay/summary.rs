@@ -20,7 +20,7 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "board       {port}")?;
         let banner = banner
             .as_deref()
-            .unwrap_or("it was not reset, so it did not say");
+            .unwrap_or("unknown: the board was not reset");
         writeln!(out, "firmware    {}", banner.trim_start_matches("# "))?;
     }
     let seconds = session.end_ms() as f64 / 1000.0;
@@ -28,15 +28,12 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     let pose_count = count_events(|event| matches!(event, Event::Pose { .. }));
     writeln!(
         out,
-        "time        {seconds:.1} s, the pose of {pose_count} of {frame_count} frames"
+        "time        {seconds:.1} s, poses for {pose_count} of {frame_count} frames"
     )?;
     let refused_count =
         count_events(|event| matches!(event, Event::Answer(line) if line.starts_with("err")));
     let sent_count = count_events(|event| matches!(event, Event::Sent(_)));
-    writeln!(
-        out,
-        "commands    {sent_count}, of these refused: {refused_count}"
-    )?;
+    writeln!(out, "commands    {sent_count}, {refused_count} refused")?;
 
     let statuses: Vec<(u64, Status)> = entries
         .iter()
@@ -77,23 +74,23 @@ pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
     for entry in entries {
         let text = match &entry.event {
             Event::Note(line) if reports_problem(line) => line.trim_start_matches("# "),
-            Event::Gone => "the port was gone",
+            Event::Gone => "the port disappeared",
             _ => continue,
         };
         problem_count += 1;
         writeln!(
             out,
-            "trouble     at {:.1} s: {text}",
+            "problem     at {:.1} s: {text}",
             entry.ms as f64 / 1000.0
         )?;
     }
     if problem_count == 0 {
-        writeln!(out, "trouble     none")?;
+        writeln!(out, "problem     none")?;
     }
     Ok(())
 }
 
-/// True if a note reports a problem. A banner within a session means that the board was reset.
+/// True if a note reports a problem. A banner during a session means that the board was reset.
 fn reports_problem(note: &str) -> bool {
     ["# fault: ", "# supply: ", "# held ", BANNER_START]
         .iter()
@@ -120,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_summary_shows_the_smallest_margin_the_supply_range_and_every_problem() {
+    fn summary_shows_margin_supply_range_and_problems() {
         let status = |ms, margin| {
             format!(
                 "{{\"ms\":{ms},\"status\":\"ok gait=walk pose=1,2,3,4 margin={margin} late=1 \
@@ -134,7 +131,7 @@ mod tests {
             status(500, 0.5),
             status(600, 0.25),
             status(700, 0.75),
-            "{\"ms\":1500,\"note\":\"# fault: a pulse came late\"}".to_owned(),
+            "{\"ms\":1500,\"note\":\"# fault: a pulse was late\"}".to_owned(),
             "{\"ms\":1600,\"note\":\"# boot: stand\"}".to_owned(),
             "{\"ms\":2000,\"gone\":null}".to_owned(),
         ]
@@ -146,13 +143,13 @@ mod tests {
             String::from_utf8(out).expect("the output is UTF-8"),
             "board       p\n\
              firmware    lizard 0.2.0\n\
-             time        2.0 s, the pose of 0 of 101 frames\n\
-             commands    1, of these refused: 1\n\
+             time        2.0 s, poses for 0 of 101 frames\n\
+             commands    1, 1 refused\n\
              margin      smallest 0.250, at 0.6 s, of 3 readings\n\
              supply      4.50..4.70 V\n\
              counters    late pulses 1, bytes lost 0\n\
-             trouble     at 1.5 s: fault: a pulse came late\n\
-             trouble     at 2.0 s: the port was gone\n"
+             problem     at 1.5 s: fault: a pulse was late\n\
+             problem     at 2.0 s: the port disappeared\n"
         );
     }
 }

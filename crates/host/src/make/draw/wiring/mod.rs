@@ -1,4 +1,4 @@
-//! `lizard draw --wiring`: every wire from the battery's cells to the servos and the board.
+//! `lizard draw --wiring`: draws every wire from the battery's cells to the servos and the board.
 //!
 //! The picture follows the current from top to bottom: first the supply, then the servos between the +5 V strip on the
 //! left and the ground strip on the right, then the signal strip, and the board last. All positions are in pixels.
@@ -13,14 +13,14 @@ use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Robot};
 use svg::node::element::Group;
 
-use super::route::{Path, WIRE_SPACING, path_end, paths_between_rows, turn_point};
+use super::route::{Path, WIRE_SPACING, path_end, route_between_rows, turn_point};
 use super::uno::Uno;
 use crate::shared::ink::pin_name;
 use crate::shared::ink::{
-    BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_PLACES, circle, cross, line, outlined,
-    rectangle, svg_page, text_middle, text_start,
+    BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_PLACES, add_outline, circle, cross, line,
+    rectangle, render_svg, text_middle, text_start,
 };
-use wire::{BLACK, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
+use wire::{BLACK_WIRE, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_terminal};
 
 const PAGE_WIDTH: f64 = 700.0;
 /// Horizontal position of the middle of the leftmost servo.
@@ -31,27 +31,27 @@ const SERVO_SPACING: f64 = 118.0;
 const SERVO_TOP_Y: f64 = 420.0;
 /// Width and height of a servo on the page.
 const SERVO_SIZE: (f64, f64) = (50.0, 92.0);
-/// Distance from a servo's middle at which its supply wires leave it.
+/// Distance of a servo's supply wires from the servo's middle.
 const LEAD_OFFSET: f64 = 14.0;
-/// Vertical positions of the uppermost horizontal parts of the signal wires, above the signal strip and below it.
+/// Vertical positions of the signal wires' uppermost horizontal segments, above and below the signal strip.
 const SIGNAL_WIRES_Y: [f64; 2] = [530.0, 694.0];
-/// Vertical positions of the horizontal parts of the ground wires to the signal strip and to the board, below the
-/// signal wires.
+/// Vertical positions of the ground wires' horizontal segments to the signal strip and to the board, below the signal
+/// wires.
 const GROUND_WIRES_Y: [f64; 2] = [582.0, 748.0];
-/// Horizontal position at which the wire from the ground strip to the signal strip runs down.
+/// Horizontal position of the wire from the ground strip down to the signal strip.
 const GROUND_WIRE_X: f64 = 622.0;
 const UNO: Uno = Uno {
     upper_left_corner: (120.0, 776.0),
 };
-/// The centre of the board's barrel jack, relative to the board's upper left corner.
+/// The barrel jack's centre relative to the board's upper left corner.
 const BARREL_JACK_OFFSET: (f64, f64) = (-11.0, 252.0);
-/// Distance between neighbouring lines of the remarks.
+/// Distance between neighbouring lines of remarks.
 const LINE_HEIGHT: f64 = 19.0;
 
-/// Draws the wiring of a robot, as SVG text.
+/// Draws a robot's wiring, as SVG text.
 pub fn draw_wiring(robot: &Robot) -> String {
     let pins = robot.servos().map(|servo| servo.pin);
-    let order = servos_left_to_right(pins);
+    let order = sort_servos(pins);
     let analogue_count = order
         .iter()
         .filter(|servo| is_analogue(pins[**servo]))
@@ -65,12 +65,12 @@ pub fn draw_wiring(robot: &Robot) -> String {
         UNO.upper_left_corner.1 + BARREL_JACK_OFFSET.1,
     );
     let mut group = Group::new();
-    let mut wires = supply::wires(barrel_jack);
-    wires.extend(strips::link_wires());
-    wires.extend(strips::resistor_wires(
+    let mut wires = supply::route_wires(barrel_jack);
+    wires.extend(strips::route_links());
+    wires.extend(strips::route_resistor_leads(
         order.map(|servo| SERVO_NAMES[servo]),
     ));
-    wires.extend(servo_and_board_wires(order, pins));
+    wires.extend(route_servo_and_board_wires(order, pins));
     for wire in wires {
         group = group.add(wire.draw());
     }
@@ -82,7 +82,7 @@ pub fn draw_wiring(robot: &Robot) -> String {
     for (index, servo) in order.into_iter().enumerate() {
         group = group.add(draw_servo(servo, index, pins[servo]));
     }
-    let remarks = remarks(robot);
+    let remarks = list_remarks(robot);
     let radio_y = remarks_y + LINE_HEIGHT * remarks.len() as f64 + 6.0;
     for (index, remark) in remarks.iter().enumerate() {
         let y = remarks_y + LINE_HEIGHT * index as f64;
@@ -93,16 +93,16 @@ pub fn draw_wiring(robot: &Robot) -> String {
     if inputs::panel_height(robot) > 0.0 {
         group = group.add(inputs::draw(robot, inputs_y));
     }
-    svg_page((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
+    render_svg((PAGE_WIDTH, inputs_y + inputs::panel_height(robot)), group)
 }
 
 fn is_analogue(pin: u8) -> bool {
     pin >= 14
 }
 
-/// The servos from left to right, in the order of their pins around the UNO from its upper left, so that no two
+/// Returns the servos from left to right, in the order of their pins around the UNO from its upper left, so that no two
 /// signals cross.
-fn servos_left_to_right(pins: [u8; 4]) -> [usize; 4] {
+fn sort_servos(pins: [u8; 4]) -> [usize; 4] {
     let mut order = [0, 1, 2, 3];
     order.sort_by_key(|servo| {
         let pin = pins[*servo];
@@ -111,13 +111,13 @@ fn servos_left_to_right(pins: [u8; 4]) -> [usize; 4] {
     order
 }
 
-/// Horizontal position of the middle of a servo; `index` counts the servos from left to right.
+/// Returns the horizontal position of a servo's middle; `index` counts the servos from left to right.
 fn servo_x(index: usize) -> f64 {
     FIRST_SERVO_X + SERVO_SPACING * index as f64
 }
 
-/// The wires of the servos, and those from the signal strip to the board. `order` has the servos from left to right.
-fn servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
+/// Routes the wires of the servos, and of the signal strip to the board. `order` lists the servos from left to right.
+fn route_servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
     let mut wires = Vec::new();
     for (index, servo) in order.into_iter().enumerate() {
         let (x, name) = (servo_x(index), SERVO_NAMES[servo]);
@@ -130,16 +130,16 @@ fn servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
         ] {
             let path = vec![(x, SERVO_TOP_Y), (x, hole.1), hole];
             let name = format!("{kind}-{name}");
-            wires.push(Wire::new(name, path, colour, THIN_WIDTH));
+            wires.push(Wire::new(name, path, colour, THIN_WIRE_WIDTH));
         }
     }
     let indices: [usize; 4] = [0, 1, 2, 3];
     let servo_points = indices.map(|index| (servo_x(index), SERVO_TOP_Y + SERVO_SIZE.1));
     let strip_holes = indices.map(strips::servo_hole);
-    let paths = paths_between_rows(&servo_points, &strip_holes, SIGNAL_WIRES_Y[0]);
+    let paths = route_between_rows(&servo_points, &strip_holes, SIGNAL_WIRES_Y[0]);
     for (servo, path) in order.into_iter().zip(paths) {
         let name = format!("signal-{}", SERVO_NAMES[servo]);
-        wires.push(Wire::new(name, path, ORANGE, THIN_WIDTH));
+        wires.push(Wire::new(name, path, ORANGE, THIN_WIRE_WIDTH));
     }
     let last_hole = strips::ground_hole(strips::LINKED_GROUND_WAY_COUNT - 1);
     let signal_hole = strips::signal_ground_hole();
@@ -151,17 +151,22 @@ fn servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
         (signal_hole.0, y),
         signal_hole,
     ];
-    wires.push(Wire::new("signals-ground", path, BLACK, THICK_WIDTH));
-    wires.extend(board_wires(order, pins));
+    wires.push(Wire::new(
+        "signals-ground",
+        path,
+        BLACK_WIRE,
+        THICK_WIRE_WIDTH,
+    ));
+    wires.extend(route_board_wires(order, pins));
     wires
 }
 
-/// The jumpers from the signal strip to the board.
-fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
-    let (from, to) = (strips::board_ground_hole(), UNO.ground_point());
+/// Routes the jumpers from the signal strip to the board.
+fn route_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
+    let (start, end) = (strips::board_ground_hole(), UNO.ground_point());
     let y = GROUND_WIRES_Y[1];
-    let path = vec![from, (from.0, y), (to.0, y), to];
-    let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN_WIDTH)];
+    let path = vec![start, (start.0, y), (end.0, y), end];
+    let mut wires = vec![Wire::new("board-ground", path, BROWN, THIN_WIRE_WIDTH)];
     let strip_holes = [0, 1, 2, 3].map(strips::board_hole);
     let mut analogue_count = 0;
     let mut ends: Vec<Path> = Vec::new();
@@ -175,16 +180,16 @@ fn board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
         analogue_count += 1;
         turn_point(UNO.lower_right_corner(), analogue_count - 1)
     });
-    let paths = paths_between_rows(&strip_holes, &pin_points, SIGNAL_WIRES_Y[1]);
+    let paths = route_between_rows(&strip_holes, &pin_points, SIGNAL_WIRES_Y[1]);
     for ((servo, mut path), end) in order.into_iter().zip(paths).zip(ends) {
         path.extend(end.iter().skip(1));
         let name = format!("pin-wire-{}", SERVO_NAMES[servo]);
-        wires.push(Wire::new(name, path, ORANGE, THIN_WIDTH));
+        wires.push(Wire::new(name, path, ORANGE, THIN_WIRE_WIDTH));
     }
     wires
 }
 
-/// Draws a servo from above, with its name, its place in the robot and its pin; `index` counts from left to right.
+/// Draws a servo from above, with its name, position on the robot and pin; `index` counts from left to right.
 fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let x = servo_x(index);
     let colour = SERVO_COLOURS[servo];
@@ -196,8 +201,8 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     let text_x = x + 28.0;
     let mut group = Group::new()
         .add(rectangle(corner, SERVO_SIZE, "white").set("rx", 5))
-        .add(outlined(case.set("fill-opacity", 0.18), colour, 2))
-        .add(outlined(circle(shaft, 15.0, "white"), colour, 2))
+        .add(add_outline(case.set("fill-opacity", 0.18), colour, 2))
+        .add(add_outline(circle(shaft, 15.0, "white"), colour, 2))
         .add(circle(shaft, 5.0, DARK))
         .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
         .add(text_start(
@@ -216,7 +221,7 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
     group
 }
 
-/// Draws the cable to a computer, and a cross at the 5V pin, which stays free.
+/// Draws the cable to a computer, and a cross at the unused 5V pin.
 fn draw_board_notes() -> Group {
     let pin_5v = UNO.five_volt_point();
     let note_point = (pin_5v.0, UNO.lower_right_corner().1 + 17.0);
@@ -228,27 +233,27 @@ fn draw_board_notes() -> Group {
         .add(text_start("computer", (42.0, usb_y - 12.0), 13.0))
 }
 
-/// The remarks below the drawing, about facts that a drawing cannot show.
-fn remarks(robot: &Robot) -> Vec<String> {
+/// Returns the remarks below the drawing, about facts that a drawing cannot show.
+fn list_remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
-        "Thick lines: wire of 0.5 mm\u{b2} (20 AWG), red or black. Thin lines: jumpers (26 AWG), a".to_string(),
-        "servo's are orange (signal), red (+5 V), brown (ground). The thinnest belong to a part.".into(),
-        "A gap is a crossing, no joint.".into(),
-        "A terminal strip does not join its ways. The bows beside it are links of 0.5 mm\u{b2}: one".into(),
-        "from way 1 to 2, one from 2 to 3, and so on, two ends in a hole. Ways 11, 12 are spare.".into(),
-        format!("The fuse has {FUSE_RATING_A} A: the converter draws 2.8 A at most. It must not be larger than the"),
-        format!("switch's rating: {MIN_SWITCH_RATING_A} A, which count by half, because they are for alternating current."),
-        "The single way is the last of the second strip. It has 7.4 V from the battery: no link.".into(),
+        "Thick lines: 0.5 mm\u{b2} wire (20 AWG), red or black. Thin lines: jumpers (26 AWG); a servo's".to_string(),
+        "are orange (signal), red (+5 V) and brown (ground). The thinnest lines belong to a part.".into(),
+        "A gap marks a crossing without a junction.".into(),
+        "A terminal strip does not join its ways. The bows beside it are 0.5 mm\u{b2} links: one from".into(),
+        "way 1 to 2, one from 2 to 3, and so on, two ends in each hole. Ways 11, 12 are spare.".into(),
+        format!("The fuse is rated {FUSE_RATING_A} A: the converter draws at most 2.8 A. It must not exceed half the"),
+        format!("switch's rating of {MIN_SWITCH_RATING_A} A, which is for alternating current."),
+        "The single way is the last of the second strip. It carries 7.4 V and gets no link.".into(),
         "The capacitor's stripe (\u{2212}) goes to ground. The alarm is on the battery's balance plug.".into(),
-        "A resistor of 10 k\u{3a9} joins each signal to ground: until the program begins, pins drive".into(),
+        "A 10 k\u{3a9} resistor joins each signal to ground: before the program starts, pins drive".into(),
         "nothing, and a servo might take noise for a pulse.".into(),
-        "The UNO has its power from USB, or from the battery at its barrel jack.".into(),
+        "The UNO gets its power from USB, or from the battery through its barrel jack.".into(),
     ];
     if let (Some(pin), Some(rail)) = (robot.firmware().rail_pin(), robot.supplies().rail) {
         lines.push(format!(
             "{} measures the +5 V strip, divided by {:.2}.",
             pin_name(pin),
-            rail.ratio
+            rail.divider_ratio
         ));
     }
     lines

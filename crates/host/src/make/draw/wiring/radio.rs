@@ -1,16 +1,17 @@
 //! The panel with an optional radio module that shares the board's serial line with the USB chip.
 //!
-//! The module and the USB chip both drive pin D0, and both hold it high while they are silent. The USB chip drives it
-//! through 1 kOhm, so a module that is wired directly to D0 overrides the chip, and uploads fail. With a diode the
-//! module can only pull D0 low. The module's input takes 3.3 V, which a divider derives from the board's 5 V.
+//! The module and the USB chip both drive pin D0, and both hold it high while they are silent. The USB chip drives D0
+//! through 1 kOhm; a module wired directly to D0 therefore overrides the chip, and uploads fail. With a diode, the
+//! module can only pull D0 low. The module's input needs 3.3 V, which a divider derives from the board's 5 V.
 
 use svg::node::element::{Group, Polygon};
 
 use super::wire::{
-    BLACK, LEG_WIDTH, THIN_WIDTH, Wire, draw_option_panel, draw_resistor, draw_terminal,
+    BLACK_WIRE, LEAD_WIDTH, THIN_WIRE_WIDTH, Wire, draw_option_panel, draw_resistor, draw_terminal,
 };
 use crate::shared::ink::{
-    DARK, ORANGE, RED, circle, curve, line, outlined, rectangle, text_end, text_middle, text_start,
+    DARK, ORANGE, RED, add_outline, circle, curve, line, rectangle, text_end, text_middle,
+    text_start,
 };
 
 /// Height of the panel, pixels.
@@ -25,7 +26,7 @@ const DIODE_X: f64 = 300.0;
 const UPPER_RESISTOR_X: f64 = 260.0;
 /// Horizontal position of the divider's tap and lower resistor, pixels.
 const DIVIDER_X: f64 = 390.0;
-/// The rows of the panel: the board's pin, the module's pin, and the distance below the panel's top, pixels.
+/// The panel's rows: the board's pin, the module's pin, and the distance below the panel's top, pixels.
 const ROWS: [(&str, &str, f64); 4] = [
     ("D0 (RX)", "TXD", 64.0),
     ("D1 (TX)", "RXD", 102.0),
@@ -33,14 +34,14 @@ const ROWS: [(&str, &str, f64); 4] = [
     ("5V", "VCC", 182.0),
 ];
 
-/// Draws the panel with its upper edge at y = `top`.
+/// Draws the panel with its upper edge at `top`.
 pub fn draw(top: f64) -> Group {
-    let y_of = |row: usize| top + ROWS[row].2;
-    let row_wire = |name, row: usize, [from, to]: [f64; 2], colour| {
-        let path = vec![(from, y_of(row)), (to, y_of(row))];
-        Wire::new(name, path, colour, THIN_WIDTH)
+    let row_y = |row: usize| top + ROWS[row].2;
+    let row_wire = |name, row: usize, [start_x, end_x]: [f64; 2], colour| {
+        let path = vec![(start_x, row_y(row)), (end_x, row_y(row))];
+        Wire::new(name, path, colour, THIN_WIRE_WIDTH)
     };
-    let divider_path = vec![(DIVIDER_X, y_of(1)), (DIVIDER_X, y_of(2))];
+    let divider_path = vec![(DIVIDER_X, row_y(1)), (DIVIDER_X, row_y(2))];
     let wires = [
         row_wire("radio-d0", 0, [BOARD_PINS_X, DIODE_X - 12.0], ORANGE),
         row_wire("radio-txd", 0, [DIODE_X + 12.0, MODULE_PINS_X], ORANGE),
@@ -56,35 +57,35 @@ pub fn draw(top: f64) -> Group {
             [UPPER_RESISTOR_X + 14.0, MODULE_PINS_X],
             ORANGE,
         ),
-        Wire::new("radio-2k", divider_path, DARK, LEG_WIDTH),
-        row_wire("radio-ground", 2, [BOARD_PINS_X, MODULE_PINS_X], BLACK),
+        Wire::new("radio-2k", divider_path, DARK, LEAD_WIDTH),
+        row_wire("radio-ground", 2, [BOARD_PINS_X, MODULE_PINS_X], BLACK_WIRE),
         row_wire("radio-vcc", 3, [BOARD_PINS_X, MODULE_PINS_X], RED),
     ];
     let title = "Option: a radio module, to drive without a cable";
     let mut group = draw_option_panel(top, PANEL_HEIGHT, title);
-    // These wires cross nothing, and the white edge of `Wire::draw` would cut the frame.
+    // These wires cross nothing, and the white halo of `Wire::draw` would cut the frame.
     for wire in wires {
         let path = curve(&wire.path, wire.colour, wire.width);
         group = group.add(path.set("id", wire.name));
     }
-    group = draw_diode(group, (DIODE_X, y_of(0)));
-    let upper_label_point = (UPPER_RESISTOR_X, y_of(1) - 10.0);
-    let lower_resistor = (DIVIDER_X, (y_of(1) + y_of(2)) / 2.0);
+    group = draw_diode(group, (DIODE_X, row_y(0)));
+    let upper_label_point = (UPPER_RESISTOR_X, row_y(1) - 10.0);
+    let lower_resistor = (DIVIDER_X, (row_y(1) + row_y(2)) / 2.0);
     let lower_label_point = (DIVIDER_X + 12.0, lower_resistor.1 + 5.0);
     group = group
-        .add(draw_resistor((UPPER_RESISTOR_X, y_of(1)), (28.0, 10.0)))
+        .add(draw_resistor((UPPER_RESISTOR_X, row_y(1)), (28.0, 10.0)))
         .add(text_middle("1 k\u{3a9}", upper_label_point, 13.0))
         .add(draw_resistor(lower_resistor, (10.0, 26.0)))
         .add(text_start("2 k\u{3a9}", lower_label_point, 13.0))
-        .add(circle((DIVIDER_X, y_of(1)), 4.5, ORANGE))
-        .add(circle((DIVIDER_X, y_of(2)), 4.5, BLACK))
+        .add(circle((DIVIDER_X, row_y(1)), 4.5, ORANGE))
+        .add(circle((DIVIDER_X, row_y(2)), 4.5, BLACK_WIRE))
         .add(text_middle(
             "1N4148 or BAT85",
-            (DIODE_X, y_of(0) - 13.0),
+            (DIODE_X, row_y(0) - 13.0),
             13.0,
         ));
     let module = rectangle((MODULE_PINS_X, top + 42.0), (150.0, 160.0), "#e6eef7").set("rx", 5);
-    group = group.add(outlined(module, DARK, 1.5)).add(text_end(
+    group = group.add(add_outline(module, DARK, 1.5)).add(text_end(
         "HM-10, HC-05",
         (MODULE_PINS_X + 142.0, top + 126.0),
         13.0,
@@ -112,7 +113,7 @@ fn draw_diode(group: Group, (x, y): (f64, f64)) -> Group {
     let [left, upper, lower, tip] = [x - 12.0, y - 9.0, y + 9.0, x + 8.0];
     let corners = format!("{left},{upper} {left},{lower} {tip},{y}");
     group
-        .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEG_WIDTH))
+        .add(line((x - 12.0, y), (x + 12.0, y), DARK, LEAD_WIDTH))
         .add(Polygon::new().set("points", corners).set("fill", DARK))
         .add(line((x + 9.0, y - 9.0), (x + 9.0, y + 9.0), DARK, 3.0))
         .add(draw_terminal("diode-anode", (x - 12.0, y), DARK))

@@ -1,13 +1,13 @@
 //! Terminal strips, and the links between their ways (single terminals).
 //!
-//! A strip does not connect its ways: each is a brass tube with a screw at both ends. Short links therefore lead from
-//! way to way on one side of a strip, and the wires are on the other side.
+//! A strip does not connect its ways: each way is a brass tube with a screw at both ends. Short links therefore lead
+//! from way to way on one side of a strip, and the wires are on the other side.
 
 use svg::node::element::Group;
 
-use super::wire::{BLACK, LEG_WIDTH, THICK_WIDTH, Wire, draw_resistor, draw_terminal};
+use super::wire::{BLACK_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, Wire, draw_resistor, draw_terminal};
 use crate::shared::ink::{
-    DARK, ORANGE, RED, circle, line, outlined, rectangle, text_middle, text_start,
+    DARK, ORANGE, RED, add_outline, circle, line, rectangle, text_middle, text_start,
 };
 
 /// Distance between neighbouring ways of the upright strips, pixels.
@@ -16,9 +16,9 @@ const PITCH: f64 = 22.0;
 const STRIP_WIDTH: f64 = 36.0;
 /// Reach of a link beyond its strip, pixels.
 const LINK_REACH: f64 = 11.0;
-/// Number of ways of the ground strip that have links; two more ways are spare.
+/// Number of linked ways of the ground strip; two more ways are spare.
 pub const LINKED_GROUND_WAY_COUNT: usize = 10;
-/// Number of all ways of the ground strip.
+/// Number of ways of the ground strip.
 const GROUND_WAY_COUNT: usize = 12;
 /// Number of ways of the +5 V strip.
 pub const SUPPLY_WAY_COUNT: usize = 6;
@@ -26,14 +26,14 @@ pub const SUPPLY_WAY_COUNT: usize = 6;
 const FIRST_GROUND_HOLE: (f64, f64) = (640.0, 160.0);
 /// First wire hole of the +5 V strip, at the strip's inner edge: x and y, pixels.
 const FIRST_SUPPLY_HOLE: (f64, f64) = (96.0, 259.0);
-/// The ways of the signal strip: x of the first one, and the distance to the next, pixels.
+/// The signal strip's ways: x of the first way, and the distance between neighbouring ways, pixels.
 const SIGNAL_WAY_X_AND_PITCH: (f64, f64) = (265.0, 48.0);
-/// y of the upper and the lower edge of the signal strip, pixels.
+/// y of the signal strip's upper and lower edge, pixels.
 const SIGNAL_EDGES_Y: (f64, f64) = (597.0, 633.0);
-/// Distance from the middle of a way to the board's jumper in it, away from the strip's middle way, pixels.
+/// Distance of the board's jumper from the middle of its way, away from the strip's middle way, pixels.
 const JUMPER_OFFSET: f64 = 5.0;
 
-/// The wire hole of a way of the ground strip; ways count from 0.
+/// Returns the wire hole of a way in the ground strip; ways count from 0.
 pub fn ground_hole(way: usize) -> (f64, f64) {
     (
         FIRST_GROUND_HOLE.0,
@@ -41,7 +41,7 @@ pub fn ground_hole(way: usize) -> (f64, f64) {
     )
 }
 
-/// The wire hole of a way of the +5 V strip; ways count from 0.
+/// Returns the wire hole of a way in the +5 V strip; ways count from 0.
 pub fn supply_hole(way: usize) -> (f64, f64) {
     (
         FIRST_SUPPLY_HOLE.0,
@@ -49,56 +49,56 @@ pub fn supply_hole(way: usize) -> (f64, f64) {
     )
 }
 
-/// Index of a servo's way of the signal strip; `index` counts the servos from left to right. The middle way, which is
-/// for ground, is skipped.
-const fn way_of_servo(index: usize) -> usize {
+/// Returns the index of a servo's way in the signal strip; `index` counts the servos from left to right. The middle way
+/// is for ground and is skipped.
+const fn servo_way(index: usize) -> usize {
     if index < 2 { index } else { index + 1 }
 }
 
-/// Index of the ground way of the signal strip.
+/// Index of the ground way in the signal strip.
 const SIGNAL_GROUND_WAY: usize = 2;
 
-/// Horizontal position of a way of the signal strip.
+/// Returns the horizontal position of a way in the signal strip.
 fn signal_way_x(way: usize) -> f64 {
     SIGNAL_WAY_X_AND_PITCH.0 + SIGNAL_WAY_X_AND_PITCH.1 * way as f64
 }
 
-/// The hole of the signal strip for a servo's signal; `index` counts the servos from left to right.
+/// Returns the signal strip's hole for a servo's signal; `index` counts the servos from left to right.
 pub fn servo_hole(index: usize) -> (f64, f64) {
-    (signal_way_x(way_of_servo(index)), SIGNAL_EDGES_Y.0)
+    (signal_way_x(servo_way(index)), SIGNAL_EDGES_Y.0)
 }
 
-/// The hole of the signal strip for the wire from the ground strip.
+/// Returns the signal strip's hole for the wire from the ground strip.
 pub fn signal_ground_hole() -> (f64, f64) {
     (signal_way_x(SIGNAL_GROUND_WAY), SIGNAL_EDGES_Y.0)
 }
 
-/// The hole of the signal strip for a servo's jumper to the board; `index` counts the servos from left to right.
+/// Returns the signal strip's hole for a servo's jumper to the board; `index` counts the servos from left to right.
 pub fn board_hole(index: usize) -> (f64, f64) {
     let side = if index < 2 { -1.0 } else { 1.0 };
-    let x = signal_way_x(way_of_servo(index)) + side * JUMPER_OFFSET;
+    let x = signal_way_x(servo_way(index)) + side * JUMPER_OFFSET;
     (x, SIGNAL_EDGES_Y.1)
 }
 
-/// The hole of the signal strip for the board's ground.
+/// Returns the signal strip's hole for the board's ground.
 pub fn board_ground_hole() -> (f64, f64) {
     (signal_way_x(SIGNAL_GROUND_WAY), SIGNAL_EDGES_Y.1)
 }
 
-/// The links of the ground strip and of the +5 V strip.
-pub fn link_wires() -> Vec<Wire> {
+/// Routes the links of the ground strip and the +5 V strip.
+pub fn route_links() -> Vec<Wire> {
     let link_wire = |name: String, (x, y): (f64, f64), side: f64, colour| {
         let x = x + side * STRIP_WIDTH;
         let far_x = x + side * LINK_REACH;
         let path = vec![(x, y), (far_x, y), (far_x, y + PITCH), (x, y + PITCH)];
-        Wire::new(name, path, colour, THICK_WIDTH - 1.0)
+        Wire::new(name, path, colour, THICK_WIRE_WIDTH - 1.0)
     };
     let ground_links = (1..LINKED_GROUND_WAY_COUNT).map(|way| {
         link_wire(
             format!("link-ground-{way}"),
             ground_hole(way - 1),
             1.0,
-            BLACK,
+            BLACK_WIRE,
         )
     });
     let supply_links = (1..SUPPLY_WAY_COUNT).map(|way| {
@@ -112,11 +112,11 @@ pub fn link_wires() -> Vec<Wire> {
     ground_links.chain(supply_links).collect()
 }
 
-/// The leads of the resistors from each servo's way of the signal strip to the ground way. `names` has the servos
+/// Routes the resistors' leads from each servo's way in the signal strip to the ground way. `names` lists the servos
 /// from left to right.
-pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
+pub fn route_resistor_leads(names: [&str; 4]) -> Vec<Wire> {
     let resistor_wire = |(index, name): (usize, &str)| {
-        // The leads of the outer resistors run below those of the inner ones, so that they do not cross.
+        // The outer resistors' leads run below the inner resistors' leads, so that they do not cross.
         let (ground_offset, reach) = match index {
             0 => (-5.0, 35.0),
             1 => (-11.0, 17.0),
@@ -125,20 +125,20 @@ pub fn resistor_wires(names: [&str; 4]) -> Vec<Wire> {
         };
         let y = SIGNAL_EDGES_Y.1;
         let side = if index < 2 { 1.0 } else { -1.0 };
-        let from_x = signal_way_x(way_of_servo(index)) + side * JUMPER_OFFSET;
-        let to_x = signal_way_x(SIGNAL_GROUND_WAY) + ground_offset;
+        let start_x = signal_way_x(servo_way(index)) + side * JUMPER_OFFSET;
+        let end_x = signal_way_x(SIGNAL_GROUND_WAY) + ground_offset;
         let path = vec![
-            (from_x, y),
-            (from_x, y + reach),
-            (to_x, y + reach),
-            (to_x, y),
+            (start_x, y),
+            (start_x, y + reach),
+            (end_x, y + reach),
+            (end_x, y),
         ];
-        Wire::new(format!("resistor-{name}"), path, DARK, LEG_WIDTH)
+        Wire::new(format!("resistor-{name}"), path, DARK, LEAD_WIDTH)
     };
     names.into_iter().enumerate().map(resistor_wire).collect()
 }
 
-/// Draws the bodies of the resistors at the signal strip.
+/// Draws the resistors' bodies at the signal strip.
 pub fn draw_resistor_bodies() -> Group {
     let mut group = Group::new();
     for (way, y_offset) in [(0, 35.0), (1, 17.0), (2, 17.0), (3, 35.0)] {
@@ -148,20 +148,20 @@ pub fn draw_resistor_bodies() -> Group {
     let point = (signal_way_x(4) + 22.0, SIGNAL_EDGES_Y.1 + 31.0);
     group
         .add(text_start("4 x 10 k\u{3a9}", point, 13.0))
-        .add(text_start("own legs", (point.0, point.1 + 16.0), 12.0))
+        .add(text_start("own leads", (point.0, point.1 + 16.0), 12.0))
 }
 
-/// Adds a way of a strip, its brass tube and its number, to `group`.
-fn draw_way(group: Group, from: (f64, f64), to: (f64, f64), number: usize) -> Group {
-    let (x, y) = ((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0);
+/// Adds a strip's way, a brass tube with a number, to `group`.
+fn draw_way(group: Group, start: (f64, f64), end: (f64, f64), number: usize) -> Group {
+    let (x, y) = ((start.0 + end.0) / 2.0, (start.1 + end.1) / 2.0);
     group
-        .add(line(from, to, "#c9b26b", 7.0))
+        .add(line(start, end, "#c9b26b", 7.0))
         .add(circle((x, y), 8.5, "white"))
         .add(text_middle(&number.to_string(), (x, y + 4.5), 12.0))
 }
 
 fn draw_case(corner: (f64, f64), size: (f64, f64)) -> svg::node::element::Rectangle {
-    outlined(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
+    add_outline(rectangle(corner, size, "#f2f2f2").set("rx", 4), DARK, 1.3)
 }
 
 /// Draws the three strips.

@@ -1,24 +1,28 @@
 //! The supply, from the battery's cells to the strips: plug, fuse, switch, converter, capacitor, low-voltage alarm, and
-//! the barrel plug that supplies the board. Positions are in pixels and increase to the right and downwards.
+//! the board's barrel plug. Positions are in pixels and increase to the right and downwards.
 
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 use svg::node::element::Group;
 
 use super::strips::{ground_hole, supply_hole};
-use super::wire::{BLACK, GREY_WIRE, LEG_WIDTH, THICK_WIDTH, THIN_WIDTH, Wire, draw_terminal};
+use super::wire::{
+    BLACK_WIRE, GREY_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_terminal,
+};
 use crate::make::draw::route::Path;
-use crate::shared::ink::{DARK, RED, line, outlined, rectangle, text_end, text_middle, text_start};
+use crate::shared::ink::{
+    DARK, RED, add_outline, line, rectangle, text_end, text_middle, text_start,
+};
 
 /// A point on the page.
 type Point = (f64, f64);
 
 /// The battery's left edge.
 const BATTERY_LEFT_X: f64 = 560.0;
-/// Vertical position of the battery's plus contact, the fuse, the switch, and the single way (terminal) after them.
+/// Vertical position of the battery's plus contact, the fuse, the switch and the single way (terminal).
 const PLUS_Y: f64 = 40.0;
 /// Vertical position of the battery's minus contact.
 const BATTERY_MINUS_Y: f64 = 112.0;
-/// Vertical positions of the contacts of the battery's balance plug.
+/// Vertical positions of the contacts on the battery's balance plug.
 const BALANCE_CONTACTS_Y: [f64; 3] = [62.0, 76.0, 90.0];
 /// The left edge of the battery's cells.
 const CELLS_LEFT_X: f64 = 600.0;
@@ -30,21 +34,21 @@ const FUSE_CONTACTS_X: [f64; 2] = [458.0, 518.0];
 const SWITCH_CONTACTS_X: [f64; 2] = [362.0, 428.0];
 /// Horizontal positions of the left and right holes of the single way after the switch.
 const SINGLE_WAY_HOLES_X: [f64; 2] = [286.0, 322.0];
-/// Vertical distance from the middle of the single way to each of the two wires at its left hole.
+/// Vertical distance of the two wires at the single way's left hole from the way's middle.
 const SINGLE_WAY_WIRE_OFFSET: f64 = 5.0;
 /// The converter's left and right edges.
 const CONVERTER_EDGES_X: [f64; 2] = [130.0, 235.0];
-/// Vertical position of the contact IN+ of the converter.
+/// Vertical position of the converter's contact IN+.
 const CONVERTER_IN_PLUS_Y: f64 = PLUS_Y - SINGLE_WAY_WIRE_OFFSET;
-/// Vertical position of the contacts IN- and OUT- of the converter.
+/// Vertical position of the converter's contacts IN- and OUT-.
 const CONVERTER_MINUS_Y: f64 = 104.0;
 /// The capacitor's horizontal position.
 const CAPACITOR_X: f64 = 150.0;
-/// Horizontal positions of the two wires that lead down to the barrel plug.
+/// Horizontal positions of the two wires down to the barrel plug.
 const BARREL_PLUG_WIRES_X: [f64; 2] = [20.0, 34.0];
 
-/// Parts of the supply, each with its way (terminal) on the ground strip, counted from 0.
-const GROUND_WAY_OF_PART: [(&str, usize); 5] = [
+/// The supply's parts, each with the index of its way (terminal) on the ground strip.
+const GROUND_WAYS: [(&str, usize); 5] = [
     ("battery", 0),
     ("converter-in", 1),
     ("converter-out", 2),
@@ -53,18 +57,16 @@ const GROUND_WAY_OF_PART: [(&str, usize); 5] = [
 ];
 
 /// Index of the ground strip's first way for a servo.
-pub const FIRST_SERVO_WAY: usize = GROUND_WAY_OF_PART.len();
+pub const FIRST_SERVO_WAY: usize = GROUND_WAYS.len();
 
-/// The wire hole of the ground strip for a part of the supply.
-fn ground_hole_of(part_name: &str) -> Point {
-    let entry = GROUND_WAY_OF_PART
-        .iter()
-        .find(|(name, _)| *name == part_name);
+/// Returns the ground strip's wire hole for a part of the supply.
+fn find_ground_hole(part_name: &str) -> Point {
+    let entry = GROUND_WAYS.iter().find(|(name, _)| *name == part_name);
     ground_hole(entry.map_or(0, |(_, way)| *way))
 }
 
-/// All wires of the supply; `barrel_jack` is the centre of the board's barrel jack.
-pub fn wires(barrel_jack: Point) -> Vec<Wire> {
+/// Routes all wires of the supply; `barrel_jack` is the centre of the board's barrel jack.
+pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
     let [plug_plus, plug_minus] = barrel_plug_terminals(barrel_jack);
     let [plus_x, minus_x] = BARREL_PLUG_WIRES_X;
     let [fuse_left, fuse_right] = FUSE_CONTACTS_X;
@@ -72,23 +74,28 @@ pub fn wires(barrel_jack: Point) -> Vec<Wire> {
     let [way_left, way_right] = SINGLE_WAY_HOLES_X;
     let [converter_left, converter_right] = CONVERTER_EDGES_X;
     let way_plus = (way_left, PLUS_Y + SINGLE_WAY_WIRE_OFFSET);
-    // A path that is vertical at `x`.
-    let path_by = |from: Point, x: f64, to: Point| vec![from, (x, from.1), (x, to.1), to];
-    let red_wire = |name: &str, path: Path| Wire::new(name, path, RED, THICK_WIDTH);
-    let red_line =
-        |name: &str, [from, to]: [f64; 2], y: f64| red_wire(name, vec![(from, y), (to, y)]);
+    // Returns a path whose vertical segment is at `x`.
+    let route_by = |start: Point, x: f64, end: Point| vec![start, (x, start.1), (x, end.1), end];
+    let red_wire = |name: &str, path: Path| Wire::new(name, path, RED, THICK_WIRE_WIDTH);
+    let red_line = |name: &str, [start_x, end_x]: [f64; 2], y: f64| {
+        red_wire(name, vec![(start_x, y), (end_x, y)])
+    };
     let black_wire = |part: &str, path: Path, width: f64| {
-        Wire::new(format!("{part}-ground"), path, BLACK, width)
+        Wire::new(format!("{part}-ground"), path, BLACK_WIRE, width)
     };
-    let ground_wire = |part: &str, from: Point, x: f64| {
-        black_wire(part, path_by(from, x, ground_hole_of(part)), THICK_WIDTH)
+    let ground_wire = |part: &str, start: Point, x: f64| {
+        black_wire(
+            part,
+            route_by(start, x, find_ground_hole(part)),
+            THICK_WIRE_WIDTH,
+        )
     };
-    let plug_ground_path = path_by(ground_hole_of("round-plug"), minus_x, plug_minus);
-    let mut plug_plus_path = path_by(way_plus, 268.0, (plus_x, 138.0));
+    let plug_ground_path = route_by(find_ground_hole("round-plug"), minus_x, plug_minus);
+    let mut plug_plus_path = route_by(way_plus, 268.0, (plus_x, 138.0));
     plug_plus_path.extend([(plus_x, plug_plus.1), plug_plus]);
     let [upper_lead, lower_lead] = capacitor_leads();
-    let capacitor_ground_path = vec![upper_lead, ground_hole_of("capacitor")];
-    let converter_supply_path = path_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
+    let capacitor_ground_path = vec![upper_lead, find_ground_hole("capacitor")];
+    let converter_supply_path = route_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
     let mut wires = vec![
         red_line("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
         red_line("fuse-switch", [fuse_left, switch_right], PLUS_Y),
@@ -102,36 +109,38 @@ pub fn wires(barrel_jack: Point) -> Vec<Wire> {
         ground_wire("converter-in", (converter_right, CONVERTER_MINUS_Y), 252.0),
         ground_wire("converter-out", (converter_left, CONVERTER_MINUS_Y), 119.0),
         red_wire("converter-supply", converter_supply_path),
-        Wire::new("round-plug-plus", plug_plus_path, RED, THIN_WIDTH),
-        black_wire("round-plug", plug_ground_path, THIN_WIDTH),
-        black_wire("capacitor", capacitor_ground_path, THICK_WIDTH),
+        Wire::new("round-plug-plus", plug_plus_path, RED, THIN_WIRE_WIDTH),
+        black_wire("round-plug", plug_ground_path, THIN_WIRE_WIDTH),
+        black_wire("capacitor", capacitor_ground_path, THICK_WIRE_WIDTH),
         red_wire("capacitor-supply", vec![lower_lead, supply_hole(1)]),
     ];
-    let contacts = BALANCE_CONTACTS_Y.into_iter().zip([RED, GREY_WIRE, BLACK]);
+    let contacts = BALANCE_CONTACTS_Y
+        .into_iter()
+        .zip([RED, GREY_WIRE, BLACK_WIRE]);
     for (number, (y, colour)) in (1..).zip(contacts) {
         let path = vec![(BATTERY_LEFT_X, y), (ALARM_RIGHT_X, y)];
         let name = format!("balance-{number}");
-        wires.push(Wire::new(name, path, colour, LEG_WIDTH));
+        wires.push(Wire::new(name, path, colour, LEAD_WIDTH));
     }
     wires
 }
 
-/// The terminals of the barrel plug, plus and minus.
+/// Returns the barrel plug's terminals, plus and minus.
 fn barrel_plug_terminals((x, y): Point) -> [Point; 2] {
     [(x - 40.0, y - 9.0), (x - 40.0, y + 9.0)]
 }
 
-/// The ends of the capacitor's leads, minus and plus.
+/// Returns the ends of the capacitor's leads, minus and plus.
 fn capacitor_leads() -> [Point; 2] {
     [
-        (CAPACITOR_X, ground_hole_of("capacitor").1),
+        (CAPACITOR_X, find_ground_hole("capacitor").1),
         (CAPACITOR_X, supply_hole(1).1),
     ]
 }
 
 fn draw_case(group: Group, corner: Point, size: Point, fill: &str) -> Group {
     let case = rectangle(corner, size, fill).set("rx", 5);
-    group.add(outlined(case, DARK, 1.5))
+    group.add(add_outline(case, DARK, 1.5))
 }
 
 /// Draws all parts of the supply; `barrel_jack` is the centre of the board's barrel jack.
@@ -190,10 +199,10 @@ fn draw_battery(group: Group) -> Group {
         let name = format!("battery-balance-{number}");
         group = group.add(draw_terminal(&name, (BATTERY_LEFT_X, y), DARK));
     }
-    // The plug that disconnects both wires.
+    // Draws the plug that disconnects both wires.
     for y in [PLUS_Y, BATTERY_MINUS_Y] {
         let plug = rectangle((534.0, y - 7.0), (9.0, 14.0), "#f0c808");
-        group = group.add(outlined(plug, DARK, 1.0));
+        group = group.add(add_outline(plug, DARK, 1.0));
     }
     let minus_point = (BATTERY_LEFT_X, BATTERY_MINUS_Y);
     group
@@ -220,7 +229,7 @@ fn draw_alarm(group: Group) -> Group {
     group
 }
 
-/// Draws the fuse, the switch and the single way after it.
+/// Draws the fuse, the switch and the single way.
 fn draw_fuse_switch_and_way(group: Group) -> Group {
     let mut group = group;
     for ([left, right], fill) in [
@@ -230,7 +239,7 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
     ] {
         group = draw_case(group, (left, PLUS_Y - 13.0), (right - left, 26.0), fill);
     }
-    let middle_of = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
+    let middle = |ends: [f64; 2]| (ends[0] + ends[1]) / 2.0;
     let switch_lever = [
         (SWITCH_CONTACTS_X[0] + 16.0, PLUS_Y + 4.0),
         (SWITCH_CONTACTS_X[1] - 18.0, PLUS_Y - 8.0),
@@ -247,7 +256,7 @@ fn draw_fuse_switch_and_way(group: Group) -> Group {
         (&switch_label, SWITCH_CONTACTS_X, 20.0, 13.0),
         ("single way", SINGLE_WAY_HOLES_X, 20.0, 13.0),
     ] {
-        group = group.add(text_middle(label, (middle_of(ends), y), size));
+        group = group.add(text_middle(label, (middle(ends), y), size));
     }
     let ends = [
         ("fuse", FUSE_CONTACTS_X),

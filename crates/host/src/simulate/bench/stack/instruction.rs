@@ -1,4 +1,4 @@
-//! The effects of AVR instructions on the stack and on the control flow, by the AVR Instruction Set Manual.
+//! The effects of AVR instructions on the stack and the control flow, according to the AVR Instruction Set Manual.
 
 /// The effect of an instruction. Addresses are byte addresses in flash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,13 +27,13 @@ pub enum Effect {
     PointerFromStack,
     /// Copies r29:r28 to the stack pointer. This instruction copies the low byte, which is written last.
     StackFromPointer,
-    /// Sets the stack pointer to anything but r29:r28.
+    /// Sets the stack pointer to a value other than r29:r28.
     StackFromOther,
     /// Adds a constant to r29:r28.
     AddToPointer(i16),
-    /// Does the low half of a 16-bit subtraction from r29:r28: `subi r28`.
+    /// Subtracts the low byte of a 16-bit subtraction from r29:r28: `subi r28`.
     SubtractLow(u8),
-    /// Does the high half of a 16-bit subtraction from r29:r28: `sbci r29` or `sbc r29`.
+    /// Subtracts the high byte of a 16-bit subtraction from r29:r28: `sbci r29` or `sbc r29`.
     SubtractHigh(u8),
     /// Loads a constant into r28: `ldi r28`.
     LoadLow(u8),
@@ -61,7 +61,7 @@ const SPH: u16 = 0x3e;
 /// Data addresses of the stack pointer's low and high bytes, for `sts`.
 const SP_DATA_ADDRESSES: [u16; 2] = [0x5d, 0x5e];
 
-/// Decodes the instruction at a byte address; `None` if flash ends before the instruction does.
+/// Decodes the instruction at a byte address; `None` if flash ends before the end of the instruction.
 pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     let opcode = read_word(flash, address)?;
     let is_long = opcode & 0xfe0f == 0x9000 // lds
@@ -77,15 +77,15 @@ pub fn decode(flash: &[u8], address: u32) -> Option<Instruction> {
     Some(Instruction { effect, size })
 }
 
-/// The target of the `jmp` or `rjmp` at a byte address; `None` for any other instruction.
-pub fn jump_target(flash: &[u8], address: u32) -> Option<u32> {
+/// Returns the target of the `jmp` or `rjmp` at a byte address; `None` for any other instruction.
+pub fn find_jump_target(flash: &[u8], address: u32) -> Option<u32> {
     match decode(flash, address)?.effect {
         Effect::Jump(target) => Some(target),
         _ => None,
     }
 }
 
-/// Reads the word at a byte address; `None` if flash ends before the word does.
+/// Reads the word at a byte address; `None` if flash ends before the end of the word.
 fn read_word(flash: &[u8], address: u32) -> Option<u16> {
     let address = address as usize;
     let bytes = flash.get(address..address + 2)?;
@@ -101,11 +101,13 @@ fn decode_effect(opcode: u16, second_word: u16, address: u32) -> Effect {
         0x9478 => Effect::EnableInterrupts,
         _ if opcode & 0xfe0f == 0x920f => Effect::Push,
         _ if opcode & 0xfe0f == 0x900f => Effect::Pop,
-        _ if opcode & 0xfe0e == 0x940e => Effect::Call(far_target(opcode, second_word)),
-        _ if opcode & 0xfe0e == 0x940c => Effect::Jump(far_target(opcode, second_word)),
-        _ if opcode & 0xf000 == 0xc000 => Effect::Jump(relative_target(opcode, 12, address)), // rjmp
-        _ if opcode & 0xf000 == 0xd000 => Effect::Call(relative_target(opcode, 12, address)), // rcall
-        _ if opcode & 0xf800 == 0xf000 => Effect::Branch(relative_target(opcode >> 3, 7, address)),
+        _ if opcode & 0xfe0e == 0x940e => Effect::Call(decode_far_target(opcode, second_word)),
+        _ if opcode & 0xfe0e == 0x940c => Effect::Jump(decode_far_target(opcode, second_word)),
+        _ if opcode & 0xf000 == 0xc000 => Effect::Jump(decode_relative_target(opcode, 12, address)), // rjmp
+        _ if opcode & 0xf000 == 0xd000 => Effect::Call(decode_relative_target(opcode, 12, address)), // rcall
+        _ if opcode & 0xf800 == 0xf000 => {
+            Effect::Branch(decode_relative_target(opcode >> 3, 7, address))
+        }
         // cpse; sbrc and sbrs; sbic and sbis
         _ if opcode & 0xfc00 == 0x1000 => Effect::Skip,
         _ if opcode & 0xfc08 == 0xfc00 => Effect::Skip,
@@ -113,42 +115,42 @@ fn decode_effect(opcode: u16, second_word: u16, address: u32) -> Effect {
         _ if opcode & 0xfe0f == 0x9200 && SP_DATA_ADDRESSES.contains(&second_word) => {
             Effect::StackFromOther
         }
-        _ if opcode & 0xf800 == 0xb000 => match (io_address(opcode), register) {
+        _ if opcode & 0xf800 == 0xb000 => match (decode_io_address(opcode), register) {
             (SPL, 28) => Effect::PointerFromStack,
             (SPH, 29) => Effect::None,
             (_, 28 | 29) => Effect::LosePointer,
             _ => Effect::None,
         },
-        _ if opcode & 0xf800 == 0xb800 => match (io_address(opcode), register) {
+        _ if opcode & 0xf800 == 0xb800 => match (decode_io_address(opcode), register) {
             (SPL, 28) => Effect::StackFromPointer,
             (SPH, 29) => Effect::None,
             (SPL | SPH, _) => Effect::StackFromOther,
             _ => Effect::None,
         },
-        // adiw and sbiw of r29:r28
-        _ if opcode & 0xff30 == 0x9620 => Effect::AddToPointer(small_constant(opcode)),
-        _ if opcode & 0xff30 == 0x9720 => Effect::AddToPointer(-small_constant(opcode)),
-        // subi, sbci and ldi have r16 to r31 only
-        _ if opcode & 0xf0f0 == 0x50c0 => Effect::SubtractLow(byte_constant(opcode)),
-        _ if opcode & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(byte_constant(opcode)),
+        // adiw and sbiw with r29:r28
+        _ if opcode & 0xff30 == 0x9620 => Effect::AddToPointer(decode_small_constant(opcode)),
+        _ if opcode & 0xff30 == 0x9720 => Effect::AddToPointer(-decode_small_constant(opcode)),
+        // subi, sbci and ldi work only with r16 to r31
+        _ if opcode & 0xf0f0 == 0x50c0 => Effect::SubtractLow(decode_byte_constant(opcode)),
+        _ if opcode & 0xf0f0 == 0x40d0 => Effect::SubtractHigh(decode_byte_constant(opcode)),
         0x09d1 => Effect::SubtractHigh(0), // sbc r29, r1, which is always 0
-        _ if opcode & 0xf0f0 == 0xe0a0 => Effect::LoadFrameSize(byte_constant(opcode)),
-        _ if opcode & 0xf0f0 == 0xe0c0 => Effect::LoadLow(byte_constant(opcode)),
-        _ if opcode & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(byte_constant(opcode)),
+        _ if opcode & 0xf0f0 == 0xe0a0 => Effect::LoadFrameSize(decode_byte_constant(opcode)),
+        _ if opcode & 0xf0f0 == 0xe0c0 => Effect::LoadLow(decode_byte_constant(opcode)),
+        _ if opcode & 0xf0f0 == 0xe0d0 => Effect::LoadHigh(decode_byte_constant(opcode)),
         _ if opcode & 0xfff0 == 0x01e0 => Effect::LosePointer, // movw r28
         _ => Effect::None,
     }
 }
 
-/// The byte address of the target of `jmp` or `call`, which is encoded as a word address of 22 bits.
-fn far_target(opcode: u16, second_word: u16) -> u32 {
+/// Returns the target of `jmp` or `call` as a byte address; it is encoded as a word address of 22 bits.
+fn decode_far_target(opcode: u16, second_word: u16) -> u32 {
     let high = u32::from(opcode >> 3 & 0x3e | opcode & 1);
     (high << 16 | u32::from(second_word)) * 2
 }
 
-/// The byte address of a target relative to the next instruction. `encoded_offset` is a signed number of words in its
-/// lowest `offset_bits` bits.
-fn relative_target(encoded_offset: u16, offset_bits: u32, address: u32) -> u32 {
+/// Returns the byte address of a target relative to the next instruction. The lowest `offset_bits` bits of
+/// `encoded_offset` are a signed number of words.
+fn decode_relative_target(encoded_offset: u16, offset_bits: u32, address: u32) -> u32 {
     let shift = 16 - offset_bits;
     let word_offset = (encoded_offset << shift) as i16 >> shift;
     address
@@ -156,17 +158,17 @@ fn relative_target(encoded_offset: u16, offset_bits: u32, address: u32) -> u32 {
         .wrapping_add_signed(i32::from(word_offset) * 2)
 }
 
-/// The I/O address of `in` and `out`.
-fn io_address(opcode: u16) -> u16 {
+/// Returns the I/O address of `in` and `out`.
+fn decode_io_address(opcode: u16) -> u16 {
     opcode >> 5 & 0x30 | opcode & 0x0f
 }
 
-/// The constant of `adiw` and `sbiw`.
-fn small_constant(opcode: u16) -> i16 {
+/// Returns the constant of `adiw` and `sbiw`.
+fn decode_small_constant(opcode: u16) -> i16 {
     (opcode >> 2 & 0x30 | opcode & 0x0f) as i16
 }
 
-/// The constant of `ldi` and similar instructions.
-fn byte_constant(opcode: u16) -> u8 {
+/// Returns the constant of `ldi` and similar instructions.
+fn decode_byte_constant(opcode: u16) -> u8 {
     (opcode >> 4 & 0xf0 | opcode & 0x0f) as u8
 }

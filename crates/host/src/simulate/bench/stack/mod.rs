@@ -1,17 +1,17 @@
 //! The greatest depth of the stack, computed from the machine code.
 //!
-//! On a chip without memory protection, a stack that grows into the static data can change a pulse width or a decision
-//! of the guard without any report. A measurement shows how deep the stack was, not how deep it can be: perhaps no
-//! interrupt occurred at the worst moment, or a rare error message was not printed. So this module follows every path
-//! through the code and adds up the bytes that the path pushes.
+//! On a chip without memory protection, a stack that grows into the static data can silently change a pulse width or a
+//! decision of the guard. A measurement shows a depth that occurred, not the greatest possible depth: perhaps no
+//! interrupt occurred at the worst moment, or a rare error message was not printed. This module therefore follows every
+//! path through the code and adds up the pushed bytes.
 //!
-//! This module decodes the instructions itself instead of reading avr-objdump's listing: only some thirty instructions
-//! matter to the stack, so the decoder is shorter than a parser of that listing, and the program needs no other tool.
+//! The module decodes the instructions itself instead of reading avr-objdump's listing: only some thirty instructions
+//! matter to the stack, so the decoder is shorter than a parser of the listing, and the program needs no other tool.
 //!
-//! The bound assumes the following. Interrupts do not nest, which is checked; only a handler that never returns,
-//! such as the watchdog's, may be interrupted once more. No function calls itself, nothing jumps to a computed
-//! address, and the stack pointer changes only by `push`, `pop`, calls, returns, and stack frames that r29:r28 points
-//! to. Anything else is an error that names the function.
+//! The bound rests on the following assumptions, and any violation is an error that names the function. Interrupts do
+//! not nest; only a handler that never returns, such as the watchdog's, may be interrupted once more. No function calls
+//! itself, and no code jumps to a computed address. The stack pointer changes only by `push`, `pop`, calls, returns,
+//! and stack frames addressed by r29:r28.
 
 mod instruction;
 mod walk;
@@ -22,38 +22,38 @@ use walk::{Context, Walk};
 
 /// Number of vectors of an ATmega328P, including reset. Each is a `jmp` of four bytes.
 const VECTOR_COUNT: u32 = 26;
-/// Bytes that the entry into an interrupt pushes: its return address.
+/// Bytes that the entry into an interrupt pushes: the return address.
 const INTERRUPT_ENTRY_BYTES: u16 = 2;
 
-/// The reason why a depth cannot be computed.
+/// An error in the computation of a stack depth.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the depth of the stack cannot be computed: {function}, at {address:#06x}, {reason}")]
+#[error("cannot compute the stack depth: {function}, at {address:#06x}, {reason}")]
 pub struct StackError {
-    /// The function that cannot be analysed.
+    /// The function with the error.
     pub function: String,
-    /// Byte address, in flash, of the instruction that cannot be analysed.
+    /// Byte address in flash of the instruction with the error.
     pub address: u32,
-    /// The reason, as a phrase whose subject is the function, such as `calls itself`.
+    /// The reason, a phrase whose subject is the function, such as `calls itself`.
     pub reason: &'static str,
 }
 
 /// The greatest stack depths, bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StackDepth {
-    /// The depth of the program from reset on, without interrupts.
+    /// The depth of the main program from reset, without interrupts.
     pub main: u16,
     /// The depth of the deepest interrupt handler, including its return address; 0 without interrupts.
     pub handler: u16,
     /// The depth of the deepest handler that enables other interrupts and never returns, including its return address;
     /// 0 without one.
     pub nonreturning_handler: u16,
-    /// First address of SRAM that the stack may use.
+    /// Lowest SRAM address available to the stack.
     floor: u16,
 }
 
 impl StackDepth {
-    /// Computes an image's depths. A vector table is recognised by the `jmp` at address 0; vectors that jump to
-    /// avr-libc's `__bad_interrupt` are not in use.
+    /// Computes an image's depths. A `jmp` at address 0 marks a vector table; vectors that jump to avr-libc's
+    /// `__bad_interrupt` are unused.
     ///
     /// # Errors
     /// See [`StackError`].
@@ -64,17 +64,17 @@ impl StackDepth {
         let (mut handler_depth, mut nonreturning_depth) = (0, 0);
         let mut walk = Walk::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTOR_COUNT {
-            let target = instruction::jump_target(&flash, 0)
-                .and_then(|_| instruction::jump_target(&flash, vector * 4));
+            let target = instruction::find_jump_target(&flash, 0)
+                .and_then(|_| instruction::find_jump_target(&flash, vector * 4));
             if let Some(target) = target.filter(|target| Some(*target) != bad_interrupt_address) {
                 let summary = walk.analyse_function(target)?;
-                match summary.interrupts_enabled_at {
+                match summary.interrupt_enable_address {
                     None => {
                         handler_depth = handler_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
                     }
                     Some(address) if summary.can_return => {
-                        let reason = "lets interrupts into an interrupt";
-                        return Err(walk.error_at(target, address, reason));
+                        let reason = "enables interrupts in an interrupt";
+                        return Err(walk.new_error(target, address, reason));
                     }
                     Some(_) => {
                         nonreturning_depth =
@@ -95,13 +95,13 @@ impl StackDepth {
         })
     }
 
-    /// The greatest depth of all: main at its deepest, on top of it the handler that never returns, if there is one,
-    /// and on top of that another interrupt.
+    /// Returns the greatest total depth: main at its deepest, plus the deepest handler that never returns, plus another
+    /// interrupt.
     pub fn max_depth(&self) -> u16 {
         self.main + self.nonreturning_handler + self.handler
     }
 
-    /// Bytes between static data and the deepest stack; negative if they collide.
+    /// Returns the number of bytes between static data and the deepest stack; negative if they collide.
     pub fn margin(&self) -> i32 {
         i32::from(SRAM_END) - i32::from(self.floor) - i32::from(self.max_depth())
     }

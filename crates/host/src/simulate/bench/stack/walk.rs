@@ -13,9 +13,9 @@ const RETURN_ADDRESS_BYTES: i32 = 2;
 /// The context in which the analysed code runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
-    /// The main program, from reset on.
+    /// The main program, from reset.
     Main,
-    /// An interrupt's handler, with interrupts off.
+    /// An interrupt handler, with interrupts off.
     Interrupt,
 }
 
@@ -24,50 +24,46 @@ pub enum Context {
 enum Pointer {
     /// An unknown value.
     Unknown,
-    /// The value of the stack pointer after this many bytes were pushed since the function's entry.
+    /// The stack pointer after this number of bytes were pushed since the function's entry.
     Depth(i32),
     /// A constant address.
     Address(u16),
 }
 
-/// The abstract state before an instruction, which holds for every path to it.
+/// The abstract state before an instruction, valid for every path to the instruction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct State {
     /// Bytes pushed since the function's entry.
     depth: i32,
     /// The contents of r29:r28.
     pointer: Pointer,
-    /// The low byte of the constant in a 16-bit subtraction from r29:r28, until the instruction for the high byte.
+    /// The low byte of a 16-bit subtraction from r29:r28, until the instruction for the high byte.
     low_byte: u8,
-    /// The constant that the previous instruction loaded into r26; `None` if it loaded none.
+    /// The constant that the previous instruction loaded into r26; `None` if it did not load r26.
     frame_size: Option<u8>,
 }
 
-/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the number of bytes that each saves or restores, by
-/// the routine's address.
+/// Shared prologues and epilogues (`tools/linker/src/frames.S`): the number of bytes that each routine saves or
+/// restores, by the routine's address.
 struct SharedRoutines {
     saved_bytes: HashMap<u32, i32>,
     restored_bytes: HashMap<u32, i32>,
 }
 
 impl SharedRoutines {
-    /// Finds the shared routines of an image. Routine K saves rK to r17, r28 and r29, which are 20 - K bytes, and
-    /// reserves a frame of the size given in r26.
+    /// Finds an image's shared routines. Routine K saves rK to r17, r28 and r29, a total of 20 - K bytes, and reserves
+    /// a frame with the size in r26.
     fn find(image: &Image) -> Self {
-        let routines_with = |prefix: &str| {
-            let address_and_size = |symbol: &simulated_uno::Symbol| {
+        let find_routines = |prefix: &str| {
+            let parse_symbol = |symbol: &simulated_uno::Symbol| {
                 let first_register: i32 = symbol.name.strip_prefix(prefix)?.parse().ok()?;
                 Some((symbol.address as u32, 20 - first_register))
             };
-            image
-                .symbols()
-                .iter()
-                .filter_map(address_and_size)
-                .collect()
+            image.symbols().iter().filter_map(parse_symbol).collect()
         };
         Self {
-            saved_bytes: routines_with("__frame_save_"),
-            restored_bytes: routines_with("__frame_restore_"),
+            saved_bytes: find_routines("__frame_save_"),
+            restored_bytes: find_routines("__frame_restore_"),
         }
     }
 }
@@ -78,23 +74,23 @@ pub struct Walk<'a> {
     flash: &'a [u8],
     context: Context,
     shared: SharedRoutines,
-    /// The summary of each function by its address; `None` while the function is being analysed.
+    /// Each function's summary, by function address; `None` while the function is being analysed.
     summaries: HashMap<u32, Option<FunctionSummary>>,
 }
 
-/// The effect of a function on the stack.
+/// A function's effect on the stack.
 #[derive(Debug, Clone, Copy)]
 pub struct FunctionSummary {
-    /// The most bytes of stack that the function and its callees use, without the function's own return address.
+    /// Greatest stack use of the function and its callees, bytes, without the function's own return address.
     pub depth: u16,
-    /// True if the function returns. Code after a call of a function that does not return is not part of the caller.
+    /// True if the function returns. Code after a call of a function that never returns is not part of the caller.
     pub can_return: bool,
-    /// The byte address at which an interrupt handler enables other interrupts; `None` if it never does.
-    pub interrupts_enabled_at: Option<u32>,
+    /// Byte address where an interrupt handler enables other interrupts; `None` if it never does.
+    pub interrupt_enable_address: Option<u32>,
 }
 
 impl<'a> Walk<'a> {
-    /// An analysis of the code in `flash`, which belongs to `image`. No function is analysed yet.
+    /// Creates an analysis of `flash`, the contents of `image`, without any analysed function.
     pub fn new(image: &'a Image, flash: &'a [u8], context: Context) -> Self {
         Self {
             image,
@@ -109,7 +105,7 @@ impl<'a> Walk<'a> {
     pub fn analyse_function(&mut self, entry: u32) -> Result<FunctionSummary, StackError> {
         match self.summaries.get(&entry) {
             Some(Some(summary)) => return Ok(*summary),
-            Some(None) => return Err(self.error_at(entry, entry, "calls itself")),
+            Some(None) => return Err(self.new_error(entry, entry, "calls itself")),
             None => {}
         }
         self.summaries.insert(entry, None);
@@ -122,7 +118,7 @@ impl<'a> Walk<'a> {
     fn follow_paths(&mut self, entry: u32) -> Result<FunctionSummary, StackError> {
         let mut max_depth = 0;
         let mut can_return = false;
-        let mut interrupts_enabled_at = None;
+        let mut interrupt_enable_address = None;
         let mut states: HashMap<u32, State> = HashMap::new();
         let start_state = State {
             depth: 0,
@@ -134,8 +130,8 @@ impl<'a> Walk<'a> {
         while let Some((address, mut state)) = pending.pop() {
             if let Some(known_state) = states.get(&address) {
                 if known_state.depth != state.depth {
-                    let reason = "is reached with more or less on the stack than before";
-                    return Err(self.error_at(entry, address, reason));
+                    let reason = "is reached with different stack depths";
+                    return Err(self.new_error(entry, address, reason));
                 }
                 if known_state.pointer == state.pointer || known_state.pointer == Pointer::Unknown {
                     continue;
@@ -144,32 +140,32 @@ impl<'a> Walk<'a> {
             }
             states.insert(address, state);
             let Some(instruction) = decode(self.flash, address) else {
-                return Err(self.error_at(entry, address, "runs out of the code"));
+                return Err(self.new_error(entry, address, "runs beyond the end of the code"));
             };
             let next_address = address + instruction.size;
             let frame_bytes = state.frame_size.take().map(i32::from);
             let mut next_addresses = vec![next_address];
             match instruction.effect {
-                // A call of the next instruction reserves two bytes; it is shorter than two pushes.
+                // A call of the next instruction reserves two bytes, because it is shorter than two pushes.
                 Effect::Call(target) if target == next_address => {
                     state.depth += RETURN_ADDRESS_BYTES
                 }
                 Effect::Call(target) if self.shared.saved_bytes.contains_key(&target) => {
                     let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.error_at(entry, address, UNKNOWN_FRAME_SIZE));
+                        return Err(self.new_error(entry, address, UNKNOWN_FRAME_SIZE));
                     };
                     state.depth += self.shared.saved_bytes[&target] + frame_bytes;
                     state.pointer = Pointer::Depth(state.depth);
-                    // The return address of the shared prologue lies below the frame that the prologue reserves.
+                    // The shared prologue's return address lies below the frame that the prologue reserves.
                     max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES);
                 }
                 Effect::Jump(target) if self.shared.restored_bytes.contains_key(&target) => {
                     let Some(frame_bytes) = frame_bytes else {
-                        return Err(self.error_at(entry, address, UNKNOWN_FRAME_SIZE));
+                        return Err(self.new_error(entry, address, UNKNOWN_FRAME_SIZE));
                     };
                     if state.depth != self.shared.restored_bytes[&target] + frame_bytes {
-                        let reason = "restores other registers than it saved";
-                        return Err(self.error_at(entry, address, reason));
+                        let reason = "restores different registers than it saved";
+                        return Err(self.new_error(entry, address, reason));
                     }
                     can_return = true;
                     next_addresses.clear();
@@ -178,12 +174,13 @@ impl<'a> Walk<'a> {
                     let callee = self.analyse_function(target)?;
                     let callee_depth = i32::from(callee.depth);
                     max_depth = max_depth.max(state.depth + RETURN_ADDRESS_BYTES + callee_depth);
-                    interrupts_enabled_at = interrupts_enabled_at.or(callee.interrupts_enabled_at);
+                    interrupt_enable_address =
+                        interrupt_enable_address.or(callee.interrupt_enable_address);
                     if !callee.can_return {
                         next_addresses.clear();
                     }
                 }
-                // The program restarts, and so does its stack.
+                // The program restarts with an empty stack.
                 Effect::Jump(0) => next_addresses.clear(),
                 Effect::Jump(target) => next_addresses = vec![target],
                 Effect::Branch(target) => next_addresses.push(target),
@@ -197,25 +194,21 @@ impl<'a> Walk<'a> {
                     next_addresses.clear();
                 }
                 Effect::Return => {
-                    return Err(self.error_at(
-                        entry,
-                        address,
-                        "returns with something on the stack",
-                    ));
+                    return Err(self.new_error(entry, address, "returns with bytes on the stack"));
                 }
                 Effect::Indirect => {
-                    let reason = "goes to an address that it computes";
-                    return Err(self.error_at(entry, address, reason));
+                    let reason = "jumps to a computed address";
+                    return Err(self.new_error(entry, address, reason));
                 }
                 Effect::EnableInterrupts if self.context == Context::Interrupt => {
-                    interrupts_enabled_at = Some(address);
+                    interrupt_enable_address = Some(address);
                 }
                 Effect::StackFromOther => {
-                    return Err(self.error_at(entry, address, UNKNOWN_STACK_POINTER));
+                    return Err(self.new_error(entry, address, UNKNOWN_STACK_POINTER));
                 }
                 effect => {
                     if !state.apply(effect) {
-                        return Err(self.error_at(entry, address, UNKNOWN_STACK_POINTER));
+                        return Err(self.new_error(entry, address, UNKNOWN_STACK_POINTER));
                     }
                 }
             }
@@ -223,16 +216,16 @@ impl<'a> Walk<'a> {
             pending.extend(next_addresses.into_iter().map(|address| (address, state)));
         }
         let depth = u16::try_from(max_depth)
-            .map_err(|_| self.error_at(entry, entry, "needs more stack than there is"))?;
+            .map_err(|_| self.new_error(entry, entry, "needs more stack than is available"))?;
         Ok(FunctionSummary {
             depth,
             can_return,
-            interrupts_enabled_at,
+            interrupt_enable_address,
         })
     }
 
-    /// An error in the function at `entry`, caused by the instruction at `address`.
-    pub fn error_at(&self, entry: u32, address: u32, reason: &'static str) -> StackError {
+    /// Creates an error in the function at `entry`, caused by the instruction at `address`.
+    pub fn new_error(&self, entry: u32, address: u32, reason: &'static str) -> StackError {
         let is_before = |symbol: &&simulated_uno::Symbol| {
             symbol.is_function && u64::from(entry) >= symbol.address
         };

@@ -1,4 +1,4 @@
-//! Tests of the figures that are computed from frames, on synthetic frames.
+//! Tests of the results computed from synthetic frames.
 
 use super::*;
 
@@ -6,30 +6,30 @@ fn paper_robot() -> Robot {
     crate::shared::robot_file::built_in_robot("paper")
 }
 
-/// Frames with the pulses for `angles(seconds)`; the first one is at 1 s.
-fn frames_of(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
-    let width_of = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
-    let widths_at = |n: u64| {
+/// Creates frames with the pulses for `angles(seconds)`; the first frame is at 1 s.
+fn create_frames(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
+    let to_width = |i: usize, angle: f64| (robot.servos()[i].pulse(angle) * 16.0).round() as u16;
+    let compute_widths = |n: u64| {
         let angles = angles(n as f64 / 50.0);
-        std::array::from_fn(|i| width_of(i, angles[i]))
+        std::array::from_fn(|i| to_width(i, angles[i]))
     };
     FrameLog {
         first_start: FREQUENCY,
-        widths: (0..count).map(widths_at).collect(),
+        widths: (0..count).map(compute_widths).collect(),
         ..FrameLog::default()
     }
 }
 
-fn gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
+fn create_gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
     let gait = robot.gait(name).expect("the gait is in robot.toml");
-    frames_of(robot, count, |seconds| gait.angles(gait.phase_at(seconds)))
+    create_frames(robot, count, |seconds| gait.angles(gait.phase_at(seconds)))
 }
 
 #[test]
-fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
+fn angle_survives_the_conversion_to_a_pulse_and_back() {
     let robot = paper_robot();
     let pose = [120.0, 45.0, 300.0, 230.0];
-    let log = frames_of(&robot, 2, |_| pose);
+    let log = create_frames(&robot, 2, |_| pose);
     let (robot, log) = (&robot, &log);
     let first_frame = Run { robot, log }
         .servo_frames()
@@ -49,35 +49,33 @@ fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
 }
 
 #[test]
-fn walk_moves_forward_back_moves_backward_and_left_turns_in_place() {
+fn paths_of_walk_back_and_left_match_their_predictions() {
     let robot = paper_robot();
     for (gait, forward, turn) in [
         ("walk", 34.16, 0.0),
         ("left", 0.0, 15.34),
         ("back", -34.16, 0.0),
     ] {
-        let frames = gait_frames(&robot, gait, 51);
+        let frames = create_gait_frames(&robot, gait, 51);
         let span = Span {
             command: gait.to_owned(),
-            from: 0.0,
-            to: 10.0,
+            start_s: 0.0,
+            end_s: 10.0,
         };
         let run = Run {
             robot: &robot,
             log: &frames,
         };
-        let paths = command_paths(run, &[span]);
-        let total_path = paths
-            .last()
-            .expect("the last path is that of the complete run");
-        let error_of =
+        let paths = compute_command_paths(run, &[span]);
+        let total_path = paths.last().expect("the complete run has a path");
+        let compute_error =
             |actual: Option<f64>, expected: f64| actual.map(|actual| (actual - expected).abs());
         assert!(
-            error_of(total_path.forward, forward) < Some(0.35),
+            compute_error(total_path.forward, forward) < Some(0.35),
             "{gait}: {total_path:?}"
         );
         assert!(
-            error_of(total_path.turn, turn) < Some(0.2),
+            compute_error(total_path.turn, turn) < Some(0.2),
             "{gait}: {total_path:?}"
         );
         assert!(total_path.forward.is_some() && total_path.turn.is_some());
@@ -85,38 +83,38 @@ fn walk_moves_forward_back_moves_backward_and_left_turns_in_place() {
 }
 
 #[test]
-fn a_path_that_depends_on_a_tie_is_not_reported() {
+fn path_that_depends_on_a_tie_is_undetermined() {
     let robot = paper_robot();
-    let log = gait_frames(&robot, "look", 100);
+    let log = create_gait_frames(&robot, "look", 100);
     let run = Run {
         robot: &robot,
         log: &log,
     };
-    let span = |command: &str, from, to| Span {
+    let span = |command: &str, start_s, end_s| Span {
         command: command.to_owned(),
-        from,
-        to,
+        start_s,
+        end_s,
     };
-    let paths = command_paths(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
+    let paths = compute_command_paths(run, &[span("stand", 0.0, 1.0), span("look", 1.0, 3.0)]);
     let forward: Vec<bool> = paths.iter().map(|path| path.forward.is_some()).collect();
     assert_eq!(forward, [true, false, false], "{paths:?}");
 }
 
 #[test]
-fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
+fn paths_of_two_commands_compose_to_the_path_of_the_run() {
     let robot = paper_robot();
     for gait in ["arc-left", "right"] {
-        let log = gait_frames(&robot, gait, 400);
+        let log = create_gait_frames(&robot, gait, 400);
         let run = Run {
             robot: &robot,
             log: &log,
         };
-        let span = |from, to| Span {
+        let span = |start_s, end_s| Span {
             command: gait.to_owned(),
-            from,
-            to,
+            start_s,
+            end_s,
         };
-        let paths = command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
+        let paths = compute_command_paths(run, &[span(0.0, 3.0), span(3.0, 20.0)]);
         let total_travel = robot.ground().travel(
             run.servo_frames()
                 .filter_map(|servo_frame| servo_frame.sweeps),
@@ -124,7 +122,7 @@ fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
         let [first, second, total_path] = &paths[..] else {
             panic!("expected the paths of two commands and of the run: {paths:?}")
         };
-        let travel_of = |path: &CommandPath| Travel {
+        let to_travel = |path: &CommandPath| Travel {
             forward: path.forward.expect("the path is determined"),
             left: path.left.expect("the path is determined"),
             turn: path.turn.expect("the path is determined"),
@@ -133,18 +131,18 @@ fn the_paths_of_two_commands_compose_to_the_path_of_the_run() {
             (a.forward - b.forward).hypot(a.left - b.left) + (a.turn - b.turn).abs()
         };
         assert!(
-            distance_between(travel_of(total_path), total_travel) < 1e-6,
+            distance_between(to_travel(total_path), total_travel) < 1e-6,
             "{total_path:?} {total_travel:?}"
         );
-        let combined = compose_travel(travel_of(first), travel_of(second));
-        assert!(distance_between(travel_of(total_path), combined) < 1e-6);
+        let combined = compose_travel(to_travel(first), to_travel(second));
+        assert!(distance_between(to_travel(total_path), combined) < 1e-6);
     }
 }
 
 #[test]
-fn the_servo_reports_have_pulse_widths_slew_rates_and_errors() {
+fn servo_reports_have_pulse_widths_slew_rates_and_errors() {
     let robot = paper_robot();
-    let mut frames = frames_of(&robot, 3, |seconds| {
+    let mut frames = create_frames(&robot, 3, |seconds| {
         let mut angles: [f64; 4] = robot.neutral_pose().into();
         angles[0] += 100.0 * seconds;
         angles
@@ -155,7 +153,7 @@ fn the_servo_reports_have_pulse_widths_slew_rates_and_errors() {
         .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
         .collect();
     let (robot, log) = (&robot, &frames);
-    let rows = servo_reports(Run { robot, log }, Some(&commands));
+    let rows = compute_servo_reports(Run { robot, log }, Some(&commands));
     assert_eq!(
         (rows[0].pulses, rows[0].min_us, rows[0].max_us),
         (3, 1500.0, 1540.0)
@@ -172,13 +170,13 @@ fn the_servo_reports_have_pulse_widths_slew_rates_and_errors() {
 }
 
 #[test]
-fn a_pose_near_a_singularity_is_reported_as_a_violation() {
+fn pose_near_a_singularity_is_a_violation() {
     let robot = paper_robot();
-    let safety_of = |log: &FrameLog| check_safety(Run { robot: &robot, log });
-    let walk_safety = safety_of(&gait_frames(&robot, "walk", 50));
+    let check_log = |log: &FrameLog| check_safety(Run { robot: &robot, log });
+    let walk_safety = check_log(&create_gait_frames(&robot, "walk", 50));
     assert_eq!(walk_safety.violations, 0);
     assert!(walk_safety.least.is_some_and(|min| min.value > 0.3));
-    let singular_safety = safety_of(&frames_of(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
+    let singular_safety = check_log(&create_frames(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
     assert_eq!(singular_safety.violations, 2);
     assert!(singular_safety.first_violation.is_some());
 }

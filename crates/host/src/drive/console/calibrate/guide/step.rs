@@ -1,27 +1,27 @@
-//! The steps of a calibration, in their order.
+//! The steps of a calibration, in order.
 
-/// A step of a calibration. A step with a number is about one servo; the number is its index, 0 to 3.
+/// A step of a calibration. A step with a number is for the servo with this index, 0 to 3.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Step {
-    /// Says what the user needs.
+    /// Lists the preparations for the user.
     Begin,
-    /// Holds all servos in their middle, so that the horns can be fitted.
+    /// Holds all servos in their middle position, so that the horns can be fitted.
     Horns,
-    /// Asks for the direction in which the servo has turned.
+    /// Asks for the servo's direction of rotation.
     Sign(usize),
     /// Turns the crank to its neutral angle.
     Trim(usize),
-    /// Asks whether to set scales and limits as well.
+    /// Offers to set scales and limits, too.
     OfferScales,
     /// Adjusts the pulse width per degree.
     Scale(usize),
-    /// Adjusts the two limits of the travel.
+    /// Adjusts both limits of the travel.
     Limit(usize),
     /// Walks as a test.
     Walk,
-    /// Shows the calibration that Enter will save.
+    /// Shows the calibration before it is saved.
     Save,
-    /// Says that the calibration is saved.
+    /// Confirms that the calibration is saved.
     Saved,
 }
 

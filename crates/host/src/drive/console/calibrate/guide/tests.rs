@@ -1,9 +1,9 @@
 use super::*;
-use crate::drive::console::double::{PAPER_TOML, calibration_of, connect_paper_robot};
+use crate::drive::console::double::{PAPER_TOML, connect_paper_robot, read_calibration};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::STILL_FRAMES;
 
-/// Presses the keys in order; returns true if the guide is finished after the last one.
+/// Presses the keys in order; returns true if the guide is finished after the last key.
 fn press_keys<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
     let mut is_done = false;
     for key in keys {
@@ -15,9 +15,9 @@ fn press_keys<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
 const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 
 #[test]
-fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
+fn complete_calibration_saves_signs_and_trims() {
     let mut link = connect_paper_robot();
-    let [min, max] = calibration_of(&mut link).servos[0].limit;
+    let [min, max] = read_calibration(&mut link).servos[0].limit;
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next]);
     press_keys(&mut guide, &CONFIRM_SIGN_KEYS);
@@ -51,7 +51,7 @@ fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
     assert!(guide.view().title.contains("scales and limits"));
     press_keys(&mut guide, &[Key::Next, Key::Back, Key::Next, Key::Act]);
     guide.read_messages().expect("the robot answers");
-    assert!(guide.view().instructions[1].starts_with("It walks"));
+    assert!(guide.view().instructions[1].starts_with("The robot walks"));
     press_keys(&mut guide, &[Key::Next]);
     assert!(
         guide.view().instructions.contains(&format!(
@@ -60,7 +60,7 @@ fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
         "{:?}",
         guide.view()
     );
-    // The space bar does nothing here: only Enter is offered.
+    // The space bar has no effect in this step.
     press_keys(&mut guide, &[Key::Act]);
     assert!(!guide.is_saved());
     assert!(!press_keys(&mut guide, &[Key::Next]));
@@ -70,11 +70,11 @@ fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
         press_keys(&mut guide, &[Key::Leave]),
         "the guide is finished"
     );
-    let after_leaving = calibration_of(&mut link);
+    let after_leaving = read_calibration(&mut link);
     assert_eq!(after_leaving.servos[0].trim, 0.9);
     link.command("factory").expect("the line is accepted");
     link.command("load").expect("the calibration was saved");
-    let loaded = calibration_of(&mut link);
+    let loaded = read_calibration(&mut link);
     assert_eq!(loaded.servos[0].trim, 0.9);
     assert_eq!(loaded.servos[1].trim, -0.5);
     assert_eq!(loaded.servos[1].dir, '-');
@@ -82,7 +82,7 @@ fn a_complete_calibration_reverses_a_sign_trims_two_servos_walks_and_saves() {
 }
 
 #[test]
-fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
+fn cancelling_restores_the_calibration_and_saves_nothing() {
     let keys: Vec<Key> = [Key::Next, Key::Next]
         .into_iter()
         .chain([Key::Act, Key::No, Key::Act, Key::Yes])
@@ -101,11 +101,11 @@ fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 1 2.50").expect("the line is accepted");
         link.command("boot walk").expect("the line is accepted");
-        let before = calibration_of(&mut link);
+        let before = read_calibration(&mut link);
         let mut guide = Guide::new(&mut link).expect("the robot answers");
         press_keys(&mut guide, &keys[..length]);
         assert!(press_keys(&mut guide, &[Key::Leave]), "after {length} keys");
-        let after = calibration_of(&mut link);
+        let after = read_calibration(&mut link);
         assert_eq!(after, before, "after {length} keys");
         let status = link.ask("status").expect("the robot answers").answer;
         assert!(status.starts_with("ok gait=stand"), "{status}");
@@ -115,13 +115,13 @@ fn cancelling_early_or_late_restores_the_calibration_and_saves_nothing() {
 }
 
 #[test]
-fn reversing_a_sign_negates_the_trim_so_the_neutral_pulse_stays() {
+fn reversing_a_sign_keeps_the_neutral_pulse() {
     let mut link = connect_paper_robot();
     link.command("trim 1 3").expect("the line is accepted");
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Act, Key::No]);
     assert_eq!(guide.robot.calibration().servos[0].trim, -3.0);
-    let settings = calibration_of(&mut link);
+    let settings = read_calibration(&mut link);
     assert_eq!(
         (settings.servos[0].trim, settings.servos[0].dir),
         (-3.0, '-')
@@ -129,7 +129,7 @@ fn reversing_a_sign_negates_the_trim_so_the_neutral_pulse_stays() {
 }
 
 #[test]
-fn the_space_bar_moves_one_servo_alone_and_an_answer_before_that_is_rejected() {
+fn sign_step_needs_a_movement_of_one_servo_before_the_answer() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
@@ -145,8 +145,8 @@ fn the_space_bar_moves_one_servo_alone_and_an_answer_before_that_is_rejected() {
 }
 
 #[test]
-fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
-    // The slowest valid robot, and the smallest turn per key press.
+fn motion_shows_before_the_robot_counts_as_standing() {
+    // Includes the slowest valid robot and the smallest turn per key press.
     let slow_robot = PAPER_TOML.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
     assert_ne!(slow_robot, PAPER_TOML);
     for (text, degrees) in [
@@ -175,7 +175,7 @@ fn a_motion_is_noticed_before_the_robot_counts_as_standing() {
 }
 
 #[test]
-fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
+fn refused_trim_is_shown_and_changes_nothing() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Back, Key::Next, Key::Next]);
@@ -197,8 +197,8 @@ fn steps_can_be_repeated_and_a_refused_trim_is_shown_and_changes_nothing() {
     assert!(guide.view().title.contains("which way does A4"));
 }
 
-/// The keys from the first step to the scale of A1.
-fn keys_to_scales() -> Vec<Key> {
+/// Returns the keys from the first step to the scale of A1.
+fn list_keys_to_scales() -> Vec<Key> {
     let mut keys = vec![Key::Next, Key::Next];
     keys.extend(CONFIRM_SIGN_KEYS.repeat(4));
     keys.extend([Key::Next; 4]);
@@ -207,11 +207,11 @@ fn keys_to_scales() -> Vec<Key> {
 }
 
 #[test]
-fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() {
+fn scale_correction_keeps_the_neutral_pulse() {
     let mut link = connect_paper_robot();
     link.command("trim 1 2.00").expect("the line is accepted");
     let mut guide = Guide::new(&mut link).expect("the robot answers");
-    press_keys(&mut guide, &keys_to_scales());
+    press_keys(&mut guide, &list_keys_to_scales());
     assert!(
         guide
             .view()
@@ -223,10 +223,10 @@ fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() 
     press_keys(&mut guide, &[Key::Act]);
     let moved_degrees = guide.moved_degrees.expect("the servo has moved");
     assert!(moved_degrees.abs() >= 20.0, "{moved_degrees}");
-    // Four corrections of half a degree each, of a turn by `moved_degrees`.
+    // Makes four corrections of half a degree each.
     press_keys(&mut guide, &[Key::LeftRight(0.5); 4]);
     let expected_scale = 10.0 * (1.0 + 0.5 / moved_degrees).powi(4);
-    let settings = calibration_of(&mut link).servos[0];
+    let settings = read_calibration(&mut link).servos[0];
     assert!(
         (settings.scale - expected_scale).abs() < 0.03,
         "{settings:?}"
@@ -239,15 +239,15 @@ fn turning_a_crank_after_its_move_changes_its_scale_but_not_its_neutral_pulse() 
 }
 
 #[test]
-fn each_limit_can_be_moved_but_not_into_the_travel_that_the_gaits_need() {
+fn limits_move_at_most_to_the_travel_that_the_gaits_need() {
     let mut link = connect_paper_robot();
-    let before = calibration_of(&mut link).servos[0];
+    let before = read_calibration(&mut link).servos[0];
     let mut guide = Guide::new(&mut link).expect("the robot answers");
-    press_keys(&mut guide, &keys_to_scales());
+    press_keys(&mut guide, &list_keys_to_scales());
     press_keys(&mut guide, &[Key::Next; 4]);
     let title = guide.view().title;
     assert!(title.contains("how far may A1, front left turn"), "{title}");
-    // With Shift, an arrow turns a servo by 0.1 degrees; it moves the same limit as without.
+    // With Shift, an arrow stands for 0.1 degrees, but moves the same limit by 1 degree.
     press_keys(
         &mut guide,
         &[
@@ -265,7 +265,7 @@ fn each_limit_can_be_moved_but_not_into_the_travel_that_the_gaits_need() {
     press_keys(&mut guide, &[Key::UpDown(-0.1); 90]);
     let view = guide.view();
     assert!(view.message.contains("refuses `limit 1"), "{view:?}");
-    let settings = calibration_of(&mut link).servos[0];
+    let settings = read_calibration(&mut link).servos[0];
     let shown_limits = format!(
         "    limits {:.2} to {:.2} deg",
         settings.limit[0], settings.limit[1]

@@ -10,9 +10,9 @@ use super::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct View {
-    /// The title of the step.
+    /// The step's title.
     pub title: String,
-    /// The lines of instructions for the user.
+    /// The user's instructions, line by line.
     pub instructions: Vec<String>,
     /// The keys that have an effect in this step.
     pub keys: String,
@@ -21,35 +21,35 @@ pub struct View {
 }
 
 impl<P: Read + Write> Guide<'_, P> {
-    /// The screen for the current step.
+    /// Returns the screen for the current step.
     pub fn view(&self) -> View {
         let servo_name = |index: usize| format!("A{}, {}", index + 1, SERVO_PLACES[index]);
         let next_keys = "Enter: next    b: back    q: cancel, nothing is saved";
         let (title, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
                 "before you begin".to_owned(),
-                "The servos need a supply of their own, 5 V and 3 A.\n\
+                "The servos need their own supply, 5 V and 3 A.\n\
                  Lift the robot off the table: its legs will move.\n\
-                 Nothing is kept before the last step. Leave at any time with q."
+                 Nothing is saved before the last step. Leave at any time with q."
                     .to_owned(),
                 "Enter: next    q: cancel, nothing is saved",
             ),
             Step::Horns => {
-                let angle_line = |index| {
+                let format_angle = |index| {
                     format!(
                         "    {:<16} {:6.2} deg\n",
                         servo_name(index),
                         self.neutral_angles[index]
                     )
                 };
-                let angles: String = (0..4).map(angle_line).collect();
+                let angles: String = (0..4).map(format_angle).collect();
                 let text = format!(
-                    "Every servo stands in its middle now, and holds.\n\
+                    "Every servo now holds its middle position.\n\
                      Take the horns off. Press each crank on as near to its angle as the\n\
-                     teeth allow, and fasten its screw. Angles from the robot's right,\n\
-                     counter-clockwise, seen from above:\n\n\
+                     teeth allow, and fasten its screw. Angles are measured from the robot's\n\
+                     right, counter-clockwise, seen from above:\n\n\
                      {angles}\n\
-                     If the horns are on already, go on."
+                     If the horns are already fitted, continue."
                 );
                 ("fit the horns".to_owned(), text, next_keys)
             }
@@ -75,7 +75,7 @@ impl<P: Read + Write> Guide<'_, P> {
             Step::Trim(index) => {
                 let text = format!(
                     "Turn the crank of A{} with the arrow keys until it points to {:.2} deg,\n\
-                     or until it mirrors the one on the other side. Left and up turn it\n\
+                     or until it mirrors the crank on the other side. Left and up turn it\n\
                      counter-clockwise, seen from above; right and down clockwise.\n\n    \
                      trim {:+.2} deg",
                     index + 1,
@@ -90,9 +90,9 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::OfferScales => (
                 "scales and limits".to_owned(),
-                "Most servos turn one degree for 10 us, and parts as designed touch\n\
-                 nowhere: then go on. If a crank turns too far or not far enough, or if a\n\
-                 part would touch another, set scales and limits now."
+                "Most servos turn one degree per 10 us, and parts as designed do not\n\
+                 touch: then continue. If a crank turns too far or not far enough, or if\n\
+                 two parts would touch, set scales and limits now."
                     .to_owned(),
                 "y: set them    Enter: leave them as they are    b: back    q: leave",
             ),
@@ -117,9 +117,9 @@ impl<P: Read + Write> Guide<'_, P> {
             Step::Limit(index) => {
                 let [min, max] = self.robot.calibration().servos[index].limit;
                 let text = format!(
-                    "The crank of A{} never turns beyond its limits. Where a part would\n\
-                     touch another, end its travel before that angle. Left and right move the\n\
-                     first limit counter-clockwise and back, up and down the second one.\n\n    \
+                    "The crank of A{} never turns beyond its limits. Where two parts would\n\
+                     touch, end its travel before that angle. Left and right move the first\n\
+                     limit, up and down the second; left and up move counter-clockwise.\n\n    \
                      limits {min:.2} to {max:.2} deg",
                     index + 1
                 );
@@ -130,18 +130,18 @@ impl<P: Read + Write> Guide<'_, P> {
                 )
             }
             Step::Walk => {
-                let hint = match self.is_walking {
-                    true => "It walks. The space bar ends it.",
-                    false => "The space bar starts it, and ends it.",
+                let walk_text = match self.is_walking {
+                    true => "The robot walks. The space bar stops it.",
+                    false => "The space bar starts and stops the walk.",
                 };
                 (
                     "a test walk".to_owned(),
-                    format!("Put the robot on the floor, with room in front of it.\n{hint}"),
+                    format!("Put the robot on the floor, with room in front of it.\n{walk_text}"),
                     "space: start, stop    Enter: next    b: back    q: cancel, nothing is saved",
                 )
             }
             Step::Save => {
-                let mut text = "This will be kept in the board:\n\n".to_owned();
+                let mut text = "The board will save these settings:\n\n".to_owned();
                 for (index, settings) in self.robot.calibration().servos.iter().enumerate() {
                     let [min, max] = settings.limit;
                     text += &format!(
@@ -161,7 +161,7 @@ impl<P: Read + Write> Guide<'_, P> {
             }
             Step::Saved => (
                 "done".to_owned(),
-                "The board has saved it and starts with it from now on.\n\
+                "The board has saved the calibration and uses it from now on.\n\
                  `lizard calibrate backup FILE` keeps a copy on this machine."
                     .to_owned(),
                 "Enter: end    b: back to change something",

@@ -1,0 +1,131 @@
+//! Measured keys of robot.toml, compared with the values in the file, as a table and as lines for robot.toml.
+
+use std::fmt::Write as _;
+
+use lizard_measure::{MAX_AGREEING_DIFFERENCE, format_verdict};
+use lizard_robot::edit::{KeyError, with_comment, with_number};
+use lizard_video::Estimate;
+use serde::Serialize;
+
+/// A measured key of robot.toml.
+#[derive(Serialize)]
+pub(super) struct MeasuredKey {
+    /// The key's table in robot.toml, such as `servo.A1`.
+    table: String,
+    /// The key's name in its table.
+    #[serde(rename = "key")]
+    name: &'static str,
+    #[serde(rename = "measured")]
+    value: f64,
+    /// The standard error of `value`.
+    #[serde(rename = "error")]
+    standard_error: f64,
+    /// The value in robot.toml, converted to the supply voltage of the measurement.
+    #[serde(rename = "robot")]
+    robot_value: f64,
+    /// The measured value minus the value in robot.toml, in standard errors.
+    #[serde(rename = "differs")]
+    difference: f64,
+    /// True if the measurement's error explains the difference.
+    agrees: bool,
+    /// Number of decimals with which the values are printed.
+    #[serde(skip)]
+    decimals: usize,
+    /// The ratio of the value in robot.toml to `robot_value`.
+    #[serde(skip)]
+    scale: f64,
+}
+
+impl MeasuredKey {
+    pub(super) fn new(
+        table: &str,
+        name: &'static str,
+        decimals: usize,
+        estimate: Estimate,
+        robot_value: f64,
+    ) -> Self {
+        let Estimate {
+            value,
+            standard_error,
+        } = estimate;
+        let difference = (value - robot_value) / standard_error.max(1e-9);
+        Self {
+            table: table.to_owned(),
+            name,
+            value,
+            standard_error,
+            robot_value,
+            difference,
+            agrees: difference.abs() <= MAX_AGREEING_DIFFERENCE,
+            decimals,
+            scale: 1.0,
+        }
+    }
+
+    /// Sets the ratio between the key's values in robot.toml and at the supply voltage of the measurement.
+    pub(super) fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    pub(super) fn name(&self) -> &str {
+        self.name
+    }
+}
+
+/// Formats the measured keys as a table.
+pub(super) fn format_table(keys: &[MeasuredKey]) -> String {
+    let mut text = format!("{:<28}measured   error  robot.toml\n", "");
+    for key in keys {
+        let verdict = format_verdict(key.difference);
+        let decimals = key.decimals;
+        let _ = writeln!(
+            text,
+            "{:<28}{:>8.decimals$}{:>8.decimals$}{:>12.decimals$}   {verdict}",
+            key.name, key.value, key.standard_error, key.robot_value
+        );
+    }
+    text
+}
+
+/// Formats the measured keys as lines for robot.toml.
+pub(super) fn format_toml_lines(keys: &[MeasuredKey]) -> String {
+    let mut text = String::new();
+    let mut table = "";
+    for key in keys {
+        if key.table != table {
+            table = &key.table;
+            let _ = writeln!(text, "[{table}]");
+        }
+        let decimals = key.decimals;
+        let _ = writeln!(
+            text,
+            "{} = {:.decimals$} # measured, +- {:.decimals$}; was {:.decimals$}",
+            key.name, key.value, key.standard_error, key.robot_value
+        );
+    }
+    text
+}
+
+/// Returns robot.toml with the measured values of the keys that do not agree, each with a comment. All other bytes stay
+/// unchanged.
+///
+/// # Errors
+/// Fails if robot.toml has no place for a key.
+pub(super) fn with_measured_keys(
+    robot_toml: &str,
+    keys: &[MeasuredKey],
+) -> Result<String, KeyError> {
+    let mut robot_toml = robot_toml.to_owned();
+    for key in keys.iter().filter(|key| !key.agrees) {
+        let name = format!("{}.{}", key.table, key.name);
+        let decimals = key.decimals;
+        let [value, error, old_value] =
+            [key.value, key.standard_error, key.robot_value].map(|value| value * key.scale);
+        let rounded: f64 = format!("{value:.decimals$}").parse().unwrap_or(value);
+        robot_toml = with_number(&robot_toml, &name, rounded)?;
+        let comment =
+            format!("{value:.decimals$} +- {error:.decimals$}, was {old_value:.decimals$}");
+        robot_toml = with_comment(&robot_toml, &name, "measured:", &comment)?;
+    }
+    Ok(robot_toml)
+}

@@ -1,0 +1,74 @@
+//! Reads a video from its file or a folder of frames, and finds the robot's path in it.
+
+use std::fmt::Display;
+use std::fs;
+use std::path::Path;
+
+use lizard_measure::NamedVideo;
+use lizard_video::{Frame, Setup, Video, VideoError};
+
+use super::{ffmpeg, frames};
+use crate::Failure;
+use crate::shared::files::record_input;
+
+/// Reads a video, and finds the camera and the robot's path in it.
+///
+/// # Errors
+/// Fails if the video cannot be read, or if its tags show no path.
+pub(super) fn analyse(
+    path: &Path,
+    frame_rate: Option<f64>,
+    setup: Setup,
+) -> Result<NamedVideo, Failure> {
+    let name = path.display().to_string();
+    let to_failure = |error: VideoError| video_failure(&name, &error);
+    let analysis = read_video(path, frame_rate, to_failure)?
+        .analyse(setup)
+        .map_err(to_failure)?;
+    Ok(NamedVideo { name, analysis })
+}
+
+/// Returns the failure of a video, with the video's name and the reason.
+pub(super) fn video_failure(name: &str, reason: &dyn Display) -> Failure {
+    Failure::Input(format!("{name}: {reason}"))
+}
+
+/// Reads a video from its file, or from a folder of frames.
+fn read_video(
+    path: &Path,
+    frame_rate: Option<f64>,
+    to_failure: impl Fn(VideoError) -> Failure,
+) -> Result<Video, Failure> {
+    let mut video = Video::default();
+    if path.is_dir() {
+        for (seconds, frame_path) in frames::list_frames(path, frame_rate)? {
+            video
+                .add_frame(seconds, &read_frame(&frame_path)?)
+                .map_err(&to_failure)?;
+        }
+        return Ok(video);
+    }
+    if !path.is_file() {
+        return Err(Failure::Input(format!(
+            "{} is neither a video file nor a folder of frames",
+            path.display()
+        )));
+    }
+    ffmpeg::for_each_frame(record_input(path), frame_rate, |seconds, frame| {
+        video
+            .add_frame(seconds, frame)
+            .map(|_| ())
+            .map_err(&to_failure)
+    })?;
+    Ok(video)
+}
+
+/// Reads a frame from a PNG or JPEG file.
+fn read_frame(path: &Path) -> Result<Frame, Failure> {
+    let name = path.display();
+    let bytes =
+        fs::read(path).map_err(|error| Failure::Input(format!("cannot read {name}: {error}")))?;
+    Frame::decode(&bytes).map_err(|reason| {
+        Failure::Input(format!("{name} is not a valid PNG or JPEG file: {reason}"))
+    })
+}

@@ -1,0 +1,72 @@
+//! The drive from a servo's link to its leg: `[leg.drive]` in robot.toml.
+
+use lizard_contact::{Drive, DriveKind, Strut};
+
+use crate::config::legs::LegPlan;
+use crate::config::parts::Parts;
+use crate::config::strut;
+use crate::file::{ReadResult, Section, suggest};
+
+/// The key of the table in `[leg]`.
+const TABLE: &str = "drive";
+/// The keys of all kinds of drive.
+const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
+/// The kinds of drive, each with its keys in addition to `kind` and `play`.
+const KINDS: [(&str, &[&str]); 2] = [
+    (DriveKind::NAMES[0], &[]),
+    (DriveKind::NAMES[1], &["force", "rate"]),
+];
+
+/// Reads `[leg.drive]`. The legs are rigid if this table is left out. The servos' neutral angles are in deg, chassis
+/// frame.
+pub(crate) fn read(
+    leg_section: &Section,
+    legs: &[LegPlan; 4],
+    neutral_angles: [f64; 4],
+    parts: &Parts,
+) -> ReadResult<Drive> {
+    if !leg_section.has_key(TABLE) {
+        return Ok(Drive::RIGID);
+    }
+    let section = leg_section.open(TABLE)?;
+    let kind_name = match section.has_key("kind") {
+        true => section.text("kind")?,
+        false => KINDS[0].0,
+    };
+    if kind_name == "spring" {
+        let message = "is \"spring\", which is no longer supported; write \"strut\" with the force and rate of its spring, or \"rigid\"";
+        return Err(section.error("kind", message));
+    }
+    let section = section.require_known_keys(&KEYS)?;
+    let Some((_, own_keys)) = KINDS.into_iter().find(|(name, _)| *name == kind_name) else {
+        let suggestion = suggest(kind_name, &KINDS.map(|(name, _)| name));
+        return Err(section.error("kind", format!("is \"{kind_name}\"; {suggestion}")));
+    };
+    let mut all_keys = KINDS.into_iter().flat_map(|(_, keys)| keys);
+    if let Some(foreign_key) = all_keys.find(|key| !own_keys.contains(key) && section.has_key(key))
+    {
+        return Err(section.error(
+            foreign_key,
+            format!("is not allowed with kind = \"{kind_name}\""),
+        ));
+    }
+    let kind = match kind_name {
+        "strut" => {
+            let coil_strut = strut::strut_with_coil(legs, neutral_angles, parts, &parts.spring);
+            DriveKind::Strut(Strut {
+                preload: section.number_or("force", coil_strut.preload, 0.01, 100.0, "N")?,
+                spring_rate: section.number_or(
+                    "rate",
+                    coil_strut.spring_rate,
+                    0.0,
+                    100.0,
+                    "N/mm",
+                )?,
+                ..coil_strut
+            })
+        }
+        _ => DriveKind::Rigid,
+    };
+    let play = section.number_or("play", 0.0, 0.0, 20.0, "deg")?;
+    Ok(Drive { kind, play })
+}

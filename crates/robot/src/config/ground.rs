@@ -1,0 +1,69 @@
+//! The parameters of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
+
+use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
+
+use crate::config::servo::LEG_NAMES;
+use crate::file::{ReadResult, Section};
+
+/// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` come from other tables.
+pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<Ground> {
+    const RATIO_KEY: &str = "friction_back_over_forward";
+    let section = root.section("ground", &[RATIO_KEY, "friction"])?;
+    Ok(Ground {
+        feet,
+        body: read_body(root, &feet)?,
+        stance: read_stance(root)?,
+        friction_coefficient: section.number_or(
+            "friction",
+            DEFAULT_FRICTION,
+            0.05,
+            5.0,
+            "(a coefficient)",
+        )?,
+        friction_ratio: section.number(RATIO_KEY, 0.1, 10.0, "(a ratio)")?,
+        drive,
+    })
+}
+
+/// Reads the mass and the centre of mass; an omitted key has its default value. Rejects a centre of mass with which a
+/// foot would leave the floor in the neutral pose.
+fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
+    if !root.has_key("body") {
+        return Ok(Body::DEFAULT);
+    }
+    let section = root.section("body", &["mass", "centre"])?;
+    let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
+    let centre = match section.has_key("centre") {
+        true => section.numbers("centre", -500.0, 500.0, "mm")?,
+        false => Body::DEFAULT.centre_of_mass,
+    };
+    let body = Body {
+        mass,
+        centre_of_mass: centre,
+    };
+    let loads = Stance::LEVEL.relative_loads(&body, feet.positions([0.0; 4]));
+    match loads.iter().position(|load| *load <= 0.0) {
+        Some(foot) => {
+            let foot = LEG_NAMES[foot];
+            let message = format!(
+                "is so far from the middle that foot {foot} is off the floor in the neutral pose; all four feet must carry load"
+            );
+            Err(section.error("centre", message))
+        }
+        None => Ok(body),
+    }
+}
+
+/// Reads `[feet]`; every key is optional.
+fn read_stance(root: &Section) -> ReadResult<Stance> {
+    let default = Stance::DEFAULT;
+    if !root.has_key("feet") {
+        return Ok(default);
+    }
+    let section = root.section("feet", &["stiffness", "twist", "level"])?;
+    Ok(Stance {
+        stiffness: section.number_or("stiffness", default.stiffness, 0.01, 1000.0, "N/mm")?,
+        twist: section.number_or("twist", default.twist, -20.0, 20.0, "mm")?,
+        twist_error: section.number_or("level", default.twist_error, 0.0, 20.0, "mm")?,
+    })
+}

@@ -1,0 +1,48 @@
+//! The limits of poses and of the servos' speed: `[limits]` in robot.toml.
+
+use lizard_kinematics::Limits;
+
+use crate::config::scale::MAX_LINK_LENGTH_MM;
+use crate::config::servo::SpeedLimits;
+use crate::file::{ReadResult, Section};
+
+/// The lowest speed limit allowed, deg/s: a slower move would overflow the firmware's frame count.
+const MIN_SPEED_DEG_S: f64 = 10.0;
+
+/// Reads `[limits]`: margins, the sliders' stroke, and servo speeds.
+pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
+    let section = root.section(
+        "limits",
+        &[
+            "type2",
+            "type1",
+            "leg",
+            "stroke_min",
+            "stroke_max",
+            "slew",
+            "gait_slew",
+        ],
+    )?;
+    let limits = Limits {
+        // The core's coupler tables end at a margin of 0.1.
+        type2: section.number("type2", 0.1, 0.95, "(a sine)")?,
+        type1: section.number("type1", 0.0, 0.95, "(a sine)")?,
+        leg: section.number("leg", 0.0, 0.95, "(a sine)")?,
+        stroke_min: section.number("stroke_min", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
+        stroke_max: section.number("stroke_max", -MAX_LINK_LENGTH_MM, MAX_LINK_LENGTH_MM, "mm")?,
+    };
+    section.require_less(
+        "stroke_min",
+        limits.stroke_min,
+        "stroke_max",
+        limits.stroke_max,
+    )?;
+    let read_speed = |name| section.number(name, MIN_SPEED_DEG_S, 1000.0, "deg/s");
+    Ok((
+        limits,
+        SpeedLimits {
+            slew: read_speed("slew")?,
+            gait_slew: read_speed("gait_slew")?,
+        },
+    ))
+}

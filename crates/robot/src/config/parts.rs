@@ -1,0 +1,308 @@
+//! The dimensions of the parts to print and to buy: `[parts]` in robot.toml.
+//!
+//! The links' lengths place the joints. This table contains the width and the thickness of the parts that hold the
+//! joints, and the dimensions of bought parts: servos, screws, springs and a battery. No value of this table moves a
+//! joint, so the firmware does not depend on the table, but the positions of the feet do (`hips.rs`). Every key is
+//! optional.
+
+use crate::config::coil::Coil;
+use crate::file::{ReadResult, Section};
+
+/// Dimensions of the parts, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parts {
+    /// Clearance on each side of a part that is pushed into or slides in another part.
+    pub fit: f64,
+    /// Smallest thickness of a printed wall.
+    pub wall: f64,
+    /// Width of links and couplers.
+    pub bar: f64,
+    /// Thickness of links and couplers.
+    pub thickness: f64,
+    /// Thickness of the chassis plate and of the deck.
+    pub plate: f64,
+    /// Clearance between parts that pass over each other.
+    pub gap: f64,
+    /// Width of a cut by a laser or another cutter.
+    pub kerf: f64,
+    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward and towards
+    /// the middle. The follower's pivot is farther out by the length of the ground link.
+    pub pivot: [f64; 2],
+    /// The foot's position on its coupler, from the crank's joint: outward and towards the middle. The hip, the centre
+    /// of the foot's circle, has the same offset from the crank's pivot. `None` if the key is left out;
+    /// [`crate::LegPlan`] then contains the computed position.
+    pub foot: Option<[f64; 2]>,
+    /// The strut's anchor on the servo's link, in polar coordinates: distance from the shaft, and
+    /// angle (deg) from the crank, away from the slider's arm. The leg's anchor is parallel to it.
+    pub anchor: [f64; 2],
+    /// Height of the top of the chassis plate above the floor.
+    pub height: f64,
+    /// The servos without their horns.
+    pub servo: ServoBody,
+    /// The servos' horns.
+    pub horn: Horn,
+    /// The screws that serve as joints.
+    pub screw: Screw,
+    /// The pads on which the robot stands.
+    pub pad: Pad,
+    /// Width of a strip along each pad, from head to tail, that slides more easily in one direction, such as climbing
+    /// skin; 0 leaves the strip out.
+    pub strip: f64,
+    /// The legs' springs, which are mounted in their struts.
+    pub spring: Coil,
+    /// Size of the battery: to the right, forward, up.
+    pub battery: [f64; 3],
+    /// Length of the two links behind the tail's point, which make the robot look like a
+    /// lizard; 0 leaves them out.
+    pub tail: f64,
+    /// Length of the head's plate ahead of the head's point; 0 leaves the plate out.
+    pub head: f64,
+}
+
+/// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its
+/// table. Each length must be between 0.1 and 200 mm; every key is optional.
+macro_rules! dimensions {
+    ($($(#[$type_doc:meta])* $type:ident in $table:literal {
+        $($(#[$key_doc:meta])* $key:ident: $default:literal,)*
+    })*) => {$(
+        $(#[$type_doc])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $type {
+            $($(#[$key_doc])* pub $key: f64,)*
+        }
+
+        impl $type {
+            const DEFAULT: Self = Self { $($key: $default,)* };
+
+            fn read(parts: &Section) -> ReadResult<Self> {
+                let default = Self::DEFAULT;
+                if !parts.has_key($table) {
+                    return Ok(default);
+                }
+                let section = parts.section($table, &[$(stringify!($key)),*])?;
+                Ok(Self {
+                    $($key: section.number_or(stringify!($key), default.$key, 0.1, 200.0, "mm")?,)*
+                })
+            }
+        }
+    )*};
+}
+
+dimensions! {
+    /// A servo without its horn, mm. Heights are from the bottom of its case.
+    ServoBody in "servo" {
+        /// Length of the case, along its flange.
+        length: 22.8,
+        /// Width of the case.
+        width: 12.4,
+        /// Height of the case without the gear's boss.
+        height: 22.7,
+        /// Length of the flange.
+        flange: 32.4,
+        /// Thickness of the flange.
+        flange_thickness: 2.5,
+        /// Height of the flange's underside.
+        flange_height: 15.9,
+        /// Distance from the shaft to the nearer end of the case.
+        shaft: 6.1,
+        /// Height of the boss around the shaft.
+        boss: 26.5,
+        /// Distance between the two screws in the flange.
+        holes: 27.8,
+    }
+
+    /// A servo's horn with one arm, mm.
+    Horn in "horn" {
+        /// Diameter of the hub.
+        hub: 7.0,
+        /// Height of the hub, the arm's thickness included.
+        height: 4.5,
+        /// Length of the arm, from the shaft to its round end.
+        arm: 14.5,
+        /// Width of the arm at its end.
+        tip: 4.0,
+        /// Thickness of the arm.
+        thickness: 1.6,
+    }
+
+    /// A screw and its nut, mm.
+    Screw in "screw" {
+        /// Diameter of the thread.
+        diameter: 3.0,
+        /// Diameter of the head.
+        head: 5.7,
+        /// Height of the head.
+        head_height: 1.7,
+        /// Width of the lock nut over its flats.
+        nut: 5.5,
+        /// Height of the lock nut.
+        nut_height: 4.0,
+    }
+
+    /// A round pad under a foot, with a dome below, mm. A dome slides up an edge that would stop a
+    /// flat pad.
+    Pad in "pad" {
+        /// Radius of the sphere of which the dome is a part.
+        radius: 30.0,
+        /// Diameter of the pad. With `radius` it determines the height of the dome.
+        width: 22.0,
+        /// Total height.
+        height: 4.0,
+    }
+}
+
+impl Pad {
+    /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide up. `None` for a pad
+    /// that is wider than the sphere.
+    pub fn dome_height(&self) -> Option<f64> {
+        let half_width = self.width / 2.0;
+        (half_width <= self.radius)
+            .then(|| self.radius - (self.radius * self.radius - half_width * half_width).sqrt())
+    }
+}
+
+impl Default for Parts {
+    fn default() -> Self {
+        Self {
+            fit: 0.2,
+            wall: 1.6,
+            bar: 9.0,
+            thickness: 4.0,
+            plate: 4.0,
+            gap: 0.5,
+            kerf: 0.2,
+            pivot: [28.5, 10.0],
+            foot: None,
+            anchor: [22.0, 0.0],
+            height: 34.0,
+            servo: ServoBody::DEFAULT,
+            horn: Horn::DEFAULT,
+            screw: Screw::DEFAULT,
+            pad: Pad::DEFAULT,
+            strip: 0.0,
+            spring: Coil::with_papers_size(0.6),
+            battery: [31.0, 56.0, 16.0],
+            tail: 85.0,
+            head: 42.0,
+        }
+    }
+}
+
+/// The keys of `[parts]`.
+const KEYS: [&str; 20] = [
+    "fit",
+    "wall",
+    "bar",
+    "thickness",
+    "plate",
+    "gap",
+    "kerf",
+    "pivot",
+    "foot",
+    "anchor",
+    "height",
+    "servo",
+    "horn",
+    "screw",
+    "pad",
+    "strip",
+    "spring",
+    "battery",
+    "tail",
+    "head",
+];
+
+/// Reads the struts' spring. Its lengths have the same range as the other parts' lengths: 0.1 to 200 mm.
+fn read_coil(parts: &Section, default: Coil) -> ReadResult<Coil> {
+    if !parts.has_key("spring") {
+        return Ok(default);
+    }
+    let section = parts.section("spring", &["wire", "outer", "length"])?;
+    let read_mm = |name, default| section.number_or(name, default, 0.1, 200.0, "mm");
+    Ok(Coil {
+        wire_diameter: read_mm("wire", default.wire_diameter)?,
+        outer_diameter: read_mm("outer", default.outer_diameter)?,
+        free_length: read_mm("length", default.free_length)?,
+    })
+}
+
+/// The replacement for the removed key `strut` of `[parts]`, for the message about this key.
+const STRUT_REPLACEMENT: &str = "[leg.drive] with kind = \"strut\" or \"rigid\"";
+
+impl Parts {
+    /// Reads `[parts]`; every key is optional.
+    pub(crate) fn read(root: &Section) -> ReadResult<Self> {
+        let defaults = Self::default();
+        if !root.has_key("parts") {
+            return Ok(defaults);
+        }
+        let section = root.open("parts")?;
+        section.reject_removed_keys(&["strut"], STRUT_REPLACEMENT)?;
+        let section = section.require_known_keys(&KEYS)?;
+        let read_mm = |name, default, min, max| section.number_or(name, default, min, max, "mm");
+        let read_pair = |name, default: [f64; 2], min, max| match section.has_key(name) {
+            true => section.numbers(name, min, max, "(mm; an angle in deg)"),
+            false => Ok(default),
+        };
+        let foot = match section.has_key("foot") {
+            true => Some(read_pair("foot", [0.0; 2], -500.0, 500.0)?),
+            false => None,
+        };
+        let battery = match section.has_key("battery") {
+            true => section.numbers("battery", 1.0, 500.0, "mm")?,
+            false => defaults.battery,
+        };
+        Ok(Self {
+            fit: read_mm("fit", defaults.fit, 0.0, 1.0)?,
+            wall: read_mm("wall", defaults.wall, 0.4, 10.0)?,
+            bar: read_mm("bar", defaults.bar, 4.0, 50.0)?,
+            thickness: read_mm("thickness", defaults.thickness, 2.0, 20.0)?,
+            plate: read_mm("plate", defaults.plate, 2.0, 20.0)?,
+            gap: read_mm("gap", defaults.gap, 0.1, 5.0)?,
+            kerf: read_mm("kerf", defaults.kerf, 0.0, 2.0)?,
+            pivot: read_pair("pivot", defaults.pivot, -500.0, 500.0)?,
+            foot,
+            anchor: read_pair("anchor", defaults.anchor, -90.0, 500.0)?,
+            height: read_mm("height", defaults.height, 5.0, 500.0)?,
+            servo: ServoBody::read(&section)?,
+            horn: Horn::read(&section)?,
+            screw: Screw::read(&section)?,
+            pad: Pad::read(&section)?,
+            strip: read_mm("strip", defaults.strip, 0.0, 100.0)?,
+            spring: read_coil(&section, defaults.spring)?,
+            battery,
+            tail: read_mm("tail", defaults.tail, 0.0, 300.0)?,
+            head: read_mm("head", defaults.head, 0.0, 300.0)?,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::robot_with;
+
+    /// Reads the parts of the paper's robot with these lines.
+    fn parts_with(table: &str) -> Result<Parts, String> {
+        const NEXT_TABLE: &str = "[ground]";
+        robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
+            .map(|robot| *robot.parts())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn omitted_keys_have_the_values_of_the_papers_robot() {
+        assert_eq!(parts_with(""), Ok(Parts::default()));
+        let parts = parts_with("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
+        let expected = Parts {
+            bar: 10.0,
+            pivot: [30.0, 11.0],
+            servo: ServoBody {
+                shaft: 5.9,
+                ..Parts::default().servo
+            },
+            ..Parts::default()
+        };
+        assert_eq!(parts, Ok(expected));
+    }
+}

@@ -1,0 +1,384 @@
+//! The supply voltages of the board and of the servos: their measurement, and the thresholds at which the robot slows
+//! down, stops and rests.
+
+use lizard_core::numbers::supplies::{Supplies as CoreSupplies, Thresholds};
+
+use crate::config::servo::{SERVO_NAMES, Servo, parse_pin};
+use crate::file::{ReadResult, Section};
+
+/// The nominal voltage reference of an ATmega328P, V: data sheet, section 29.8.
+const NOMINAL_REFERENCE: f64 = 1.1;
+/// Range of the voltage reference, V.
+const REFERENCE_RANGE: (f64, f64) = (1.0, 1.2);
+
+/// Range of the board's thresholds, V: the brown-out detector resets the chip at 2.7 V, and the chip tolerates 5.5 V.
+const BOARD_THRESHOLD_RANGE: (f64, f64) = (2.7, 5.5);
+
+/// Default thresholds `slow`, `stop` and `rest`, V: gaits slow down below `slow`, the robot stops below `stop`, and the
+/// pulses end below `rest`. If its reference differs from the nominal value, a healthy board may read only 4.3 V.
+const DEFAULT_THRESHOLDS: [f64; 3] = [4.2, 4.0, 3.7];
+
+/// Rating of the fuse, A. The fuse carries up to 2.8 A: to supply 3 A at 5 V with a loss of 15 %, the converter draws
+/// this current from a nearly empty battery of 6.4 V. The fuse must blow before the switch is overloaded. Only half of
+/// the switch's rating counts, because the rating is for alternating current, and direct current is harder to
+/// interrupt.
+pub const FUSE_RATING_A: u32 = 3;
+/// The smallest rating of the switch, A. See [`FUSE_RATING_A`].
+pub const MIN_SWITCH_RATING_A: u32 = 6;
+const _: () = assert!(2 * FUSE_RATING_A <= MIN_SWITCH_RATING_A);
+
+/// The Arduino numbers of the analogue pins A0 to A5.
+const ANALOGUE_PINS: std::ops::RangeInclusive<u8> = 14..=19;
+
+/// The chip's voltage reference, and the thresholds (V) for a falling voltage below which gaits slow down, the robot
+/// stops, and the pulses end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Supplies {
+    /// Voltage of the chip's internal reference, V.
+    pub reference_volts: f64,
+    /// Thresholds of the board's supply, V, in descending order.
+    pub board_thresholds: [f64; 3],
+    /// The servos' rail; `None` if the rail is not measured.
+    pub rail: Option<Rail>,
+    /// Pace limit below the `slow` threshold, percent of a gait's nominal pace. It follows from the servos if their
+    /// rail is measured; the board's supply does not determine the servos' torque.
+    pub slow_pace_percent: u8,
+}
+
+/// A servo rail that is measured at an analogue pin through a divider.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rail {
+    /// Arduino number of the pin, 14 to 19.
+    pub pin: u8,
+    /// The rail's voltage divided by the pin's voltage.
+    pub divider_ratio: f64,
+    /// Thresholds of the rail, V, in descending order.
+    pub thresholds: [f64; 3],
+    /// True if robot.toml leaves out the `slow` threshold, which is then derived from the servos.
+    pub has_derived_slow_threshold: bool,
+}
+
+/// Smallest difference between the thresholds `slow` and `stop`, and between the supply and `slow`, V. It exceeds the
+/// hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
+const MIN_THRESHOLD_GAP: f64 = 0.25;
+
+/// The pace at a low supply voltage if the servos' rail is not measured, percent.
+const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
+/// The slowest pace that the command `speed` accepts, percent.
+const MIN_PACE_PERCENT: f64 = 10.0;
+
+impl Rail {
+    /// Sets the `slow` threshold if it is derived from the servos. Below it, the most demanding gait would exceed the
+    /// utilisation `allowed`. `utilisation` is this gait's utilisation at the supply `volts`.
+    pub(crate) fn set_slow_threshold(&mut self, utilisation: f64, allowed: f64, volts: f64) {
+        let [slow, stop, _] = &mut self.thresholds;
+        let min = *stop + MIN_THRESHOLD_GAP;
+        // Rounded to hundredths. The threshold stays below the supply itself; otherwise the robot would always be slow.
+        let slow_volts = (100.0 * volts * utilisation / allowed).round() / 100.0;
+        if self.has_derived_slow_threshold {
+            *slow = slow_volts.min(volts - MIN_THRESHOLD_GAP).max(min);
+        }
+    }
+}
+
+impl Supplies {
+    /// Sets the pace limit at a low supply to `pace`, relative to a gait's nominal pace.
+    pub(crate) fn set_slow_pace(&mut self, pace: f64) {
+        self.slow_pace_percent = (100.0 * pace).floor().max(MIN_PACE_PERCENT) as u8;
+    }
+}
+
+impl Default for Supplies {
+    fn default() -> Self {
+        Self {
+            reference_volts: NOMINAL_REFERENCE,
+            board_thresholds: DEFAULT_THRESHOLDS,
+            rail: None,
+            slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
+        }
+    }
+}
+
+impl Supplies {
+    /// Reads `[supply]`; every key is optional.
+    pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> ReadResult<Self> {
+        if !root.has_key("supply") {
+            return Ok(Self::default());
+        }
+        let section = root.section("supply", &["reference", "slow", "stop", "rest", "rail"])?;
+        let (min, max) = REFERENCE_RANGE;
+        Ok(Self {
+            reference_volts: section.number_or("reference", NOMINAL_REFERENCE, min, max, "V")?,
+            board_thresholds: read_thresholds(&section, BOARD_THRESHOLD_RANGE, DEFAULT_THRESHOLDS)?,
+            rail: read_rail(&section, servos)?,
+            slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
+        })
+    }
+
+    /// Converts the supplies to the core's form, in mV.
+    pub(crate) fn to_core(&self) -> CoreSupplies {
+        CoreSupplies {
+            reference_mv: to_millivolts(self.reference_volts),
+            board: thresholds_to_mv(self.board_thresholds),
+            rail_reference_mv: self.rail.map_or(0, |rail| {
+                to_millivolts(self.reference_volts * rail.divider_ratio)
+            }),
+            rail: self
+                .rail
+                .map_or(UNMEASURED_RAIL, |rail| thresholds_to_mv(rail.thresholds)),
+        }
+    }
+}
+
+/// The thresholds of a rail that is not measured.
+const UNMEASURED_RAIL: Thresholds = Thresholds {
+    slow_mv: 0,
+    stop_mv: 0,
+    rest_mv: 0,
+};
+
+/// The voltage at the pin that measures a healthy servo rail, mV; `None` if no rail is measured. Simulations apply this
+/// voltage, because the firmware would end the pulses at a rail of 0 V. The rail is assumed to be at 5 V, or 0.5 V
+/// above its `slow` threshold if that is higher.
+pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
+    /// Assumed margin of the rail above its `slow` threshold.
+    const HEADROOM_MV: f64 = 500.0;
+    /// Supply of the board, and the lowest rail voltage that is assumed.
+    const BOARD_MV: f64 = 5_000.0;
+    let ratio = f64::from(supplies.rail_reference_mv) / f64::from(supplies.reference_mv);
+    let mv = f64::from(supplies.rail.slow_mv) + HEADROOM_MV;
+    (supplies.rail_reference_mv != 0)
+        .then(|| (mv.max(BOARD_MV) / ratio).min(BOARD_MV - 1.0).floor())
+}
+
+/// Reads `[supply.rail]`; `None` if the table is left out.
+fn read_rail(supply: &Section, servos: &[Servo; 4]) -> ReadResult<Option<Rail>> {
+    if !supply.has_key("rail") {
+        return Ok(None);
+    }
+    let section = supply.section("rail", &["pin", "ratio", "slow", "stop", "rest"])?;
+    let pin_name = section.text("pin")?;
+    let pin_error = |reason: String| section.error("pin", format!("is \"{pin_name}\"{reason}"));
+    let pin = parse_pin(pin_name)
+        .filter(|pin| ANALOGUE_PINS.contains(pin))
+        .ok_or_else(|| pin_error("; it must be one of A0 to A5".to_string()))?;
+    if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
+        let owner = SERVO_NAMES[servo];
+        return Err(pin_error(format!(", which servo.{owner} already uses")));
+    }
+    // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 2.
+    let divider_ratio = section.number("ratio", 1.0, 6.0, "(rail voltage / pin voltage)")?;
+    let has_derived_slow_threshold = !section.has_key("slow");
+    let mut defaults = DEFAULT_THRESHOLDS;
+    if has_derived_slow_threshold && section.has_key("stop") {
+        // A placeholder until the servos are known.
+        defaults[0] = f64::INFINITY;
+    }
+    Ok(Some(Rail {
+        pin,
+        divider_ratio,
+        thresholds: read_thresholds(&section, (1.0, 5.0 * divider_ratio), defaults)?,
+        has_derived_slow_threshold,
+    }))
+}
+
+/// Reads three voltages, each less than the previous one.
+fn read_thresholds(
+    section: &Section,
+    (min, max): (f64, f64),
+    defaults: [f64; 3],
+) -> ReadResult<[f64; 3]> {
+    let read_voltage = |name, default| section.number_or(name, default, min, max, "V");
+    let [slow, stop, rest] = defaults;
+    let [slow, stop, rest] = [
+        read_voltage("slow", slow)?,
+        read_voltage("stop", stop)?,
+        read_voltage("rest", rest)?,
+    ];
+    section.require_less("rest", rest, "stop", stop)?;
+    section.require_less("stop", stop, "slow", slow)?;
+    Ok([slow, stop, rest])
+}
+
+/// Converts thresholds from volts to millivolts.
+fn thresholds_to_mv([slow, stop, rest]: [f64; 3]) -> Thresholds {
+    Thresholds {
+        slow_mv: to_millivolts(slow),
+        stop_mv: to_millivolts(stop),
+        rest_mv: to_millivolts(rest),
+    }
+}
+
+fn to_millivolts(volts: f64) -> u16 {
+    (1000.0 * volts).round() as u16
+}
+
+#[cfg(test)]
+mod tests {
+    use lizard_core::numbers::supplies::{Supplies, Thresholds};
+
+    use crate::testing::robot_with;
+
+    /// The header before which a test inserts its lines.
+    const NEXT_TABLE: &str = "[ground]";
+
+    /// Reads the paper's robot with these lines before `[ground]`.
+    fn robot_with_supply(table: &str) -> Result<crate::Robot, crate::Error> {
+        robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
+    }
+
+    /// Reads the paper's robot with these servo and rail keys and this friction coefficient.
+    fn robot_with_servo_and_rail(servo: &str, rail: &str, friction: &str) -> crate::Robot {
+        let tables = format!(
+            "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
+        );
+        let servo = format!("[servo]\n{servo}\n[servo.A1]");
+        robot_with("paper", &[("[servo.A1]", &servo), (NEXT_TABLE, &tables)]).expect(rail)
+    }
+
+    #[test]
+    fn the_board_is_measured_against_a_1100_mv_reference_by_default() {
+        let robot = robot_with("paper", &[]).expect("the paper's robot is valid");
+        let expected = Supplies {
+            reference_mv: 1100,
+            board: Thresholds {
+                slow_mv: 4200,
+                stop_mv: 4000,
+                rest_mv: 3700,
+            },
+            rail_reference_mv: 0,
+            ..robot.firmware().supplies()
+        };
+        assert_eq!(robot.firmware().supplies(), expected);
+    }
+
+    #[test]
+    fn a_rails_reference_is_the_chips_reference_times_the_divider_ratio() {
+        let robot = robot_with_supply(
+            "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n",
+        )
+        .expect("the rail is valid");
+        let supplies = robot.firmware().supplies();
+        assert_eq!(
+            (supplies.reference_mv, supplies.board.slow_mv),
+            (1080, 4500)
+        );
+        let rail = Thresholds {
+            slow_mv: 6600,
+            stop_mv: 6200,
+            rest_mv: 6000,
+        };
+        assert_eq!((supplies.rail_reference_mv, supplies.rail), (2700, rail));
+        assert_eq!(robot.firmware().rail_pin(), Some(17));
+    }
+
+    #[test]
+    fn the_slow_threshold_is_the_voltage_at_which_the_servos_reach_the_allowed_utilisation() {
+        let slow_volts_with = |servo: &str, rail: &str, friction: &str| {
+            let robot = robot_with_servo_and_rail(servo, rail, friction);
+            f64::from(robot.firmware().supplies().rail.slow_mv) / 1000.0
+        };
+        let sg90_volts = slow_volts_with("", "", "0.6");
+        let robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.6")])
+            .expect("the robot is valid");
+        let utilisations = robot.gaits().iter().map(|gait| {
+            crate::Effort::simulate(gait, robot.ground(), &robot.motors()).utilisation(1.0, 1.0)
+        });
+        let max_utilisation = utilisations.fold(0.0, f64::max);
+        // On this floor the servos would allow slightly less than stop + 0.25 V, so the minimum gap sets the threshold.
+        let expected = (4.8 * max_utilisation / crate::HIGH_UTILISATION).max(4.25);
+        assert!(
+            (sg90_volts - expected).abs() < 0.01,
+            "{sg90_volts} V, expected {expected} V"
+        );
+        // More friction requires a higher threshold; an explicit threshold is kept.
+        let rough_volts = slow_volts_with("", "", "0.8");
+        let supply_ratio = rough_volts / 4.8;
+        assert!(rough_volts > sg90_volts + 0.1, "{rough_volts} V");
+        let rough_robot = robot_with("paper", &[(NEXT_TABLE, "[ground]\nfriction = 0.8")])
+            .expect("the robot is valid");
+        let utilisations = rough_robot.gaits().iter().map(|gait| {
+            let effort = crate::Effort::simulate(gait, rough_robot.ground(), &rough_robot.motors());
+            effort.utilisation(1.0, supply_ratio)
+        });
+        let max_utilisation = utilisations.fold(0.0, f64::max);
+        assert!(
+            (max_utilisation - crate::HIGH_UTILISATION).abs() < 0.005,
+            "the utilisation is {max_utilisation}"
+        );
+        assert_eq!(slow_volts_with("", "slow = 4.3", "0.8"), 4.3);
+        // Even if a servo exceeds its torque-speed line at its own supply, the threshold stays below this supply.
+        assert_eq!(slow_volts_with("model = \"copy\"", "", "1.2"), 4.55);
+        // A battery of two lithium cells, and servos for that voltage.
+        let two_cells_volts = slow_volts_with("at_volts = 8.0", "stop = 6.4\nrest = 6.0", "0.7");
+        assert!(
+            (6.65..7.75).contains(&two_cells_volts),
+            "{two_cells_volts} V"
+        );
+    }
+
+    /// Returns two paces of the paper's robot with changed servos, thresholds and friction, percent: its slow pace, and
+    /// the highest pace at which no gait exceeds the allowed utilisation, found by a search.
+    fn find_slow_paces(servo: &str, rail: &str, friction: &str) -> [u8; 2] {
+        let robot = robot_with_servo_and_rail(servo, rail, friction);
+        let rail = robot.supplies().rail.expect("the rail is measured");
+        let [_, stop, _] = rail.thresholds;
+        let servo_volts = robot.servo_type().supply_volts;
+        let simulate = |gait| crate::Effort::simulate(gait, robot.ground(), &robot.motors());
+        let efforts: Vec<_> = robot.gaits().iter().map(simulate).collect();
+        let is_sustainable = |percent: &u8| {
+            efforts.iter().all(|effort| {
+                let pace = f64::from(*percent) / 100.0;
+                effort.utilisation(pace, stop / servo_volts) <= crate::HIGH_UTILISATION
+            })
+        };
+        let expected_pace = (10..=100).rev().find(is_sustainable).unwrap_or(10);
+        [robot.firmware().slow_pace(), expected_pace]
+    }
+
+    #[test]
+    fn the_slow_pace_is_the_highest_that_the_servos_sustain_at_the_stop_voltage() {
+        let [default_pace, expected_pace] = find_slow_paces("", "", "0.7");
+        assert_eq!(default_pace, expected_pace);
+        let [rough_pace, expected_pace] = find_slow_paces("", "", "0.9");
+        assert_eq!(rough_pace, expected_pace);
+        assert!(
+            (11..default_pace).contains(&rough_pace) && default_pace < 100,
+            "rough floor {rough_pace} %, default {default_pace} %"
+        );
+        // The same holds with an explicit threshold. A robot that stops at a higher voltage may walk faster.
+        let [explicit_threshold_pace, expected_pace] =
+            find_slow_paces("", "slow = 4.7\nstop = 4.5", "0.9");
+        assert_eq!(explicit_threshold_pace, expected_pace);
+        assert!(
+            explicit_threshold_pace > rough_pace,
+            "explicit threshold {explicit_threshold_pace} %, derived threshold {rough_pace} %"
+        );
+        // The clone servos sustain no pace, the MG90S sustain every pace.
+        let slowest_paces = find_slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", "1.2");
+        assert_eq!(slowest_paces, [10, 10]);
+        assert_eq!(find_slow_paces("model = \"MG90S\"", "", "0.2"), [100, 100]);
+    }
+
+    #[test]
+    fn a_low_supply_halves_the_pace_without_a_rail() {
+        let robot = robot_with("paper", &[]).expect("the paper's robot is valid");
+        assert_eq!(robot.firmware().slow_pace(), 50);
+    }
+
+    #[test]
+    fn the_rail_rejects_a_pin_used_by_a_servo() {
+        let result = robot_with(
+            "paper",
+            &[
+                ("pin = \"D9\"", "pin = \"A2\""),
+                (
+                    NEXT_TABLE,
+                    "[supply.rail]\npin = \"A2\"\nratio = 2.0\n[ground]",
+                ),
+            ],
+        );
+        let message = result.expect_err("the pin belongs to a servo").to_string();
+        assert!(message.contains("which servo.A1 already uses"), "{message}");
+    }
+}

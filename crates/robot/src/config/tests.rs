@@ -1,0 +1,105 @@
+//! Tests of the requirements for a robot's dimensions.
+
+use crate::testing::robot_with;
+
+/// Returns the error message for the unequal robot after changes to its file.
+fn read_error(changes: &[(&str, &str)]) -> String {
+    robot_with("unequal", changes)
+        .expect_err("the robot is invalid")
+        .to_string()
+}
+
+#[test]
+fn each_coupler_must_be_long_enough_for_its_own_loop() {
+    // With these lengths, the scales of head and tail are 256 steps per mm.
+    for (old, new) in [
+        ("l2 = 55.0", "l2 = 15.9"),
+        ("l3 = 48.0", "l3 = 15.9"),
+        ("l7 = 55.0", "l7 = 15.9"),
+        ("l8 = 48.0", "l8 = 15.9"),
+    ] {
+        let message = read_error(&[(old, new)]);
+        let key = old.split(' ').next().expect("the change begins with a key");
+        assert!(
+            message.contains(&format!("links.{key} is 15.9 mm, which is too short"))
+                && message.contains("at least 16.1 mm"),
+            "{message}"
+        );
+    }
+    // A longer base of the tail halves the steps per mm of the tail only.
+    let message = read_error(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
+    assert!(
+        message.contains("links.l7 is 31 mm") && message.contains("at least 32.1 mm"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_neutral_pulse_outside_its_servos_range_is_rejected() {
+    for name in ["A1", "A2", "A3", "A4"] {
+        let text = crate::testing::robot_text("unequal");
+        let start = text.find(&format!("[servo.{name}]")).expect(name);
+        let line_range = |key: &str| {
+            let line_start = start + text[start..].find(key).expect(key);
+            let line_end = line_start + text[line_start..].find('\n').expect("the line ends");
+            line_start..line_end
+        };
+        let read_us = |key: &str| -> f64 {
+            let line = &text[line_range(key)];
+            let value = line.split(" = ").nth(1).expect("the line has a value");
+            value.parse().expect("the value is a number")
+        };
+        for (neutral_us, rejected_key) in [
+            (read_us("min_us") - 0.1, "min_us"),
+            (read_us("min_us"), "min_us"),
+            (read_us("max_us"), "neutral_us"),
+            (read_us("max_us") + 0.1, "neutral_us"),
+        ] {
+            let mut changed = text.clone();
+            changed.replace_range(
+                line_range("neutral_us"),
+                &format!("neutral_us = {neutral_us}"),
+            );
+            let error = crate::Robot::parse(&changed)
+                .expect_err("the neutral pulse is out of range")
+                .to_string();
+            assert!(
+                error.contains(&format!("servo.{name}.{rejected_key}")),
+                "{error}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_stroke_that_exceeds_the_shorter_sliders_length_is_rejected() {
+    for slider in [["l12 = 53.0", "l13 = 51.0"], ["l17 = 54.0", "l18 = 57.0"]] {
+        let changes = [
+            (slider[0], &*slider[0].replace(" 5", " 4")),
+            ("stroke_min = -19.0", "stroke_min = -102.0"),
+        ];
+        let message = read_error(&changes);
+        assert!(
+            message.contains("limits.stroke_min is -102; it must be between"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_leg_in_its_other_assembly_mode_is_rejected() {
+    for (old, new, name, leg) in [
+        ("neutral = 135.0", "neutral = 200.0", "left front", "leg_lf"),
+        ("neutral = 47.0", "neutral = 350.0", "right front", "leg_rf"),
+        ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
+        ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
+    ] {
+        let message = read_error(&[(old, new)]);
+        assert!(
+            message.starts_with(&format!(
+                "in the neutral pose the {name} leg would lock: margin {leg} -"
+            )),
+            "{message}"
+        );
+    }
+}

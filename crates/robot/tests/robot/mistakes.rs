@@ -1,0 +1,158 @@
+//! Mistakes that an author of robot.toml can make, and their error messages.
+
+use lizard_robot::Robot;
+
+use crate::{paper_text, paper_with};
+
+/// A mistake in the paper's robot.toml.
+struct Mistake {
+    /// The replaced text of the file.
+    old: String,
+    /// The replacement.
+    new: String,
+    /// The message without the file's name and line.
+    message: String,
+}
+
+/// Reads the mistakes from mistakes.txt, in which `-` marks the text of the file, `+` the replacement and `=` the
+/// message.
+fn read_mistakes() -> impl Iterator<Item = Mistake> {
+    let blocks = include_str!("mistakes.txt").split("\n\n");
+    blocks.filter(|block| block.starts_with('-')).map(|block| {
+        let lines_with = |mark: char| -> String {
+            let marked_lines = block.lines().filter_map(|line| line.strip_prefix(mark));
+            let text = marked_lines.map(|line| line.strip_prefix(' ').unwrap_or(line));
+            text.collect::<Vec<_>>().join("\n")
+        };
+        Mistake {
+            old: lines_with('-'),
+            new: lines_with('+'),
+            message: lines_with('='),
+        }
+    })
+}
+
+#[test]
+fn every_mistake_has_its_message() {
+    assert!(read_mistakes().count() > 100);
+    for Mistake { old, new, message } in read_mistakes() {
+        let error = paper_with(&old, &new)
+            .err()
+            .unwrap_or_else(|| panic!("{new:?} was accepted"));
+        let location = format!("robot.toml:{}: ", error.line.expect("the error has a line"));
+        let full_message = error.to_string();
+        // The location comes first, or last if the message begins with the consequence for the robot.
+        assert!(full_message.contains(&location), "{full_message}");
+        assert_eq!(
+            full_message.replacen(&location, "", 1),
+            message,
+            "for {new:?}"
+        );
+    }
+}
+
+#[test]
+fn every_error_has_the_line_of_its_key_or_table() {
+    for Mistake { old, new, .. } in read_mistakes() {
+        let text = paper_text().replacen(&old, &new, 1);
+        let error = Robot::parse(&text).expect_err(&new);
+        let line = text
+            .lines()
+            .nth(error.line.expect("the error has a line") - 1);
+        let line = line.expect("the line is in the file");
+        let mut names = error.key.split(['.', '[']).filter(|name| *name != "gait");
+        let names_key = names.any(|name| line.contains(name))
+            || line.contains("[gait")
+            || line.contains("amplitude =");
+        assert!(names_key, "{line:?} for {error}");
+    }
+}
+
+#[test]
+fn the_error_names_a_missing_file() {
+    let error = Robot::load("no/such/robot.toml")
+        .expect_err("the file does not exist")
+        .to_string();
+    assert!(
+        error.starts_with("no/such/robot.toml: cannot be read: "),
+        "{error}"
+    );
+}
+
+/// Writes a temporary file with these bytes, under a name that no other test process uses.
+fn write_temporary_file(name: &str, bytes: &[u8]) -> std::path::PathBuf {
+    let path = std::env::temp_dir().join(format!("{}-{name}.toml", std::process::id()));
+    std::fs::write(&path, bytes).expect("the temporary file can be written");
+    path
+}
+
+/// Returns the error message for a file, with `FILE` in place of its path.
+fn load_error(path: &std::path::Path) -> String {
+    Robot::load(path)
+        .expect_err("the file is not a robot file")
+        .to_string()
+        .replacen(&path.display().to_string(), "FILE", 1)
+}
+
+#[test]
+fn a_file_that_is_not_text_is_rejected_without_reading_all_of_it() {
+    // Without a limit, reading would continue until memory is full.
+    assert_eq!(
+        load_error("/dev/zero".as_ref()),
+        "FILE: is longer than 1 MiB, so it is not a robot file"
+    );
+    let message = load_error(&std::env::temp_dir());
+    assert!(message.starts_with("FILE: cannot be read: "), "{message}");
+    let latin_path = write_temporary_file("latin", b"# one\n# caf\xe9\n");
+    assert_eq!(
+        load_error(&latin_path),
+        "FILE: is not UTF-8 text: line 2 contains other bytes"
+    );
+    let mut bytes = paper_text().into_bytes();
+    bytes.resize(lizard_robot::MAX_FILE_BYTES as usize, b'\n');
+    let long_path = write_temporary_file("long", &bytes);
+    assert!(Robot::load(&long_path).is_ok(), "1 MiB is allowed");
+    for path in [latin_path, long_path] {
+        std::fs::remove_file(path).expect("the file can be removed");
+    }
+}
+
+#[test]
+fn a_byte_order_mark_changes_nothing() {
+    let marked_text = format!("\u{feff}{}", paper_text());
+    assert_eq!(Robot::parse(&marked_text), Robot::parse(&paper_text()));
+}
+
+#[test]
+fn an_empty_file_is_rejected_for_its_missing_first_table() {
+    let error = Robot::parse("")
+        .expect_err("an empty file is invalid")
+        .to_string();
+    assert_eq!(error, "robot.toml: links is missing; it must be a table");
+}
+
+#[test]
+fn values_at_the_ends_of_their_ranges_are_allowed() {
+    for (old, new) in [
+        ("min_us = 600.0", "min_us = 500.0"),
+        ("max_us = 2400.0", "max_us = 2500"),
+        ("us_per_degree = 10.0", "us_per_degree = -10.0"),
+        ("us_per_degree = 10.0", "us_per_degree = 22"),
+        ("us_per_degree = 10.0", "us_per_degree = -22"),
+        ("pin = \"D3\"", "pin = \"A5\""),
+        ("pin = \"D3\"", "pin = \"D12\""),
+        (
+            "[gait.walk]",
+            "[gait.walk-slow1]\nlike = \"walk\"\nperiod = 60\n[gait.walk]",
+        ),
+    ] {
+        if let Err(error) = paper_with(old, new) {
+            panic!("{new:?}: {error}");
+        }
+    }
+}
+
+#[test]
+fn the_papers_robot_is_accepted() {
+    assert!(Robot::parse(&paper_text()).is_ok());
+}

@@ -1,0 +1,162 @@
+//! The mean path within a cycle, compared with the predicted path.
+//!
+//! Frames are taken at any phase, and the path between two frames is not a straight line. Therefore the place in each
+//! frame is compared with the predicted place at the same phase. The differences change slowly within a cycle, so they
+//! are averaged over bins of the phase.
+
+use lizard_contact::Travel;
+
+use crate::cycles::Cycles;
+use crate::gait::Gait;
+use crate::mean::{self, Mean, WalkValues};
+use crate::path::PathPoint;
+use crate::walk::{Deviation, Walk};
+
+/// Largest number of bins of the phase; each bin should have at least one frame of every cycle.
+const MAX_BINS: usize = 24;
+
+/// A point of the mean path within a cycle, relative to the cycle's start: forward and left, mm, and turn, deg.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CyclePoint {
+    /// Phase, 0 to 1: the centre of the bin over which the point is averaged.
+    pub phase: f64,
+    /// The measured place.
+    pub measured: [Mean; 3],
+    /// The predicted place.
+    pub predicted: [f64; 3],
+}
+
+impl CyclePoint {
+    /// Returns the measured minus the predicted place, in standard errors: forward, left, turn.
+    pub fn standardised_differences(&self) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            let mean = self.measured[axis];
+            (mean.value - self.predicted[axis]) / mean.standard_error.max(1e-6)
+        })
+    }
+}
+
+/// Computes the deviation of each frame from the predicted path within a cycle.
+pub(crate) fn compute_deviations(
+    path: &[PathPoint],
+    cycles: &Cycles,
+    gait: &Gait,
+) -> Vec<Deviation> {
+    let mut deviations = Vec::new();
+    for (cycle, pair) in cycles.starts.windows(2).enumerate() {
+        let (start, end) = (pair[0], pair[1].seconds);
+        let is_inside = |point: &&PathPoint| (start.seconds..end).contains(&point.seconds);
+        for point in path.iter().filter(is_inside) {
+            let phase = (point.seconds - start.seconds) / (end - start.seconds);
+            let [measured, predicted] = [
+                point.place.travel_from(start.place),
+                gait.place_at(phase).travel(),
+            ]
+            .map(components);
+            deviations.push(Deviation {
+                cycle,
+                phase,
+                offset: [0, 1, 2].map(|axis| measured[axis] - predicted[axis]),
+            });
+        }
+    }
+    deviations
+}
+
+/// Computes the mean path within a cycle over several walks. A bin with too few frames has no point.
+pub(crate) fn compute_points(walks: &[Walk], gait: &Gait) -> Vec<CyclePoint> {
+    let frames_per_cycle = walks
+        .iter()
+        .map(|walk| walk.deviations.len() / walk.cycles.travels.len());
+    let bin_count = frames_per_cycle.min().unwrap_or(0).clamp(1, MAX_BINS);
+    let mut points: Vec<CyclePoint> = (0..bin_count)
+        .filter_map(|bin_index| compute_point(walks, gait, bin_index, bin_count))
+        .collect();
+    // The spread of a few cycles is inaccurate, so no bin gets an error below the average.
+    for axis in 0..3 {
+        let squares = points
+            .iter()
+            .map(|point| random_error(point.measured[axis]).powi(2));
+        let typical_error = (squares.sum::<f64>() / points.len() as f64).sqrt();
+        for point in &mut points {
+            let mean = &mut point.measured[axis];
+            mean.standard_error = random_error(*mean)
+                .max(typical_error)
+                .hypot(mean.systematic_error);
+        }
+    }
+    points
+}
+
+/// Returns the part of a mean's standard error that results from the spread of the cycles.
+fn random_error(mean: Mean) -> f64 {
+    (mean.standard_error.powi(2) - mean.systematic_error.powi(2))
+        .max(0.0)
+        .sqrt()
+}
+
+/// Computes the point for one of `bin_count` equal bins of the phase; `None` if the bin has too few frames.
+fn compute_point(
+    walks: &[Walk],
+    gait: &Gait,
+    bin_index: usize,
+    bin_count: usize,
+) -> Option<CyclePoint> {
+    let phase = (bin_index as f64 + 0.5) / bin_count as f64;
+    let predicted = components(gait.place_at(phase).travel());
+    let rate = gait.rate_at(phase);
+    let compute_mean = |axis: usize| {
+        let walk_values = |walk: &Walk| {
+            let cycles = mean_by_cycle(walk, bin_index, bin_count, axis);
+            // The errors that all cycles have in common are those of the clock, the scale and the camera.
+            let clock_error = rate[axis] * walk.cycles.start_error / walk.cycles.period.value;
+            let scale_error = if axis < 2 {
+                predicted[axis] * walk.scale_error
+            } else {
+                0.0
+            };
+            let systematic_variance = clock_error.powi(2)
+                + scale_error.powi(2)
+                + phase.powi(2) * walk.scene_variances[axis];
+            (cycles.len() > 1).then(|| WalkValues {
+                cycles,
+                systematic_error: systematic_variance.sqrt(),
+            })
+        };
+        let walks: Vec<_> = walks.iter().filter_map(walk_values).collect();
+        (!walks.is_empty()).then(|| {
+            let mut mean = mean::compute_mean(&walks);
+            mean.value += predicted[axis];
+            mean
+        })
+    };
+    Some(CyclePoint {
+        phase,
+        measured: [compute_mean(0)?, compute_mean(1)?, compute_mean(2)?],
+        predicted,
+    })
+}
+
+/// Computes the mean deviation in a bin of the phase for each cycle that has a frame in that bin.
+fn mean_by_cycle(walk: &Walk, bin_index: usize, bin_count: usize, axis: usize) -> Vec<f64> {
+    let is_in_bin =
+        |deviation: &&Deviation| (deviation.phase * bin_count as f64) as usize == bin_index;
+    let cycle_mean = |cycle: usize| {
+        let values = walk
+            .deviations
+            .iter()
+            .filter(|deviation| deviation.cycle == cycle);
+        let values: Vec<f64> = values
+            .filter(is_in_bin)
+            .map(|deviation| deviation.offset[axis])
+            .collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    };
+    (0..walk.cycles.travels.len())
+        .filter_map(cycle_mean)
+        .collect()
+}
+
+fn components(travel: Travel) -> [f64; 3] {
+    [travel.forward, travel.left, travel.turn]
+}

@@ -1,0 +1,248 @@
+//! The cycles of a path.
+//!
+//! A distance per cycle means little without the phase at which a cycle starts: the body sways, so the forward
+//! direction depends on the phase. A clock error of half a percent causes the same relative error in every cycle.
+//! Therefore both phase and clock are fitted (`clock.rs`). Since frames are some time apart, cycles are measured
+//! between calm phases, at which the robot moves evenly. The displacement from the start of a cycle to its calm phase
+//! then converts the result to a cycle that is measured from its start.
+
+use lizard_contact::{Place, Travel};
+
+use crate::clock::{Clock, Movements};
+use crate::estimate::Estimate;
+use crate::gait::{Gait, HALF_WINDOW, MIN_MOVEMENT, movement_in_mm, movement_length};
+use crate::path::{self, PathPoint};
+use crate::video_error::VideoError;
+
+/// Smallest movement per cycle of an even walk, as a fraction of the usual movement.
+const MIN_EVEN_FRACTION: f64 = 0.9;
+/// Smallest movement per cycle of an uneven walk, such as a start or a stop, as a fraction of the usual movement.
+const MIN_UNEVEN_FRACTION: f64 = 0.25;
+/// Longest uneven walk that is allowed before and after the even walk, cycles.
+const MAX_UNEVEN_CYCLES: f64 = 1.25;
+/// Time that is ignored after the start and before the end of the even walk, cycles.
+const MARGIN_CYCLES: f64 = 0.15;
+
+/// The cycles of a path.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Cycles {
+    /// Duration of a cycle, s.
+    pub period: Estimate,
+    /// The predicted rate of movement at the calm phase, per cycle: mm, mm, deg.
+    pub calm_rate: [f64; 3],
+    /// The times of the calm phases at which the path is divided into cycles, s.
+    pub boundaries: Vec<f64>,
+    /// The movement of each cycle.
+    pub travels: Vec<Travel>,
+    /// Time and place of the start of each cycle, and of the last cycle's end.
+    pub starts: Vec<PathPoint>,
+    /// Standard error of the times in `starts`, s.
+    pub start_error: f64,
+}
+
+/// Finds the cycles of a path.
+///
+/// # Errors
+/// Fails if the robot does not move, does not move like the gait, changes its movement, or walks for less than two
+/// cycles.
+pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, VideoError> {
+    let (walk, [begin, end]) = select_even_walk(path, gait)?;
+    let movements = Movements::from_path(walk, gait.period);
+    let Clock { start, period } = movements.fit_clock(gait)?;
+    if let Some(seconds) = movements.find_change(period.value) {
+        let seconds = seconds - path[0].seconds;
+        return Err(VideoError::MovementChanges { seconds });
+    }
+    let calm_phase = gait.find_calm_phase();
+    // The times of the calm phases within the walk.
+    let first = ((begin - start.value) / period.value - calm_phase).ceil() as i64;
+    let times = (first..).map(|i| start.value + (i as f64 + calm_phase) * period.value);
+    let half_window = HALF_WINDOW * gait.period;
+    let calm_point_at = |seconds: f64| {
+        let place = path::smoothed_place_at(path, seconds, half_window)?;
+        Some(PathPoint { seconds, place })
+    };
+    let calm_points: Vec<PathPoint> = times
+        .take_while(|&time| time <= end)
+        .map(calm_point_at)
+        // The first calm phase may have too few frames before it.
+        .skip_while(Option::is_none)
+        .map_while(|point| point)
+        .collect();
+    if calm_points.len() < 3 {
+        return Err(too_short_error(end - begin, gait));
+    }
+    let start_to_calm =
+        mean_displacement_to_calm(walk, &calm_points, calm_phase, period.value, gait)
+            .unwrap_or_else(|| gait.place_at(calm_phase));
+    let calm_to_start = path::inverse(start_to_calm);
+    let cycle_travel = |pair: &[PathPoint]| {
+        let cycle = path::travel_to_place(pair[1].place.travel_from(pair[0].place));
+        path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
+    };
+    let cycle_start = |point: &PathPoint| PathPoint {
+        seconds: point.seconds - calm_phase * period.value,
+        place: path::compose(point.place, calm_to_start),
+    };
+    Ok(Cycles {
+        period,
+        calm_rate: gait.rate_at(calm_phase),
+        boundaries: calm_points.iter().map(|point| point.seconds).collect(),
+        travels: calm_points.windows(2).map(cycle_travel).collect(),
+        starts: calm_points.iter().map(cycle_start).collect(),
+        start_error: start.standard_error,
+    })
+}
+
+/// Computes the movements while the robot walks evenly; fails if they are too few for a comparison with a gait.
+pub(crate) fn compute_movements(path: &[PathPoint], gait: &Gait) -> Result<Movements, VideoError> {
+    Ok(Movements::from_path(
+        select_even_walk(path, gait)?.0,
+        gait.period,
+    ))
+}
+
+/// Selects the part of a path on which the robot walks evenly; returns it with the times of its start and end, s.
+fn select_even_walk<'a>(
+    path: &'a [PathPoint],
+    gait: &Gait,
+) -> Result<(&'a [PathPoint], [f64; 2]), VideoError> {
+    let [begin, end] = find_even_walk(path, gait)?;
+    let first = path.partition_point(|point| point.seconds < begin);
+    let last = path.partition_point(|point| point.seconds <= end);
+    let walk = &path[first..last.max(first)];
+    if end - begin < 2.0 * gait.period || Movements::from_path(walk, gait.period).are_too_few() {
+        return Err(too_short_error(end - begin, gait));
+    }
+    Ok((walk, [begin, end]))
+}
+
+fn too_short_error(seconds: f64, gait: &Gait) -> VideoError {
+    VideoError::TooShort {
+        cycles: seconds.max(0.0) / gait.period,
+        period: gait.period,
+    }
+}
+
+/// Computes the mean displacement from the start of a cycle to its calm phase; `None` if no cycle has frames both
+/// before and after its start.
+fn mean_displacement_to_calm(
+    path: &[PathPoint],
+    calm_points: &[PathPoint],
+    calm_phase: f64,
+    period: f64,
+    gait: &Gait,
+) -> Option<Place> {
+    let displacements: Vec<Place> = calm_points
+        .iter()
+        .filter_map(|point| {
+            let start_seconds = point.seconds - calm_phase * period;
+            let start = place_at_start(path, start_seconds, period, gait)?;
+            Some(path::travel_to_place(point.place.travel_from(start)))
+        })
+        .collect();
+    let mean_coordinate = |coordinate: fn(&Place) -> f64| {
+        displacements.iter().map(coordinate).sum::<f64>() / displacements.len() as f64
+    };
+    (!displacements.is_empty()).then(|| Place {
+        forward: mean_coordinate(|displacement| displacement.forward),
+        left: mean_coordinate(|displacement| displacement.left),
+        heading: mean_coordinate(|displacement| displacement.heading),
+    })
+}
+
+/// Computes the place at the start of a cycle: shifts the places in the frames before and after the start to that time
+/// by the predicted movement, then interpolates. Without the prediction, interpolation would be wrong for a gait that
+/// starts with a jerk. `None` if there is no frame before or after the start.
+fn place_at_start(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+    let next_index = path.partition_point(|point| point.seconds < seconds);
+    let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);
+    let shifted_place = |point: &PathPoint| {
+        let phase = 1.0 + (point.seconds - seconds) / period;
+        let displacement =
+            path::travel_to_place(gait.place_at(phase).travel_from(gait.place_at(1.0)));
+        path::compose(point.place, path::inverse(displacement))
+    };
+    let fraction = (seconds - a.seconds) / (b.seconds - a.seconds);
+    Some(path::interpolate(
+        shifted_place(a),
+        shifted_place(b),
+        fraction,
+    ))
+}
+
+/// Finds the start and the end of the time in which the robot walks evenly, s.
+fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoError> {
+    let travels: Vec<(f64, Travel)> = path
+        .iter()
+        .filter_map(|point| {
+            let later_place = path::interpolate_at(path, point.seconds + gait.period)?;
+            Some((point.seconds, later_place.travel_from(point.place)))
+        })
+        .collect();
+    let movement_lengths: Vec<f64> = travels
+        .iter()
+        .map(|(_, travel)| movement_length(movement_in_mm(*travel)))
+        .collect();
+    let max_length = movement_lengths.iter().copied().fold(0.0, f64::max);
+    if travels.is_empty() {
+        let duration = path.last().map_or(0.0, |point| point.seconds)
+            - path.first().map_or(0.0, |point| point.seconds);
+        return Err(too_short_error(duration, gait));
+    }
+    if max_length < MIN_MOVEMENT {
+        let distances = travels
+            .iter()
+            .map(|(_, travel)| travel.forward.hypot(travel.left));
+        return Err(VideoError::NoMovement {
+            distance: distances.fold(0.0, f64::max),
+            turn: travels
+                .iter()
+                .map(|(_, travel)| travel.turn.abs())
+                .fold(0.0, f64::max),
+        });
+    }
+    let mut large_lengths: Vec<f64> = movement_lengths
+        .iter()
+        .copied()
+        .filter(|length| *length > max_length / 2.0)
+        .collect();
+    large_lengths.sort_by(f64::total_cmp);
+    let usual_length = large_lengths[large_lengths.len() / 2];
+    // Finds the longest run of frames after each of which the robot moves as far as usual within a cycle.
+    let (mut longest_run, mut run_start): (Option<[usize; 2]>, Option<usize>) = (None, None);
+    for (i, length) in movement_lengths.iter().enumerate() {
+        if *length < MIN_EVEN_FRACTION * usual_length {
+            run_start = None;
+            continue;
+        }
+        let run_begin = *run_start.get_or_insert(i);
+        if longest_run.is_none_or(|[a, b]| i - run_begin > b - a) {
+            longest_run = Some([run_begin, i]);
+        }
+    }
+    let [even_begin, even_end] = longest_run.unwrap_or_default();
+    let is_moving = |length: &f64| *length > MIN_UNEVEN_FRACTION * usual_length;
+    let first = movement_lengths
+        .iter()
+        .position(is_moving)
+        .unwrap_or(even_begin);
+    let last = movement_lengths
+        .iter()
+        .rposition(is_moving)
+        .unwrap_or(even_end);
+    for (start, end, seconds) in [
+        (first, even_begin, travels[even_begin].0),
+        (even_end, last, travels[even_end].0 + gait.period),
+    ] {
+        if travels[end].0 - travels[start].0 > MAX_UNEVEN_CYCLES * gait.period {
+            let seconds = seconds - path[0].seconds;
+            return Err(VideoError::MovementChanges { seconds });
+        }
+    }
+    let margin = MARGIN_CYCLES * gait.period;
+    Ok([
+        travels[even_begin].0 + margin,
+        travels[even_end].0 + gait.period - margin,
+    ])
+}

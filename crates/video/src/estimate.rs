@@ -1,0 +1,17 @@
+//! A measured value with its standard error.
+
+/// A measured value with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The measured value.
+    pub value: f64,
+    /// The true value is within two standard errors with a probability of 95 %.
+    pub standard_error: f64,
+}
+
+impl Estimate {
+    /// True if this estimate exceeds `value` by more than two standard errors.
+    pub fn is_significantly_above(&self, value: f64) -> bool {
+        self.value - value > 2.0 * self.standard_error
+    }
+}

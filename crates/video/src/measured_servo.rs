@@ -1,0 +1,503 @@
+//! A servo measured in a video: the angle by which it turns for its pulses, its rate, and the small steps that it
+//! ignores.
+//!
+//! The servo gets the steps of [`crate::servo_commands`] at even intervals, but the time of the first step in the video
+//! is unknown. This time is found from the angles at which the horn rests, which must depend linearly on the commands.
+
+use crate::estimate::Estimate;
+use crate::least_squares;
+use crate::mean::{self, WalkValues, small_sample_factor};
+use crate::path::PathPoint;
+use crate::rates::{LargeStep, Rates};
+use crate::servo_commands::{self, COMMAND_INTERVAL, ServoCommand};
+use crate::servo_error::ServoError;
+
+/// Start and end of the horn's rest after a command, as fractions of the command interval.
+const REST_FRACTIONS: [f64; 2] = [0.45, 0.92];
+/// Step of the search for the time of the first command, as a fraction of the command interval.
+const SEARCH_STEP_FRACTION: f64 = 0.02;
+/// Smallest fraction of the commands after which the horn must be visible at rest.
+const MIN_VISIBLE_FRACTION: f64 = 0.9;
+/// Time from a command to the moment at which half of its large step is complete, s.
+const HALF_WAY_SECONDS: f64 = 0.1;
+/// Smallest turn that shows a moving servo, deg.
+const MIN_TURN: f64 = 5.0;
+/// Largest fraction of the rest angles' variance that the commands may leave unexplained.
+const MAX_UNEXPLAINED_FRACTION: f64 = 0.02;
+/// Other command intervals that are tried, as multiples of [`COMMAND_INTERVAL`].
+const INTERVAL_MULTIPLES: [f64; 5] = [0.25, 0.5, 2.0, 4.0, 8.0];
+/// Largest rate that counts as the servo's own rate, as a fraction of the slew limit.
+const MAX_OWN_RATE_FRACTION: f64 = 0.8;
+/// Relative standard error of an angle due to the camera.
+const CAMERA_SIGMA: f64 = 0.002;
+/// Relative standard error of a rate due to the simple motor model.
+const MOTOR_SIGMA: f64 = 0.003;
+/// Smallest angle that counts as a movement, deg.
+const MIN_MOVEMENT: f64 = 0.05;
+/// Smallest angle that counts as a movement, as a multiple of its standard error.
+const MIN_MOVEMENT_SIGMAS: f64 = 3.0;
+/// Largest movement in a small step that is used for the dead band, deg: after a larger one the servo overshoots.
+const MAX_SMALL_MOVEMENT: f64 = 1.6;
+/// Standard error of the dead band's width, deg: the servo does not always stop at the edge of the dead band.
+const DEAD_BAND_SIGMA: f64 = 0.06;
+/// Relative standard error of the load's torque: half a millimetre in a lever arm of 20 mm.
+const LOAD_SIGMA: f64 = 0.025;
+
+/// The known parameters of the jig, which holds a servo under the camera with the sheet's card on the horn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jig {
+    /// Side of neutral on which the poses lie: 1 for counter-clockwise, -1 for clockwise.
+    pub side: f64,
+    /// Slew limit of the commands, deg/s.
+    pub slew: f64,
+    /// Expected rotor time constant, s.
+    pub rotor_time_constant: f64,
+}
+
+/// The dead band, measured with small steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DeadBand {
+    /// Width, nominal deg; `None` if too few small steps moved the servo.
+    pub width: Option<Estimate>,
+    /// Largest small step that did not move the servo, nominal deg; 0 if all steps moved the servo.
+    pub largest_ignored_step: f64,
+}
+
+/// A measured servo. A nominal deg is a deg according to the pulse scale in robot.toml.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredServo {
+    /// Angle by which the servo turns per nominal deg; negative if it turns in the opposite direction.
+    pub gain: Estimate,
+    /// Difference between the angles at which the servo stops when it approaches from either side, nominal deg.
+    pub hysteresis: Estimate,
+    /// The dead band.
+    pub dead_band: DeadBand,
+    /// Mean of the rates in both directions, deg/s.
+    pub rate: Estimate,
+    /// Rates counter-clockwise and clockwise, deg/s.
+    pub rates: [Estimate; 2],
+    /// Rotor time constant, s; `None` if the video has too few frames to determine it.
+    pub rotor_time_constant: Option<Estimate>,
+    /// Time of the first command, s.
+    pub first_command_seconds: f64,
+    /// Frames per second.
+    pub frame_rate: f64,
+    /// The large steps, counter-clockwise and clockwise.
+    large_steps: [Vec<LargeStep>; 2],
+    /// Expected rotor time constant, s.
+    expected_time_constant: f64,
+}
+
+impl MeasuredServo {
+    /// Measures a servo from the path of the card on its horn.
+    ///
+    /// # Errors
+    /// Fails if the horn does not turn as commanded or is visible in too few frames, or if the rate is near the slew
+    /// limit.
+    pub fn from_path(path: &[PathPoint], jig: Jig) -> Result<Self, ServoError> {
+        let horn_path = HornPath::new(path);
+        let commands = servo_commands::list_commands(jig.side);
+        let first_command_seconds = horn_path.find_first_command(&commands)?;
+        let rests: Vec<Option<f64>> = (0..commands.len())
+            .map(|i| horn_path.rest_angle(first_command_seconds, COMMAND_INTERVAL, i))
+            .collect();
+        let [gain, hysteresis] =
+            fit_gain_and_hysteresis(&commands, &rests).ok_or(ServoError::StepMismatch)?;
+        let large_steps = horn_path.find_large_steps(first_command_seconds, &rests);
+        let too_few_frames = ServoError::TooFewFrames {
+            rate: horn_path.frame_rate(),
+        };
+        let groups: Vec<&[LargeStep]> = large_steps.iter().map(Vec::as_slice).collect();
+        let fit = Rates::fit(&groups, jig.rotor_time_constant).ok_or(too_few_frames)?;
+        let (rate_ccw, rate_cw) = (fit.rates[0], fit.rates[1]);
+        let rate = fit.propagate_error((rate_ccw + rate_cw) / 2.0, &[0.5, 0.5]);
+        if rate.value > MAX_OWN_RATE_FRACTION * jig.slew {
+            return Err(ServoError::AtSlewLimit {
+                rate: rate.value,
+                slew: jig.slew,
+            });
+        }
+        Ok(Self {
+            gain,
+            hysteresis,
+            dead_band: horn_path.find_dead_band(
+                first_command_seconds,
+                &commands,
+                &rests,
+                gain.value,
+            ),
+            rate: add_model_error(rate),
+            rates: [
+                fit.propagate_error(rate_ccw, &[1.0, 0.0]),
+                fit.propagate_error(rate_cw, &[0.0, 1.0]),
+            ]
+            .map(add_model_error),
+            rotor_time_constant: fit.rotor_time_constant,
+            first_command_seconds,
+            frame_rate: horn_path.frame_rate(),
+            large_steps,
+            expected_time_constant: jig.rotor_time_constant,
+        })
+    }
+
+    /// Computes the stall torque, in the unit of `torque`, from this measurement without a load and a measurement with
+    /// a load of `torque`. The rate falls linearly with the torque. The load acts only in the direction in which it
+    /// slows the servo down more.
+    ///
+    /// # Errors
+    /// Fails if there are too few frames, if the load does not slow the servo down, or if `loaded` seems to be the
+    /// measurement without the load.
+    pub fn compute_stall_torque(&self, loaded: &Self, torque: f64) -> Result<Estimate, ServoError> {
+        let too_few_frames = ServoError::TooFewFrames {
+            rate: self.frame_rate.min(loaded.frame_rate),
+        };
+        let rate_loss = |direction: usize| {
+            let fit = Rates::fit(
+                &[&self.large_steps[direction], &loaded.large_steps[direction]],
+                self.expected_time_constant,
+            )?;
+            let (free_rate, loaded_rate) = (fit.rates[0], fit.rates[1]);
+            Some(fit.propagate_error(
+                1.0 - loaded_rate / free_rate,
+                &[loaded_rate / free_rate.powi(2), -1.0 / free_rate],
+            ))
+        };
+        let losses = [
+            rate_loss(0).ok_or(too_few_frames)?,
+            rate_loss(1).ok_or(too_few_frames)?,
+        ];
+        let loss = losses[usize::from(losses[1].value > losses[0].value)];
+        if !loss.is_significantly_above(0.0) {
+            return Err(ServoError::LoadTooSmall {
+                percent: 100.0 * loss.value,
+                error: 100.0 * loss.standard_error,
+            });
+        }
+        // Only a load makes one direction slower than the other.
+        let asymmetry = |servo: &Self| (servo.rates[0].value - servo.rates[1].value).abs();
+        if asymmetry(self) > asymmetry(loaded) {
+            return Err(ServoError::VideosSwapped);
+        }
+        let value = torque / loss.value;
+        Ok(Estimate {
+            value,
+            standard_error: value * (loss.standard_error / loss.value).hypot(LOAD_SIGMA),
+        })
+    }
+}
+
+/// Adds the errors of the camera and of the motor model to a rate.
+fn add_model_error(rate: Estimate) -> Estimate {
+    add_relative_error(add_relative_error(rate, CAMERA_SIGMA), MOTOR_SIGMA)
+}
+
+fn add_relative_error(estimate: Estimate, relative_sigma: f64) -> Estimate {
+    Estimate {
+        standard_error: estimate
+            .standard_error
+            .hypot(relative_sigma * estimate.value),
+        ..estimate
+    }
+}
+
+/// Fits gain and hysteresis to the angles at which the horn rests in the visited poses; `None` if too few of these
+/// angles are visible. Moves of the same length lead to all these poses, so the horn stops in the same way.
+fn fit_gain_and_hysteresis(
+    commands: &[ServoCommand],
+    rests: &[Option<f64>],
+) -> Option<[Estimate; 2]> {
+    let visits: Vec<(f64, f64, f64)> = servo_commands::visit_indices()
+        .filter_map(|i| {
+            let (previous, current) = (commands[i - 1].pulse_angle(), commands[i].pulse_angle());
+            (current != previous).then_some((current, (current - previous).signum(), rests[i]?))
+        })
+        .collect();
+    let start = [visits.first()?.2, 1.0, 0.0];
+    let residuals = |parameters: &[f64]| -> Vec<f64> {
+        let residual = |(commanded, direction, rest): &(f64, f64, f64)| {
+            parameters[0] + parameters[1] * commanded - parameters[2] * direction / 2.0 - rest
+        };
+        visits.iter().map(residual).collect()
+    };
+    let fit = least_squares::fit(&start, residuals)?;
+    let degrees_of_freedom = visits.len().checked_sub(start.len()).filter(|n| *n > 0)?;
+    let variance = fit.sum_of_squares / degrees_of_freedom as f64;
+    let standard_error = |i: usize| {
+        small_sample_factor(degrees_of_freedom) * (variance * fit.covariance[(i, i)]).sqrt()
+    };
+    let gain = Estimate {
+        value: fit.parameters[1],
+        standard_error: standard_error(1),
+    };
+    let gain = add_relative_error(gain, CAMERA_SIGMA);
+    let hysteresis = Estimate {
+        value: fit.parameters[2] / gain.value,
+        standard_error: standard_error(2) / gain.value.abs(),
+    };
+    Some([gain, hysteresis])
+}
+
+/// The horn's angles in a video, and their prefix sums.
+struct HornPath {
+    /// The time, s, and the angle, deg, of each frame.
+    angles: Vec<(f64, f64)>,
+    /// The sum of the angles of all frames before each frame, deg.
+    prefix_sums: Vec<f64>,
+}
+
+impl HornPath {
+    fn new(path: &[PathPoint]) -> Self {
+        let timed_angle = |point: &PathPoint| (point.seconds, point.place.heading.to_degrees());
+        let angles: Vec<_> = path.iter().map(timed_angle).collect();
+        let mut prefix_sums = vec![0.0];
+        for (i, (_, angle)) in angles.iter().enumerate() {
+            prefix_sums.push(prefix_sums[i] + angle);
+        }
+        Self {
+            angles,
+            prefix_sums,
+        }
+    }
+
+    /// Computes the frames per second from the median interval, which missing frames hardly change.
+    fn frame_rate(&self) -> f64 {
+        let intervals = self.angles.windows(2).map(|pair| pair[1].0 - pair[0].0);
+        let mut intervals: Vec<f64> = intervals.collect();
+        intervals.sort_by(f64::total_cmp);
+        intervals
+            .get(intervals.len() / 2)
+            .map_or(0.0, |interval| 1.0 / interval)
+    }
+
+    /// Returns the indices of the frames in which the horn rests after a command. The first command is at
+    /// `first_command_seconds`, and the command interval is `interval`, s.
+    fn rest_indices(
+        &self,
+        first_command_seconds: f64,
+        interval: f64,
+        command_index: usize,
+    ) -> std::ops::Range<usize> {
+        let [from, to] = REST_FRACTIONS.map(|fraction| {
+            let time = first_command_seconds + interval * (command_index as f64 + fraction);
+            self.angles.partition_point(|(seconds, _)| *seconds < time)
+        });
+        from..to
+    }
+
+    /// Computes the mean angle at which the horn rests after a command, deg; `None` if no frame shows it.
+    fn rest_angle(
+        &self,
+        first_command_seconds: f64,
+        interval: f64,
+        command_index: usize,
+    ) -> Option<f64> {
+        let indices = self.rest_indices(first_command_seconds, interval, command_index);
+        let sum = self.prefix_sums[indices.end] - self.prefix_sums[indices.start];
+        (!indices.is_empty()).then(|| sum / indices.len() as f64)
+    }
+
+    /// Computes the fraction of the rest angles' variance that the commands leave unexplained if the first command is
+    /// at `first_command_seconds`; `None` if too few rests are visible.
+    fn unexplained_fraction(
+        &self,
+        commands: &[ServoCommand],
+        first_command_seconds: f64,
+        interval: f64,
+    ) -> Option<f64> {
+        let command_and_rest = |i: usize| {
+            Some((
+                commands[i].pulse_angle(),
+                self.rest_angle(first_command_seconds, interval, i)?,
+            ))
+        };
+        let pairs: Vec<(f64, f64)> = (0..commands.len()).filter_map(command_and_rest).collect();
+        if (pairs.len() as f64) < MIN_VISIBLE_FRACTION * commands.len() as f64 {
+            return None;
+        }
+        let mean = |component: fn(&(f64, f64)) -> f64| {
+            pairs.iter().map(component).sum::<f64>() / pairs.len() as f64
+        };
+        let (mean_command, mean_rest) = (mean(|pair| pair.0), mean(|pair| pair.1));
+        let (mut command_square_sum, mut product_sum, mut rest_square_sum) = (0.0, 0.0, 0.0);
+        for (a, b) in &pairs {
+            let (a, b) = (a - mean_command, b - mean_rest);
+            command_square_sum += a * a;
+            product_sum += a * b;
+            rest_square_sum += b * b;
+        }
+        Some(1.0 - product_sum * product_sum / (command_square_sum * rest_square_sum).max(1e-9))
+    }
+
+    /// Finds the time of the first command, s, that minimises the unexplained fraction. Returns the time and the
+    /// fraction.
+    fn find_best_first_command(
+        &self,
+        commands: &[ServoCommand],
+        interval: f64,
+    ) -> Option<(f64, f64)> {
+        let (first, last) = (self.angles.first()?.0, self.angles.last()?.0);
+        let end = last - interval * (commands.len() as f64 - 1.0 + REST_FRACTIONS[0]);
+        let try_count =
+            ((end - first + interval) / (SEARCH_STEP_FRACTION * interval)).max(0.0) as usize;
+        (0..=try_count)
+            .map(|i| first - interval + i as f64 * SEARCH_STEP_FRACTION * interval)
+            .filter_map(|first_command_seconds| {
+                Some((
+                    self.unexplained_fraction(commands, first_command_seconds, interval)?,
+                    first_command_seconds,
+                ))
+            })
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(fraction, first_command_seconds)| (first_command_seconds, fraction))
+    }
+
+    /// Finds the time of the first command, s.
+    fn find_first_command(&self, commands: &[ServoCommand]) -> Result<f64, ServoError> {
+        let angle_values = || self.angles.iter().map(|(_, angle)| *angle);
+        let turn =
+            angle_values().fold(f64::MIN, f64::max) - angle_values().fold(f64::MAX, f64::min);
+        if turn <= MIN_TURN {
+            return Err(ServoError::NoTurn {
+                turn: turn.max(0.0),
+            });
+        }
+        let is_explained = |(_, unexplained): &(f64, f64)| *unexplained < MAX_UNEXPLAINED_FRACTION;
+        if let Some((first_command_seconds, _)) = self
+            .find_best_first_command(commands, COMMAND_INTERVAL)
+            .filter(is_explained)
+        {
+            return Ok(self.refine_first_command(first_command_seconds));
+        }
+        for multiple in INTERVAL_MULTIPLES {
+            if self
+                .find_best_first_command(commands, multiple * COMMAND_INTERVAL)
+                .is_some_and(|best| is_explained(&best))
+            {
+                return Err(ServoError::WrongStepInterval { ratio: multiple });
+            }
+        }
+        let seconds = self.angles[self.angles.len() - 1].0 - self.angles[0].0;
+        let needed = COMMAND_INTERVAL * commands.len() as f64;
+        Err(match seconds < needed - COMMAND_INTERVAL {
+            true => ServoError::TooShort { seconds, needed },
+            false => ServoError::StepMismatch,
+        })
+    }
+
+    /// Refines the time of the first command, s, from the times at which the large steps are half complete.
+    fn refine_first_command(&self, first_command_seconds: f64) -> f64 {
+        let estimate_from_step = |i: usize| {
+            let (from, to) = (
+                self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i - 1)?,
+                self.rest_angle(first_command_seconds, COMMAND_INTERVAL, i)?,
+            );
+            let half_way_angle = (from + to) / 2.0;
+            let indices = self
+                .rest_indices(first_command_seconds, COMMAND_INTERVAL, i - 1)
+                .start
+                ..self
+                    .rest_indices(first_command_seconds, COMMAND_INTERVAL, i)
+                    .end;
+            let pairs = self.angles[indices].windows(2);
+            let mut crossings =
+                pairs.filter(|pair| (pair[0].1 < half_way_angle) != (pair[1].1 < half_way_angle));
+            let pair = crossings.next()?;
+            let ((start_time, start_angle), (end_time, end_angle)) = (pair[0], pair[1]);
+            let fraction = (half_way_angle - start_angle) / (end_angle - start_angle);
+            let time = start_time + fraction * (end_time - start_time);
+            Some(time - COMMAND_INTERVAL * i as f64 - HALF_WAY_SECONDS)
+        };
+        let mut estimates: Vec<f64> = servo_commands::large_step_indices()
+            .filter_map(estimate_from_step)
+            .collect();
+        estimates.sort_by(f64::total_cmp);
+        estimates
+            .get(estimates.len() / 2)
+            .copied()
+            .unwrap_or(first_command_seconds)
+    }
+
+    /// Finds the large steps, counter-clockwise and clockwise.
+    fn find_large_steps(
+        &self,
+        first_command_seconds: f64,
+        rests: &[Option<f64>],
+    ) -> [Vec<LargeStep>; 2] {
+        let mut steps = [Vec::new(), Vec::new()];
+        for i in servo_commands::large_step_indices() {
+            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+                continue;
+            };
+            let indices = self
+                .rest_indices(first_command_seconds, COMMAND_INTERVAL, i - 1)
+                .end
+                ..self
+                    .rest_indices(first_command_seconds, COMMAND_INTERVAL, i)
+                    .end;
+            let angles = self.angles[indices]
+                .iter()
+                .map(|(time, angle)| (*time, angle - from));
+            steps[usize::from(to < from)].push(LargeStep::new(angles, to - from));
+        }
+        steps
+    }
+
+    /// Finds the dead band from the small steps: in each step, the servo moves less than commanded by the dead band's
+    /// width.
+    fn find_dead_band(
+        &self,
+        first_command_seconds: f64,
+        commands: &[ServoCommand],
+        rests: &[Option<f64>],
+        gain: f64,
+    ) -> DeadBand {
+        // Sums up the squared deviations of the frames from the mean angle of their rest.
+        let (mut squares, mut degrees_of_freedom, mut frame_count) = (0.0, 0usize, 0usize);
+        for (i, rest) in rests.iter().enumerate() {
+            let rest_angles =
+                &self.angles[self.rest_indices(first_command_seconds, COMMAND_INTERVAL, i)];
+            let Some(rest) = rest else { continue };
+            squares += rest_angles
+                .iter()
+                .map(|(_, angle)| (angle - rest).powi(2))
+                .sum::<f64>();
+            degrees_of_freedom += rest_angles.len().saturating_sub(1);
+            frame_count += rest_angles.len();
+        }
+        let frames_per_rest = frame_count as f64 / rests.len() as f64;
+        let variance = squares / degrees_of_freedom.max(1) as f64;
+        let movement_error = (2.0 * variance / frames_per_rest.max(1.0)).sqrt() / gain.abs();
+        let min_movement = MIN_MOVEMENT.max(MIN_MOVEMENT_SIGMAS * movement_error);
+        let (mut lost_angles, mut largest_ignored_step, mut has_moved) =
+            (Vec::new(), 0.0f64, false);
+        for i in servo_commands::small_step_indices() {
+            let (Some(from), Some(to)) = (rests[i - 1], rests[i]) else {
+                continue;
+            };
+            let commanded = commands[i].pulse_angle() - commands[i - 1].pulse_angle();
+            let movement = (to - from) / gain * commanded.signum();
+            let had_moved = std::mem::replace(&mut has_moved, movement > min_movement);
+            if !has_moved {
+                largest_ignored_step = largest_ignored_step.max(commanded.abs());
+            } else if had_moved && movement < MAX_SMALL_MOVEMENT {
+                // After a movement, the servo stands at the edge of its dead band; otherwise it may stand anywhere
+                // in the dead band.
+                lost_angles.push(commanded.abs() - movement);
+            }
+        }
+        let width = (lost_angles.len() > 1).then(|| {
+            let mean = mean::compute_mean(&[WalkValues {
+                cycles: lost_angles,
+                systematic_error: 0.0,
+            }]);
+            Estimate {
+                value: mean.value,
+                standard_error: mean.standard_error.hypot(DEAD_BAND_SIGMA),
+            }
+        });
+        DeadBand {
+            width,
+            largest_ignored_step,
+        }
+    }
+}

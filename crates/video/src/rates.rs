@@ -1,0 +1,158 @@
+//! The rate of a servo in large steps, computed from frames of the turning horn.
+//!
+//! At full torque a motor accelerates toward a steady rate with its rotor time constant. Data sheets give the steady
+//! rate; a straight line through the middle of a step of 60 deg would give 2 % less. A video with few frames per second
+//! hardly distinguishes the rate from the time constant. The fit therefore assumes the time constant in robot.toml to
+//! be right within a factor of two, and the error of the rate includes this uncertainty.
+
+use crate::estimate::Estimate;
+use crate::least_squares;
+use crate::mean::small_sample_factor;
+
+/// Range of a step from which frames are used, as fractions of the step. Above this range, the servo begins to brake.
+const USED_FRACTION_RANGE: [f64; 2] = [0.02, 0.85];
+/// Expected standard deviation of the time constant's natural logarithm.
+const LOG_SIGMA: f64 = 0.7;
+/// Largest standard error of the time constant's natural logarithm at which the time constant counts as measured.
+const MAX_LOG_ERROR: f64 = 0.25;
+/// Relative standard error of a time constant due to the simple motor model.
+const MOTOR_SIGMA: f64 = 0.02;
+/// First estimate of an angle's standard error in one frame, deg; the residuals give the true value.
+const ANGLE_SIGMA: f64 = 0.3;
+/// Smallest number of steps with at least two frames in a group.
+const MIN_STEPS: usize = 2;
+/// Smallest number of frames in a group, not counting the first frame of each step.
+const MIN_FRAMES: usize = 6;
+
+/// The frames of a large step that the fit uses.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LargeStep {
+    /// The time of each frame, s, and the angle by which the horn has turned since the start of the step, deg, always
+    /// positive.
+    frames: Vec<(f64, f64)>,
+}
+
+impl LargeStep {
+    /// Selects the frames that the fit uses. `frames` has times, s, and angles, deg, since the start of the step.
+    pub(crate) fn new(frames: impl Iterator<Item = (f64, f64)>, step_deg: f64) -> Self {
+        let [low, high] = USED_FRACTION_RANGE.map(|fraction| fraction * step_deg.abs());
+        let turns = frames.map(|(time, angle)| (time, angle * step_deg.signum()));
+        let before_braking = turns.take_while(|(_, angle)| *angle < high);
+        Self {
+            frames: before_braking.filter(|(_, angle)| *angle > low).collect(),
+        }
+    }
+}
+
+/// The rates of groups of steps, and their common time constant.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Rates {
+    /// The rate of each group, deg/s.
+    pub rates: Vec<f64>,
+    /// The covariance of the rates.
+    covariance: Vec<Vec<f64>>,
+    /// The common time constant, s; `None` if the video does not determine it.
+    pub rotor_time_constant: Option<Estimate>,
+}
+
+impl Rates {
+    /// Fits groups of steps, each with its own rate; `None` if there are too few frames or the fit fails.
+    /// `expected_time_constant` is in s.
+    pub(crate) fn fit(groups: &[&[LargeStep]], expected_time_constant: f64) -> Option<Self> {
+        let mut start = Vec::new();
+        for group in groups {
+            let usable_steps = || group.iter().filter(|step| step.frames.len() > 1);
+            let frame_count: usize = usable_steps().map(|step| step.frames.len() - 1).sum();
+            if usable_steps().count() < MIN_STEPS || frame_count < MIN_FRAMES {
+                return None;
+            }
+            start.push(usable_steps().map(mean_rate).sum::<f64>() / usable_steps().count() as f64);
+        }
+        let group_count = start.len();
+        start.push(0.0);
+        let steps: Vec<(usize, &LargeStep)> = groups
+            .iter()
+            .enumerate()
+            .flat_map(|(group, steps)| steps.iter().map(move |step| (group, step)))
+            .filter(|(_, step)| step.frames.len() > 1)
+            .collect();
+        for (group, step) in &steps {
+            let (time, angle) = step.frames[0];
+            start.push(time - angle / start[*group] - expected_time_constant);
+        }
+        let residuals = |parameters: &[f64], sigma: f64| {
+            let time_constant = expected_time_constant * parameters[group_count].exp();
+            let mut all_residuals = vec![parameters[group_count] / LOG_SIGMA];
+            for ((group, step), begin) in steps.iter().zip(&parameters[group_count + 1..]) {
+                let residual = |(time, angle): &(f64, f64)| {
+                    (angle_after(parameters[*group], time_constant, time - begin) - angle) / sigma
+                };
+                all_residuals.extend(step.frames.iter().map(residual));
+            }
+            all_residuals
+        };
+        let first_fit =
+            least_squares::fit(&start, |parameters| residuals(parameters, ANGLE_SIGMA))?;
+        let total_frame_count: usize = steps.iter().map(|(_, step)| step.frames.len()).sum();
+        let degrees_of_freedom = total_frame_count
+            .checked_sub(steps.len() + group_count)
+            .filter(|n| *n > 0)?;
+        let sigma = ANGLE_SIGMA
+            * (first_fit.sum_of_squares / degrees_of_freedom as f64)
+                .sqrt()
+                .max(0.05);
+        let fit = least_squares::fit(&first_fit.parameters, |parameters| {
+            residuals(parameters, sigma)
+        })?;
+        let variance_factor = small_sample_factor(degrees_of_freedom).powi(2);
+        let [log_ratio, log_error] = [
+            fit.parameters[group_count],
+            fit.covariance[(group_count, group_count)].sqrt(),
+        ];
+        let time_constant = expected_time_constant * log_ratio.exp();
+        Some(Self {
+            rates: fit.parameters[..group_count].to_vec(),
+            covariance: (0..group_count)
+                .map(|i| {
+                    (0..group_count)
+                        .map(|j| variance_factor * fit.covariance[(i, j)])
+                        .collect()
+                })
+                .collect(),
+            rotor_time_constant: (log_error < MAX_LOG_ERROR).then_some(Estimate {
+                value: time_constant,
+                standard_error: time_constant * log_error.hypot(MOTOR_SIGMA),
+            }),
+        })
+    }
+
+    /// Propagates the errors of the rates to a value that is computed from them. `gradient` has the value's derivative
+    /// with respect to each rate.
+    pub(crate) fn propagate_error(&self, value: f64, gradient: &[f64]) -> Estimate {
+        let pairs = gradient.iter().zip(&self.covariance).flat_map(|(a, row)| {
+            row.iter()
+                .zip(gradient)
+                .map(move |(covariance, b)| a * covariance * b)
+        });
+        Estimate {
+            value,
+            standard_error: pairs.sum::<f64>().max(0.0).sqrt(),
+        }
+    }
+}
+
+/// Computes the mean rate of a step with at least two frames, deg/s.
+fn mean_rate(step: &LargeStep) -> f64 {
+    let ((start_time, start_angle), (end_time, end_angle)) =
+        (step.frames[0], step.frames[step.frames.len() - 1]);
+    (end_angle - start_angle) / (end_time - start_time)
+}
+
+/// Computes the angle by which a motor turns in the first `seconds` at full torque, deg. `time_constant` is the rotor
+/// time constant, s.
+fn angle_after(rate: f64, time_constant: f64, seconds: f64) -> f64 {
+    if seconds <= 0.0 {
+        return 0.0;
+    }
+    rate * (seconds + time_constant * (-seconds / time_constant).exp_m1())
+}

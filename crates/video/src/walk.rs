@@ -1,0 +1,53 @@
+//! A walk from one rest to the next: the cycles of one gait, and the sources of their uncertainty.
+
+use lizard_contact::Travel;
+
+use crate::cycles::Cycles;
+
+/// The measured cycles of a walk, with the sources of their uncertainty.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Walk {
+    pub cycles: Cycles,
+    /// Variances of the mean cycle that result from the scene's covariance: forward and left, mm^2, and turn, deg^2.
+    pub scene_variances: [f64; 3],
+    /// Relative standard error of all lengths.
+    pub scale_error: f64,
+    /// The deviation of each frame from the predicted path.
+    pub deviations: Vec<Deviation>,
+}
+
+impl Walk {
+    /// Computes the part of the mean cycle's error that all cycles have in common: the errors of ruler, height, clock
+    /// and camera. Forward and left, mm, and turn, deg.
+    pub(crate) fn systematic_errors(&self) -> [f64; 3] {
+        let components = travel_components(&self.cycles.travels);
+        let period = self.cycles.period;
+        [0, 1, 2].map(|i| {
+            let mean = components[i].iter().sum::<f64>() / components[i].len() as f64;
+            let scale_error = if i < 2 { mean * self.scale_error } else { 0.0 };
+            let clock_error = self.cycles.calm_rate[i] * period.standard_error / period.value;
+            (scale_error.powi(2) + clock_error.powi(2) + self.scene_variances[i]).sqrt()
+        })
+    }
+}
+
+/// The measured minus the predicted place in a frame, both relative to the start of the cycle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Deviation {
+    /// Index of the cycle in the walk.
+    pub cycle: usize,
+    /// Phase of the frame, 0 to 1.
+    pub phase: f64,
+    /// Forward and left, mm, and turn, deg.
+    pub offset: [f64; 3],
+}
+
+/// Returns the forward, left and turn components of every cycle: mm, mm, deg.
+pub(crate) fn travel_components(travels: &[Travel]) -> [Vec<f64>; 3] {
+    let components: [fn(&Travel) -> f64; 3] = [
+        |travel| travel.forward,
+        |travel| travel.left,
+        |travel| travel.turn,
+    ];
+    components.map(|component| travels.iter().map(component).collect())
+}

@@ -1,0 +1,106 @@
+//! The walks of a path: the times between two rests in which the robot moves.
+//!
+//! Within a cycle of a gait, the robot may stand still for a while. Only a longer standstill counts as a rest.
+
+use crate::gait::{Gait, MIN_MOVEMENT, movement_in_mm, movement_length};
+use crate::path::PathPoint;
+
+/// Smallest duration of a rest, s.
+const MIN_REST: f64 = 0.8;
+/// Largest root-mean-square distance of a rest's places from their mean, mm. The error of a tag's place is smaller.
+const MAX_REST_DEVIATION: f64 = 0.5;
+/// Smallest number of frames of a rest.
+const MIN_FRAMES: usize = 3;
+/// Ratio of the shortest rest to the longest standstill within a cycle.
+const MIN_REST_RATIO: f64 = 1.4;
+
+/// Finds the walks, in which the robot moves away between two rests. Returns the start and the end of each walk, s,
+/// extended at both ends by half of `min_rest_duration`. A rest lasts at least `min_rest_duration` seconds.
+pub(crate) fn find_walks(path: &[PathPoint], min_rest_duration: f64) -> Vec<[f64; 2]> {
+    let mut is_resting = vec![false; path.len()];
+    for (first, point) in path.iter().enumerate() {
+        let end = path
+            .partition_point(|later_point| later_point.seconds < point.seconds + min_rest_duration)
+            + 1;
+        // A rest at the start or the end of the video may have lasted longer.
+        let ends = match first {
+            0 => MIN_FRAMES.min(end)..end + 1,
+            _ => end..end + 1,
+        };
+        for end in ends.map(|end| end.min(path.len())) {
+            if is_still(&path[first..end]) {
+                is_resting[first..end].fill(true);
+            }
+        }
+    }
+    let mut walks = Vec::new();
+    let mut begin = 0;
+    while begin < path.len() {
+        let is_rest = is_resting[begin];
+        let end = (begin..path.len())
+            .find(|&i| is_resting[i] != is_rest)
+            .unwrap_or(path.len());
+        // Includes the last frame of the rest before and the first frame of the rest after.
+        let walk = &path[begin.saturating_sub(1)..(end + 1).min(path.len())];
+        let [first, last] = [0, walk.len() - 1].map(|i| walk[i].seconds);
+        if !is_rest && moves_away(walk) {
+            // The gait may begin and end with a standstill, which looks like a rest.
+            walks.push([
+                path[0].seconds.max(first - min_rest_duration / 2.0),
+                path[path.len() - 1]
+                    .seconds
+                    .min(last + min_rest_duration / 2.0),
+            ]);
+        }
+        begin = end;
+    }
+    walks
+}
+
+/// Returns the smallest duration of a rest between two walks of these gaits, s: longer than any standstill within their
+/// cycles.
+pub fn min_rest_duration(gaits: &[Gait]) -> f64 {
+    let longest_seconds = gaits.iter().map(longest_standstill).fold(0.0, f64::max);
+    (longest_seconds * MIN_REST_RATIO).max(MIN_REST)
+}
+
+/// Computes the duration of the longest standstill within a cycle, s.
+fn longest_standstill(gait: &Gait) -> f64 {
+    let count = gait.path.len() - 1;
+    let seconds_at = |i: usize| i as f64 * gait.period / count as f64;
+    let point_at = |i: usize| PathPoint {
+        seconds: seconds_at(i),
+        place: gait.place_at(i as f64 / count as f64),
+    };
+    let path: Vec<PathPoint> = (0..2 * count).map(point_at).collect();
+    let standstill_from = |first: usize| {
+        let ends =
+            (first + MIN_FRAMES..first + count).take_while(|end| is_still(&path[first..*end]));
+        ends.last().map_or(0.0, |end| seconds_at(end - 1 - first))
+    };
+    (0..count).map(standstill_from).fold(0.0, f64::max)
+}
+
+/// True if the places scatter no more than while a robot rests.
+fn is_still(path: &[PathPoint]) -> bool {
+    let count = path.len() as f64;
+    let movements: Vec<[f64; 3]> = path
+        .iter()
+        .map(|point| movement_in_mm(point.place.travel_from(path[0].place)))
+        .collect();
+    let mean =
+        [0, 1, 2].map(|axis| movements.iter().map(|movement| movement[axis]).sum::<f64>() / count);
+    let squared_deviation = |movement: &[f64; 3]| {
+        movement_length([0, 1, 2].map(|axis| movement[axis] - mean[axis])).powi(2)
+    };
+    path.len() >= MIN_FRAMES
+        && (movements.iter().map(squared_deviation).sum::<f64>() / count).sqrt()
+            < MAX_REST_DEVIATION
+}
+
+/// True if the robot moves away from its first place.
+fn moves_away(path: &[PathPoint]) -> bool {
+    let start = path[0].place;
+    path.iter()
+        .any(|point| movement_length(movement_in_mm(point.place.travel_from(start))) > MIN_MOVEMENT)
+}

@@ -1,0 +1,76 @@
+//! Records videos in a simulated studio.
+
+use fastrand::Rng;
+use lizard_studio::render::{Pose, Studio, random_normal};
+use lizard_studio::walk::Walk;
+use lizard_video::{Frame, Setup, Video};
+
+/// The setup for a sheet that is printed at full scale (1:1).
+pub const FULL_SCALE: Setup = Setup {
+    print_scale: 1.0,
+    deck_height: 83.0,
+};
+
+/// Returns a studio with a fixed camera pose and a low resolution, in which the sheet fills the frame.
+pub fn small_studio(seed: u64, tilt: f64) -> Studio {
+    let mut studio = Studio::random(&mut Rng::with_seed(seed));
+    (studio.size, studio.focal_length) = ([640, 360], 1.0);
+    (studio.camera_height, studio.camera_tilt) = (800.0, tilt);
+    (studio.camera_direction, studio.camera_roll, studio.aim) = (90.0, 0.0, [0.0; 2]);
+    studio
+}
+
+/// Records a walk with the camera on a tripod.
+pub fn record_walk(studio: &Studio, walk: &Walk, frame_rate: f64, rng: &mut Rng) -> Video {
+    let pose_at = |time| walk.pose_at(time);
+    record_robot(studio, walk.duration_s(), frame_rate, pose_at, rng)
+}
+
+/// Records a robot that moves as `pose_at` determines.
+pub fn record_robot(
+    studio: &Studio,
+    duration_s: f64,
+    frame_rate: f64,
+    pose_at: impl Fn(f64) -> Pose,
+    rng: &mut Rng,
+) -> Video {
+    let background = studio.render_background(rng);
+    record_frames(duration_s, frame_rate, |seconds| {
+        background.render_frame(seconds, &pose_at, rng)
+    })
+}
+
+/// Records frames at regular intervals; `frame_at` renders a frame at a time, s.
+pub fn record_frames(
+    duration_s: f64,
+    frame_rate: f64,
+    mut frame_at: impl FnMut(f64) -> Frame,
+) -> Video {
+    let mut video = Video::default();
+    for i in 0..(duration_s * frame_rate) as usize {
+        let seconds = i as f64 / frame_rate;
+        let result = video.add_frame(seconds, &frame_at(seconds));
+        result.expect("the frame fits the video");
+    }
+    video
+}
+
+/// Records a walk with a hand-held camera. The standard deviation of its position is `shake` mm, that of its angles
+/// `shake / 10` deg.
+pub fn record_hand_held(
+    studio: &Studio,
+    walk: &Walk,
+    frame_rate: f64,
+    shake: f64,
+    rng: &mut Rng,
+) -> Video {
+    record_frames(walk.duration_s(), frame_rate, |seconds| {
+        let mut shaken_studio = studio.clone();
+        shaken_studio.camera_height += shake * random_normal(rng);
+        shaken_studio.aim = studio.aim.map(|value| value + shake * random_normal(rng));
+        shaken_studio.camera_tilt += shake / 10.0 * random_normal(rng);
+        shaken_studio.camera_roll += shake / 10.0 * random_normal(rng);
+        let background = shaken_studio.render_background(rng);
+        background.render_frame(seconds, |time| walk.pose_at(time), rng)
+    })
+}

@@ -1,0 +1,209 @@
+//! Tests of the error messages of `make flash`. The tests need no board and ignore any connected board.
+
+use std::fs::{self, File, OpenOptions, Permissions};
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+use lizard_host_tests::root;
+use lizard_time_limit::TIME_LIMIT;
+use simulated_uno::Port;
+use tempfile::TempDir;
+
+/// Runs `scripts/flash --check` on the serial ports in a folder. Returns the script's error output, and true if the
+/// script succeeds. `user_command` runs the script as another user, or is empty for the current user. `port` is the
+/// value of RAVEDUDE_PORT.
+fn check_ports_as(
+    user_command: &[&str],
+    port_folder: &Path,
+    port: Option<&Path>,
+) -> (String, bool) {
+    let scripts = copy_scripts();
+    let script = scripts.path().join("scripts/flash");
+    let command_line: Vec<&str> = [user_command, &["bash"]].concat();
+    let mut command = Command::new(command_line[0]);
+    command.args(&command_line[1..]).arg(script).arg("--check");
+    command
+        .env("FLASH_DEV", port_folder)
+        .env_remove("RAVEDUDE_PORT");
+    if let Some(port) = port {
+        command.env("RAVEDUDE_PORT", port);
+    }
+    let output = TIME_LIMIT
+        .run_command(&mut command, b"")
+        .expect("the script ends");
+    let error_output = String::from_utf8_lossy(&output.stderr).into_owned();
+    (error_output, output.status.success())
+}
+
+fn check_ports(port_folder: &Path) -> (String, bool) {
+    check_ports_as(&[], port_folder, None)
+}
+
+/// True if the tests may run programs as another user.
+fn is_root() -> bool {
+    rustix::process::geteuid().is_root()
+}
+
+/// Creates a folder that every user may read.
+fn create_folder() -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder can be created");
+    let permissions = Permissions::from_mode(0o755);
+    fs::set_permissions(folder.path(), permissions).expect("the test owns the folder");
+    folder
+}
+
+/// Copies the scripts into a folder that every user may read.
+fn copy_scripts() -> TempDir {
+    let copy = create_folder();
+    let mut command = Command::new("cp");
+    command
+        .arg("-r")
+        .arg(root().join("scripts"))
+        .arg(copy.path());
+    let output = TIME_LIMIT.run_command(&mut command, b"").expect("cp ends");
+    assert!(output.status.success(), "cp fails");
+    copy
+}
+
+#[test]
+fn without_a_board_the_message_names_the_cable_to_connect() {
+    let (error_output, has_succeeded) = check_ports(create_folder().path());
+    assert!(!has_succeeded);
+    assert!(error_output.contains("no board found"), "{error_output}");
+    assert!(
+        error_output.contains("cable that carries data"),
+        "{error_output}"
+    );
+}
+
+#[test]
+fn a_single_board_is_used_whatever_its_usb_chip() {
+    let port_folder = create_folder();
+    File::create(port_folder.path().join("ttyUSB0")).expect("the file can be created");
+    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
+}
+
+#[test]
+fn with_several_boards_the_user_must_name_a_port() {
+    let port_folder = create_folder();
+    for name in ["ttyACM0", "ttyUSB3"] {
+        File::create(port_folder.path().join(name)).expect("the file can be created");
+    }
+    let (error_output, has_succeeded) = check_ports(port_folder.path());
+    assert!(!has_succeeded);
+    assert!(
+        error_output.contains("several boards found"),
+        "{error_output}"
+    );
+    assert!(
+        error_output.contains("make flash RAVEDUDE_PORT="),
+        "{error_output}"
+    );
+    let named_port = port_folder.path().join("ttyUSB3");
+    assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).1);
+}
+
+#[test]
+fn a_missing_port_is_named_in_the_message() {
+    let missing_port = Path::new("/dev/no-such-port");
+    let (error_output, has_succeeded) =
+        check_ports_as(&[], create_folder().path(), Some(missing_port));
+    assert!(!has_succeeded);
+    assert!(
+        error_output.contains("/dev/no-such-port does not exist"),
+        "{error_output}"
+    );
+    assert!(
+        error_output.contains("of this machine: none"),
+        "{error_output}"
+    );
+}
+
+#[test]
+fn the_message_names_the_program_that_has_the_port_open() {
+    let port = Port::new().expect("a pseudo terminal can be opened");
+    let port_folder = create_folder();
+    symlink(port.path(), port_folder.path().join("ttyACM0")).expect("the link can be created");
+    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
+    let mut options = OpenOptions::new();
+    let open_port = options.read(true).write(true).open(port.path());
+    let (error_output, has_succeeded) = check_ports(port_folder.path());
+    assert!(!has_succeeded);
+    let own_process = format!("(process {})", std::process::id());
+    assert!(
+        error_output.contains("is open in ") && error_output.contains(&own_process),
+        "{error_output}"
+    );
+    drop(open_port);
+    assert!(check_ports(port_folder.path()).1);
+}
+
+#[test]
+fn without_permission_the_message_names_the_group_to_join() {
+    let port_folder = create_folder();
+    let port = port_folder.path().join("ttyACM0");
+    File::create(&port).expect("the file can be created");
+    fs::set_permissions(&port, Permissions::from_mode(0o660)).expect("the test owns the file");
+    let nobody_command = ["setpriv", "--reuid=nobody", "--clear-groups"];
+    if !is_root() {
+        // Only root can run the script as another user. A port that its owner may not open has the same effect.
+        fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
+        let (error_output, has_succeeded) = check_ports_as(&[], port_folder.path(), None);
+        assert!(!has_succeeded);
+        assert!(error_output.contains("may not open"), "{error_output}");
+        return;
+    }
+    let mut chgrp = Command::new("chgrp");
+    chgrp.arg("dialout").arg(&port);
+    let chgrp_output = TIME_LIMIT.run_command(&mut chgrp, b"").expect("chgrp ends");
+    assert!(
+        chgrp_output.status.success(),
+        "the group dialout does not exist"
+    );
+    let (error_output, has_succeeded) = check_ports_as(&nobody_command, port_folder.path(), None);
+    assert!(!has_succeeded);
+    assert!(
+        error_output.contains("nobody may not open"),
+        "{error_output}"
+    );
+    assert!(
+        error_output.contains("usermod -aG dialout nobody"),
+        "{error_output}"
+    );
+}
+
+#[test]
+fn without_avrdude_the_message_names_the_package_to_install() {
+    // Simulates a user other than root on a machine without packages: dpkg-query finds no package, and avrdude and sudo
+    // are not on the PATH.
+    let bin_folder = create_folder();
+    for tool in ["bash", "env", "id", "dirname", "grep", "apt-get"] {
+        let tool_path = Path::new("/usr/bin").join(tool);
+        symlink(tool_path, bin_folder.path().join(tool)).expect("the link can be created");
+    }
+    let dpkg_query = bin_folder.path().join("dpkg-query");
+    // A new file instead of a link, because writing through a link would change the machine's own program.
+    fs::write(&dpkg_query, "#!/usr/bin/bash\nexit 1\n").expect("the test owns the file");
+    fs::set_permissions(&dpkg_query, Permissions::from_mode(0o755))
+        .expect("the test owns the file");
+    let scripts = copy_scripts();
+    let script = scripts.path().join("scripts/setup-flash");
+    let mut command = if is_root() {
+        let mut command = Command::new("/usr/bin/setpriv");
+        command.args(["--reuid=nobody", "--clear-groups", "/usr/bin/bash"]);
+        command
+    } else {
+        Command::new("/usr/bin/bash")
+    };
+    command.arg(script).env("PATH", bin_folder.path());
+    let output = TIME_LIMIT.run_command(&mut command, b"");
+    let output = output.expect("bash runs (as root with setpriv of Debian package util-linux)");
+    let stdout_text = String::from_utf8_lossy(&output.stdout);
+    assert!(stdout_text.contains("setup:"), "{stdout_text}");
+    assert!(!output.status.success());
+    assert!(
+        stdout_text.contains("As root, run:\n    apt-get install -y avrdude"),
+        "{stdout_text}"
+    );
+}
