@@ -160,7 +160,7 @@ fn node_command() -> Result<Command, String> {
     if !package.exists() {
         return Err("the package avr8js is missing: run scripts/setup-judge to install it".into());
     }
-    Ok(Command::new("node_command"))
+    Ok(Command::new("node"))
 }
 
 /// Runs a program with `input_text` as its standard input and returns its output. `debian_package` names the Debian

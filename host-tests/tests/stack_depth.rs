@@ -190,7 +190,7 @@ fn the_error_for_an_indirect_call_names_the_function() {
 #[test]
 fn code_without_a_bound_on_its_stack_is_refused() {
     let programs = [
-        ("again: push r16 $ rjmp again", "more or less"),
+        ("again: push r16 $ rjmp again", "different stack depths"),
         (
             "rcall one\nend: rjmp end\none: push r16 $ ret",
             "returns with",
@@ -201,7 +201,7 @@ fn code_without_a_bound_on_its_stack_is_refused() {
             "movw r28, r16 $ out SPL, r28\nend: rjmp end",
             "stack pointer",
         ),
-        ("nop", "runs out"),
+        ("nop", "runs beyond the end"),
     ];
     for (program, reason) in programs {
         let error = expect_error(&assemble(&format!("{SET_STACK_POINTER}\n{program}"))).to_string();

@@ -102,7 +102,7 @@ fn the_calls_of_a_named_function_are_timed() {
 }
 
 #[test]
-#[should_panic(expected = "no function walk")]
+#[should_panic(expected = "exactly one function walk")]
 fn timing_a_function_that_does_not_exist_panics() {
     load_servo_program().time_calls("walk", 1);
 }

@@ -44,7 +44,7 @@ fn a_gait_ends_if_no_line_arrives_within_the_deadman_time() {
     let stop_ms = bench
         .lines()
         .iter()
-        .find(|line| line.text.contains("deadman says"))
+        .find(|line| line.text.contains("no command within the deadman time"))
         .map(|line| (line.cycle - start) / CYCLES_PER_MS);
     // 800 ms after the last line, which came at 1400 ms plus the time of an answer; a line takes 5 ms.
     assert!(

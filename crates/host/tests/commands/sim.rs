@@ -34,7 +34,7 @@ fn the_refusal_of_an_invalid_script_names_the_file_and_line() {
 fn sim_refuses_an_endless_script() {
     assert_eq!(
         run(&["sim", "--script", "/dev/zero"]).expect_refusal(),
-        "lizard: cannot read /dev/zero: it is longer than 256 MiB"
+        "lizard: cannot read /dev/zero: the file is longer than 256 MiB"
     );
 }
 

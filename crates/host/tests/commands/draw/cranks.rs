@@ -89,7 +89,7 @@ fn the_spline_has_25_teeth_and_a_crank_is_at_most_half_a_tooth_off() {
     assert_eq!(teeth.count(), 25);
     let text: String = drawing.texts().collect();
     assert!(
-        text.contains("14.4° apart") && text.contains("7.2° at most"),
+        text.contains("14.4° apart") && text.contains("at most 7.2°"),
         "{text}"
     );
 }

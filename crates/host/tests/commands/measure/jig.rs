@@ -101,7 +101,8 @@ fn a_video_of_a_horn_gives_the_keys_of_a_reversed_servo() {
     assert_contains(&changed_lines.join("\n"), ", was 10.00");
     // Only the measured keys, a table header and blank lines were added.
     assert!(new_text.lines().count() - old_text.lines().count() < 8);
-    measure(&["40", "--output", "jig.toml"]).expect_refusal_with("jig.toml would be overwritten");
+    measure(&["40", "--output", "jig.toml"])
+        .expect_refusal_with("the output must not overwrite jig.toml");
     measure(&["90"]).expect_refusal_with("according to its size, the tag on the deck or horn is");
 }
 

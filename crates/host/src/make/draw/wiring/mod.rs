@@ -236,8 +236,8 @@ fn draw_board_notes() -> Group {
 /// Returns the remarks below the drawing, about facts that a drawing cannot show.
 fn list_remarks(robot: &Robot) -> Vec<String> {
     let mut lines = vec![
-        "Thick lines: 0.5 mm\u{b2} wire (20 AWG), red or black. Thin lines: jumpers (26 AWG); a servo's".to_string(),
-        "are orange (signal), red (+5 V) and brown (ground). The thinnest lines belong to a part.".into(),
+        "Thick lines: 0.5 mm\u{b2} wire (20 AWG), red or black. Thin lines: jumpers (26 AWG);".to_string(),
+        "servo wires: orange (signal), red (+5 V), brown (ground). The thinnest belong to a part.".into(),
         "A gap marks a crossing without a junction.".into(),
         "A terminal strip does not join its ways. The bows beside it are 0.5 mm\u{b2} links: one from".into(),
         "way 1 to 2, one from 2 to 3, and so on, two ends in each hole. Ways 11, 12 are spare.".into(),
