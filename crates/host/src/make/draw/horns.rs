@@ -235,8 +235,8 @@ fn draw_example(robot: &Robot) -> Group {
     let fitted_deg = exact_deg - EXAMPLE_ERROR_DEG;
     let servo_number = servo + 1;
     let lines = [
-        format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart: on the best tooth,"),
-        format!("a crank is off by at most {}°.", TOOTH_PITCH_DEG / 2.0),
+        format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
+        format!("tooth, a crank is off by at most {}°.", TOOTH_PITCH_DEG / 2.0),
         String::new(),
         "Dashed: the crank's correct angle.".into(),
         format!("Grey: a crank {EXAMPLE_ERROR_DEG}° further clockwise."),
