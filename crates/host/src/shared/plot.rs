@@ -53,7 +53,7 @@ impl<'a> Axis<'a> {
 
 impl Plot {
     /// Converts a point in the plot's coordinates to its position on the page, px.
-    pub fn to_page_point(&self, x: f64, y: f64) -> (f64, f64) {
+    pub fn to_page_point(self, x: f64, y: f64) -> (f64, f64) {
         (
             self.corner.0 + self.size.0 * (x - self.x_range.0) / (self.x_range.1 - self.x_range.0),
             self.corner.1 + self.size.1 * (self.y_range.1 - y) / (self.y_range.1 - self.y_range.0),

@@ -198,7 +198,7 @@ impl Loop {
 
 impl Segment {
     /// Converts the side to a vertex of the library's polylines.
-    pub(crate) fn to_vertex(&self) -> PlineVertex<f64> {
+    pub(crate) fn to_vertex(self) -> PlineVertex<f64> {
         PlineVertex::new(self.from.x, self.from.y, self.bulge)
     }
 

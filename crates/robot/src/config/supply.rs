@@ -116,7 +116,7 @@ impl Supplies {
     }
 
     /// Converts the supplies to the core's form, in mV.
-    pub(crate) fn to_core(&self) -> CoreSupplies {
+    pub(crate) fn to_core(self) -> CoreSupplies {
         CoreSupplies {
             reference_mv: to_millivolts(self.reference_volts),
             board: thresholds_to_mv(self.board_thresholds),

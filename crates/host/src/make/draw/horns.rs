@@ -236,7 +236,10 @@ fn draw_example(robot: &Robot) -> Group {
     let servo_number = servo + 1;
     let lines = [
         format!("{TOOTH_COUNT} teeth, {TOOTH_PITCH_DEG}° apart. On the best"),
-        format!("tooth, a crank is off by at most {}°.", TOOTH_PITCH_DEG / 2.0),
+        format!(
+            "tooth, a crank is off by at most {}°.",
+            TOOTH_PITCH_DEG / 2.0
+        ),
         String::new(),
         "Dashed: the crank's correct angle.".into(),
         format!("Grey: a crank {EXAMPLE_ERROR_DEG}° further clockwise."),

@@ -153,7 +153,7 @@ impl Uno {
     }
 
     /// Converts a position, in tenths of an inch right of and above the board's lower left corner, to a page position.
-    fn to_page_point(&self, right: f64, up: f64) -> (f64, f64) {
+    fn to_page_point(self, right: f64, up: f64) -> (f64, f64) {
         (
             self.upper_left_corner.0 + right * PIN_PITCH,
             self.upper_left_corner.1 + (BOARD_SIZE.1 - up) * PIN_PITCH,

@@ -28,7 +28,7 @@ pub struct Row {
     pub measured: Option<f64>,
     /// The measurement's budget.
     pub budget: Bound,
-    /// The same value for the Arduino Servo library, measured as in [`SERVO_LIBRARY`]; `None` if it is not known.
+    /// The same value for the Arduino Servo library, measured as in `SERVO_LIBRARY`; `None` if it is not known.
     pub servo_library: Option<&'static str>,
     /// True if the value depends on the machine that runs the measurement.
     pub wall_clock: bool,
