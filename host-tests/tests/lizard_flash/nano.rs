@@ -49,7 +49,7 @@ fn a_robot_too_large_for_an_old_nano_is_refused_and_its_boot_loader_kept() {
     let shell = start_lizard_flash(&desk, &["--robot", "own-gaits"]);
     let screen = run_to_exit(&mut desk, &shell);
     assert!(
-        screen.contains("a Nano has 30720 before its boot section"),
+        screen.contains("a Nano has only 30720 before its boot section"),
         "{screen}"
     );
     assert!(desk.uno.flash() == flash_before);
