@@ -70,11 +70,11 @@ function addCrates(folder, top, product, excluded, ...filter) {
     if (ids.has(id)) return ids.get(id);
     const { name, version: number, license, source } = crate.get(id);
     const sum = sums.get(`${name} ${number}`);
-    // Old crates write "MIT/Apache-2.0", which is not valid in SPDX.
     const more = source
       ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${number}.crate`, ...purl(`pkg:cargo/${name}@${number}`) }
       : {};
     if (sum) more.checksums = [{ algorithm: 'SHA256', checksumValue: sum }];
+    // Old crates write "MIT/Apache-2.0", which is not valid in SPDX.
     const mine = add('cargo', [name, ...(name === top ? excluded : [])].join(' without '), number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
     ids.set(id, mine);
     for (const { pkg, dep_kinds } of node.get(id).deps) {

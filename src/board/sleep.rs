@@ -26,8 +26,8 @@ pub fn wait_for_event(tick: u8) {
             break;
         }
         // The `nop` is for stock simavr, which accepts an interrupt one instruction later than the chip. Without the
-        // `nop`, the next `cli` would block all interrupts permanently in stock simavr. SAFETY: interrupts were on
-        // before the call of `disable`, and every enabled interrupt has a handler.
+        // `nop`, the next `cli` would block all interrupts permanently in stock simavr.
+        // SAFETY: interrupts were on before the call of `disable`, and every enabled interrupt has a handler.
         unsafe { asm!("sei", "sleep", "nop", options(nostack, preserves_flags)) };
     }
     // SAFETY: as above.

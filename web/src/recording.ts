@@ -47,7 +47,7 @@ export class Recording {
     const emptyFields = ['', '', '', ''];
     const lines = this.frames.map(({ time, activity, frame: { scene, place, lag }, widths }) => [
       time.toFixed(2),
-      // A gait's name comes from a file and may contain commas; therefore the field is quoted.
+      // A gait's name comes from outside, from a file or a board; the quotes keep it from ending the field.
       `"${activity.replaceAll('"', '""')}"`,
       ...(scene?.angles.map((angle) => angle.toFixed(3)) ?? emptyFields),
       ...[place.x, place.y, place.heading].map((value) => (Number(value.toFixed(2)) + 0).toFixed(2)),

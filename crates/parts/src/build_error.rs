@@ -97,8 +97,8 @@ const MIN_SERVO_FLOOR_GAP: f64 = 8.0;
 const MIN_SLEEVE_LENGTH: f64 = 25.0;
 
 /// The message for a crank that is too thin for its nut.
-const NUT_MESSAGE: &str = "the nut of a leg's anchor does not fit into its crank with a screw of a standard length; \
-                   increase parts.thickness or the height of the servo's horn";
+const NUT_MESSAGE: &str =
+    "the nut of a leg's anchor does not fit into its crank; increase parts.thickness";
 
 impl Assembly {
     /// Checks that the robot can be built: its dimensions are consistent, no two parts collide at any pose that the

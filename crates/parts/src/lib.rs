@@ -26,9 +26,9 @@
 //! - A [`Shape`] is convex: the hull of some points, grown by a radius. A layer is the union of its shapes minus its
 //!   holes, so the shapes enclose the layer: a body that is clear of the shapes is clear of the part.
 //!   [`Shape::distance`] is exact.
-//! - [`Assembly::may_touch`] is true for bodies that move together, and for bodies that touch by design and name each
-//!   other in [`Body::allowed_contacts`]: a screw and the parts that it passes through, a rod and its sleeve, a strut
-//!   and the crank that its spring pulls.
+//! - [`Assembly::may_touch`] is true for bodies that move together, and for bodies that touch by design, of which one
+//!   names the other in [`Body::allowed_contacts`]: a screw names the parts that it passes through, a rod its sleeve, a
+//!   strut the crank that its spring pulls.
 //! - [`Assembly::prove`] proves how close any two bodies come at any pose that the guard accepts;
 //!   [`Assembly::find_close_pairs`] checks only some poses.
 //! - [`Assembly::alternatives`] are bodies that may replace others: the struts of the kind that robot.toml does not

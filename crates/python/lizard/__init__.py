@@ -2,7 +2,7 @@
 
 `Model` represents a robot.toml, and `Robot` a board. Angles are in degrees in the chassis frame: x to the robot's
 right, y forward, counter-clockwise from +x, seen from above. Lengths are in mm. The servo order is A1 front left, A2
-front right, A3 hind right, A4 hind left.
+front right, A3 back right, A4 back left.
 """
 
 from lizard._lizard import VERSION as __version__

@@ -16,7 +16,7 @@ static bool accepts_interrupts(const avr_t *avr)
 	return avr->sreg[S_I] && (avr->interrupt_state >= 0 || avr->state == cpu_Sleeping);
 }
 
-/* True if the previous instruction, `sei` or a store to SREG, has enabled interrupts: the next
+/* True if the previous instruction, `sei` or an `out` to SREG, has enabled interrupts: the next
  * instruction is then executed before any interrupt. */
 static bool follows_enable(const avr_t *avr)
 {

@@ -52,7 +52,7 @@ export class PathView {
   private readonly neutralDot = this.plane.appendChild(makeSvg('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
-  /** The workspace of the end point; null until the panel is opened. */
+  /** The workspace of the end point; null until the panel is opened, or without a workspace. */
   private workspace: Workspace | null = null;
 
   constructor(

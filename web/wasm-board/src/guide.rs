@@ -28,7 +28,7 @@ impl Guide {
         to_js(self.0.calibration())
     }
 
-    /// True if the calibration is not saved, or may not be saved.
+    /// True if the calibration is not saved, or if it is unknown whether it is saved.
     #[must_use]
     #[wasm_bindgen(getter, js_name = isChanged)]
     pub fn is_changed(&self) -> bool {

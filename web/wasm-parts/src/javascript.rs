@@ -15,7 +15,8 @@ export interface Clash {
   second: string;
   /** Their distance, mm; negative if they overlap. */
   mm: number;
-  /** Servo angles of a pose in which they overlap or come too close, deg; null if no single pose is responsible. */
+  /** Servo angles of a pose in which they overlap or come too close, deg; null if no such pose is known, or if
+   *  they overlap in every pose. */
   pose: number[] | null;
 }
 ";

@@ -17,7 +17,7 @@ use crate::prediction::Displacement;
 const TYPES: &str = "
 /** Values in servo order: A1 to A4, or LF, RF, RH, LH. */
 export type Four<T> = [T, T, T, T];
-/** TriedLengths by their keys in robot.toml. */
+/** Lengths by their keys in robot.toml. */
 export type Edits = [key: string, value: number][];
 /** A routine as it is written, valid or not. */
 export interface Routine { name: string; steps: string[]; }

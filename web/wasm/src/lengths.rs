@@ -15,7 +15,7 @@ use crate::refused::Refused;
 /// Step of the offered lengths, mm, or deg for an angle.
 const LENGTH_STEP: f64 = 0.5;
 
-/// TriedLengths, mm or deg, by their keys, such as `links.l2`.
+/// Lengths, mm or deg, by their keys, such as `links.l2`.
 type RequestedLengths = [(String, f64)];
 
 /// The text of a robot.toml with other lengths, its refusal, and valid alternatives.

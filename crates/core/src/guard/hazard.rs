@@ -17,8 +17,8 @@ pub enum Margin {
 }
 
 impl Margin {
-    /// True if `value` is exact. If two couplers are nearly in line or cannot meet, the value is 0, which means only
-    /// that their type-2 margin is below a tenth; see [`crate::guard::five_bar::FiveBar::margins`].
+    /// True if `value` is a computed margin. If two couplers are nearly in line or cannot meet, the value is 0, which
+    /// means only that their type-2 margin is below a tenth; see [`crate::guard::five_bar::FiveBar::margins`].
     pub fn is_known(self, value: Sine) -> bool {
         !matches!(self, Self::Type2(_)) || value != Sine(0)
     }

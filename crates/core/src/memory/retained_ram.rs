@@ -2,9 +2,9 @@
 //!
 //! RAM keeps its contents while there is power. The boot loader of the UNO clears the register with the cause of the
 //! reset and does not pass its value on. Therefore these bytes have a mark and checksums, from which the next run
-//! determines whether power was lost and whether the program hung, and restores the servo state. Random bytes have a
-//! correct mark with a probability of 1 in 32 768, and then a seemingly valid servo state with a probability of 1 in
-//! 256.
+//! determines whether power was lost and whether the program hung, and restores the servo state. Random bytes seem to
+//! have survived a reset (a correct mark and a valid program state) with a probability of 1 in 32 768, and then have a
+//! seemingly valid servo state with a probability of 1 in 256.
 //!
 //! A reset may occur between any two stores without a loss of the servo state, of which two copies are written
 //! alternately. One byte, which is stored last, selects the complete copy.

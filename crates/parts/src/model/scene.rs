@@ -80,7 +80,7 @@ pub enum Pads {
 /// A tension spring in a slotted strut.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrutSpring {
-    /// Tension of the spring while it holds the leg's screw at the slot's end, N.
+    /// Tension of the spring while it holds the leg's screw at the slot's inner end, N.
     pub preload: f64,
     /// Rate of the spring, N/mm.
     pub rate: f64,

@@ -264,7 +264,7 @@ fn a_slotted_strut_pulls_with_the_tension_of_its_spring_and_yields_in_one_direct
             let error = stiffness * (metres - rest) - tension;
             assert!(
                 error.abs() < 1e-6,
-                "{error} N, {metres} m from the slot's end"
+                "{error} N, {metres} m from the slot's inner end"
             );
         }
     }

@@ -49,7 +49,7 @@ export class SignsStep implements Step {
     };
     const advice = {
       other: `Two signal wires are exchanged. Switch the servos' supply off and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn it again.`,
-      none: `Check that its supply is on, that its ground is connected to the UNO's ground, and that its signal (orange) is on pin D${pin}. Then turn it again.`,
+      none: `Check that its supply is on, that its ground is connected to the UNO's ground, and that its plug is the right way round, with the signal (orange) on pin D${pin}. Then turn it again.`,
     };
     return [
       paragraph('Did the servo turn in the direction of the arrow?'),
