@@ -31,7 +31,7 @@ struct VideoReport<'a> {
     #[serde(rename = "video")]
     name: &'a str,
     /// Number of frames in which the robot's place is known.
-    #[serde(rename = "pictures")]
+    #[serde(rename = "frames")]
     frame_count: usize,
     camera: CameraReport,
 }

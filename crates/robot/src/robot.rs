@@ -453,7 +453,7 @@ fn size_error(content: &Content, bytes: usize) -> UnlocatedError {
     let step_bytes = std::mem::size_of_val(content.steps.as_slice());
     let routine_text = match routine_count {
         0 => String::new(),
-        _ => format!(", the steps of {routine_count} routines take {step_bytes}"),
+        _ => format!(", {routine_count} of them routines, whose steps take {step_bytes}"),
     };
     let message = format!(
         "the robot exceeds the board's limit of {REGION_BYTES} bytes by {excess_bytes}; {wave_count} waveforms take {wave_bytes} bytes, {gait_count} gaits with their names take {gait_bytes}{routine_text}; remove gaits, starting with those whose waveform no other gait uses"

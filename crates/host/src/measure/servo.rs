@@ -82,7 +82,7 @@ fn parse_volts(text: &str) -> Result<f64, String> {
 struct Report {
     servo: &'static str,
     /// Frames per second.
-    #[serde(rename = "pictures")]
+    #[serde(rename = "frames_per_second")]
     frame_rate: f64,
     /// Given height of the card above the strips, mm.
     height: f64,

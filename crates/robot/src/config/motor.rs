@@ -77,7 +77,7 @@ impl ServoType {
         },
         Self {
             model: "copy",
-            source: "lowest torque that sellers state for an SG-90; speed assumed to be four fifths of the SG-90's",
+            source: "lowest torque that sellers state for an SG-90; speed assumed to be four fifths of the SG-90's; dead band, rotor and full-torque error assumed",
             stall_torque_kg_cm: 1.2,
             s_per_60_deg: 0.15,
             ..SG90

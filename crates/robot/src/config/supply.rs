@@ -354,7 +354,7 @@ mod tests {
             explicit_threshold_pace > rough_pace,
             "explicit threshold {explicit_threshold_pace} %, derived threshold {rough_pace} %"
         );
-        // The clone servos sustain no pace, the MG90S sustain every pace.
+        // The `copy` servos sustain no pace, the MG90S sustain every pace.
         let slowest_paces = find_slow_paces("model = \"copy\"", "stop = 3.0\nrest = 2.8", "1.2");
         assert_eq!(slowest_paces, [10, 10]);
         assert_eq!(find_slow_paces("model = \"MG90S\"", "", "0.2"), [100, 100]);

@@ -183,7 +183,7 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_rejected_as_another_gait(
     );
     assert_eq!(
         Some(csv.lines().count() as u64 - 1),
-        video["pictures"].as_u64()
+        video["frames"].as_u64()
     );
     // A path that does not match the named gait is rejected; the message names the gait that matches.
     let message = measure(&folder, &["--gait", "left"]).expect_refusal();
