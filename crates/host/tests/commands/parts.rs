@@ -50,6 +50,7 @@ fn parts_writes_all_files_needed_to_build_the_robot() {
     let guide = fs::read_to_string(folder.join("guide/guide.md")).expect("the file is readable");
     assert_contains(&guide, "## 9. Struts\n");
     assert_contains(&guide, ", print 4 x strut,");
+    assert_contains(&guide, " g each, instead of the struts.");
     assert!(
         !guide.contains("hook of the spring") && !guide.contains("tension"),
         "{guide}"
@@ -120,6 +121,7 @@ fn parts_for_struts_with_springs_include_rigid_struts() {
     for phrase in [
         "## 9. Struts and springs",
         ", print 4 x rigid strut,",
+        " g each, instead of the struts.",
         "hook",
         "tension",
         "pulls 4.0 N (0.40 N/mm)",

@@ -88,7 +88,7 @@ impl<W: Write> Recorder<W> {
         Self { name, out, start }
     }
 
-    /// Writes an event and flushes it to the file, unless it is a pose.
+    /// Writes an event. Flushes it to the file at once unless it is a pose.
     ///
     /// # Errors
     /// Fails if writing fails; the message names the file.

@@ -68,6 +68,7 @@ pub struct Cycle {
     pub speed: Option<f64>,
     /// Predicted displacement divided by the displacement with rigid legs; null if the legs are rigid, or if the
     /// displacement with rigid legs is almost zero or undetermined.
+    #[serde(rename = "share_of_rigid")]
     pub fraction_of_rigid: Option<f64>,
 }
 

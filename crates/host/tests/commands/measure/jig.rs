@@ -150,7 +150,7 @@ fn a_video_of_a_slide_gives_friction_and_names_the_key_that_is_not_measured() {
     let text = measure(&[]).expect_success();
     for expected in [
         "[ground]\nfriction = 0.",
-        "Not measured: friction_back_over_forward",
+        "Not measured: friction_back_over_forward (needs a video of a slide with the head uphill)",
     ] {
         assert_contains(&text, expected);
     }
