@@ -345,7 +345,7 @@ impl<'a> Script<'a> {
         self.wait(600);
     }
 
-    /// Waits and asks for the status. Then sends an invalid line, `walk`, `rest` and `stand`, and asks for the status
+    /// Waits and asks for the status. Then sends a line that the board must refuse, `walk`, `rest` and `stand`, and asks for the status
     /// after each of them.
     fn add_final_checks(&mut self) {
         // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.

@@ -11,14 +11,15 @@ const SREG = 0x5f;
 const SREG_I = 0x80;
 const IO_START = 0x20;
 
-/** Returns the opcode of an RJMP to a loop of this many words before the RJMP. */
+/** Returns the opcode of the RJMP that ends a loop of this many words, including the RJMP itself. */
 const encodeRjmpBack = (words) => 0xd000 - words;
 /** Returns true for SBRS and SBRC. */
 const isSkip = (opcode) => (opcode & 0xfc08) === 0xfc00;
 
 /**
  * Returns the loop that ends with the jump at `pc`: its flag register's address, the flag's bit, the flag's value
- * while the loop continues, and the cycles of an iteration. Returns null if the loop does not wait for a flag.
+ * while the loop continues, and the cycles of an iteration. Returns null for a loop of another form;
+ * the caller must check that the register is a flag register.
  */
 function findFlagLoop(progMem, pc) {
   const [first, second, third] = [progMem[pc - 3], progMem[pc - 2], progMem[pc - 1]];

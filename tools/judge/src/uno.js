@@ -102,7 +102,7 @@ export class Uno {
       const arrive = () => {
         // The receiver of an ATmega holds three bytes, but avr8js simulates only one.
         if (cpu.data[usart.config.UCSRA] & RXC) {
-          throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last one was read; avr8js drops it`);
+          throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last one was read, but avr8js cannot simulate an overrun`);
         }
         usart.writeByte(value.byte, true);
         deliverNext();

@@ -24,7 +24,7 @@ rules! {
     KeepsRunning = "the program neither crashes nor halts, and uses the chip only as its data sheet allows";
     OneAnswer = "every line gets exactly one answer";
     AnswersAgain = "the console answers again after every disturbance";
-    PulsesPermitted = "pulses begin only on a command, on boot three seconds after a start, or at power-on";
+    PulsesPermitted = "pulses begin only on a command, by the boot setting three seconds after a start, or at power-on";
     WakeOneByOne = "no two servos wake in the same frame, except after a hang";
     HeldAfterHang = "after a hang the servos hold their positions";
     ResetAfterHang = "a hang that ends the pulses ends in a reset";
