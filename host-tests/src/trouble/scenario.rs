@@ -345,8 +345,8 @@ impl<'a> Script<'a> {
         self.wait(600);
     }
 
-    /// Waits and asks for the status. Then sends a line that the board must refuse, `walk`, `rest` and `stand`, and asks for the status
-    /// after each of them.
+    /// Waits and asks for the status. Then sends a line that the board must refuse, `walk`, `rest` and `stand`, and asks
+    /// for the status after each of them.
     fn add_final_checks(&mut self) {
         // In one of four cases, waits long enough for the LED's fault pattern and for the gait after power-on.
         let wait_ms = if self.rng.u8(0..4) == 0 {
