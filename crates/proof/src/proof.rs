@@ -55,8 +55,8 @@ impl Proof {
             .sum()
     }
 
-    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard rejects. 0
-    /// proves that guard and cells are correct.
+    /// The number of wrong decisions outside the bands, plus the number of poses in a cell that the guard rejects. A
+    /// count of 0 over all pairs proves that the guard and the cells are correct.
     pub fn wrong_count(&self) -> u64 {
         self.findings
             .iter()

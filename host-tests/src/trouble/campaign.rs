@@ -65,7 +65,7 @@ impl fmt::Display for Summary {
                 let (count, number) = (failures.len(), first.scenario.number);
                 writeln!(
                     f,
-                    "{count:6} violations: {} (first in scenario {number})",
+                    "{count:6} scenarios violate: {} (first: scenario {number})",
                     rule.sentence()
                 )?;
             }

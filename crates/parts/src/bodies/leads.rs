@@ -74,12 +74,12 @@ pub fn add(builder: &mut Builder) {
             Shape::bar(corner, inner_corner, radius),
             Shape::bar(inner_corner, riser_position, radius),
         ];
-        let lying_span = [low, low + LEAD_EXIT[1]];
+        let z_range = [low, low + LEAD_EXIT[1]];
         let prisms = vec![
-            Prism::solid(lead_path, lying_span),
+            Prism::solid(lead_path, z_range),
             Prism::solid(
                 [Shape::disc(riser_position, radius)],
-                [lying_span[1], builder.stack.deck[1]],
+                [z_range[1], builder.stack.deck[1]],
             ),
         ];
         builder.add_body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);

@@ -44,10 +44,10 @@ impl Waveform {
     }
 }
 
-/// The value at phase u of a wave with duty factor beta. The stance is 1 - 2u/beta. The swing is the Hermite cubic in
-/// t = (u - beta)/(1 - beta) from -1 to 1, with the stance's slope m = -2 (1 - beta)/beta at both ends. Since the foot
-/// keeps its speed at both ends, it overshoots a little before it reverses (by 1.4 % at beta = 0.75). Both parts are
-/// therefore divided by the cubic's peak, and the amplitude includes the overshoot.
+/// The value at phase u of a wave with duty factor beta (`duty`). The stance is 1 - 2u/beta. The swing is the Hermite
+/// cubic in t = (u - beta)/(1 - beta) from -1 to 1, with the stance's slope m = -2 (1 - beta)/beta at both ends. Since
+/// the foot keeps its speed at both ends, it overshoots a little before it reverses (by 1.4 % at beta = 0.75). Both
+/// parts are therefore divided by the cubic's peak, and the amplitude includes the overshoot.
 fn wave_value(u: f64, duty: f64) -> f64 {
     let m = -2.0 * (1.0 - duty) / duty;
     let shape = if u < duty {

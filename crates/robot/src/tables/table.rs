@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn increments_add_up_to_the_period() {
+    fn the_increments_of_a_period_add_up_to_one_cycle() {
         for (name, robot) in all_robots() {
             for gait in robot.gaits() {
                 let increment = robot
