@@ -39,11 +39,12 @@ await page.waitForFunction(() => document.querySelector('#faster-said').textCont
 await page.getByRole('button', { name: 'Use this gait' }).click();
 await page.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
 await page.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
-// The preview: the first room, with the robot in 3D.
-await page.setViewportSize({ width: 1600, height: 840 });
-await page.goto(`${address()}#room=start`);
-await page.locator('#button-3d').click();
-await page.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
-await page.clock.runFor(1500);
-await page.screenshot({ path: join(folder, 'preview.png') });
+// The preview: the first room, with the robot in 3D. Without a GPU the page halves the resolution of 3D, so the picture
+// is taken with twice the pixels, and scripts/page-picture reduces it.
+const previewPage = await openPage({ viewport: { width: 1600, height: 840 }, deviceScaleFactor: 1.5, colorScheme: 'light' }, () => {});
+await previewPage.goto(`${address()}#room=start`);
+await previewPage.locator('#button-3d').click();
+await previewPage.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
+await previewPage.clock.runFor(1500);
+await previewPage.screenshot({ path: join(folder, 'preview.png') });
 await closeBrowser();
