@@ -6,8 +6,8 @@ HOST := crates/target/$$(rustc --print host-tuple)
 LIZARD := crates/target/release/lizard
 -include target/toolchain.mk
 
-# A robot other than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT
-# passes the path to the firmware's build script and to the tests.
+# A robot other than robot.toml: make firmware ROBOT=robots/x.toml. LIZARD_ROBOT passes the path to the firmware's
+# build script and to the tests.
 ROBOT ?= $(LIZARD_ROBOT)
 ifneq ($(ROBOT),)
 ifeq ($(wildcard $(ROBOT)),)
@@ -24,8 +24,7 @@ ALL := --workspace --exclude lizard-python --exclude lizard-bindgen
 # Cargo can use make's jobserver only in a rule that calls make; in other rules, cargo prints a warning.
 CARGO := MAKEFLAGS= cargo
 
-# scripts/setup chooses the compiler, so it runs first; then a new make reads
-# the choice from target/toolchain.mk.
+# scripts/setup chooses the compiler, so it runs first; then a new make reads the choice from target/toolchain.mk.
 define prepared
 	@scripts/setup
 	@$(MAKE) $(1)
@@ -47,7 +46,7 @@ firmware: ## build the firmware for the UNO, .elf and .hex; print flash, RAM and
 	$(call prepared,.gaits)
 flash: ## build the firmware, write it to a UNO on USB, open its console (ravedude)
 	$(call prepared,.flash)
-flash-test: ## test `make flash` and `lizard flash`, and their errors, with a simulated board
+flash-test: ## test `make flash` and `lizard flash`, and their error messages, with a simulated board
 	$(call prepared,.flash-test)
 web: ## build the page with the robot in the browser: web/dist, a folder for any web server
 	$(call prepared,.web)
@@ -67,9 +66,9 @@ fit: ## prove that no two parts collide in any pose that the guard accepts
 	$(call prepared,.fit)
 prove: ## compare the guard with floating point for every pose; takes a minute or two
 	$(call prepared,.prove)
-physics: ## compare the contact model with the engine MuJoCo for every gait; WRITE=1 stores the values, ONE_IN=10 takes every tenth
+physics: ## compare the contact model with MuJoCo for every gait; WRITE=1 stores the results, ONE_IN=10 selects every tenth row
 	$(call prepared,.physics)
-mutants: ## mutation tests: report deliberate mistakes that no test notices; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mistakes, with the rate
+mutants: ## mutation tests: report mutants that no test detects; PART=board, core or kinematics; SAMPLE=60 SEED=1: random mutants, with the rate
 	$(call prepared,.mutants)
 other-robots: ## run every test of the image with the robots in robots/ and with random valid robots; SEED=1 COUNT=10, EXCEPT=large+grain
 	$(call prepared,.other-robots)
@@ -87,13 +86,13 @@ docs: ## write the generated pages and drawings; build the book from docs/ in ou
 	$(call prepared,.docs)
 install: ## install the program, its manual pages and completions into PREFIX=~/.local
 	$(call prepared,.install)
-docs-check: ## check that the book's values with a long computation are current
+docs-check: ## check that the book's values that take long to compute are up to date
 	$(call prepared,.docs-check)
 release: ## build all files of a release from the current commit, in dist/; takes a while
 	$(call prepared,.release)
 release-test: ## build a release twice, in different folders; compare the bytes, and test each file
 	$(call prepared,.release-test)
-parallel-test: ## split long computations with GNU parallel, merge the parts, compare with one process
+parallel-test: ## split long computations with GNU parallel, merge the parts, and compare the output with that of one process
 	$(call prepared,.parallel-test)
 plain-test: ## run the image's tests and the recorded pulses, linked by avr-gcc alone
 	$(call prepared,.plain-test)
@@ -115,7 +114,7 @@ clean: ## remove everything that was built
 	@new=$(ELF).$$$$; avr-objcopy -O ihex -R .eeprom $(ELF) $$new && mv $$new $(ELF:.elf=.hex)
 	@scripts/size $(ELF)
 
-# The example of crates/pulses/: servos and a serial line without a lizard.
+# The example of crates/pulses/: servos and a serial line without the robot.
 .sweep:
 	@RUSTC_BOOTSTRAP=1 $(CARGO) build --release --example sweep --quiet
 
@@ -143,7 +142,7 @@ clean: ## remove everything that was built
 	@scripts/build-web
 
 # A test compares the firmware's section for robot.toml with the page's. ONLY=measure+slow runs only these files, one
-# after another; EXCEPT=measure+slow leaves these files out.
+# after another; EXCEPT=measure+slow omits these files.
 .web-test:
 	@env -u LIZARD_ROBOT $(MAKE) .firmware ROBOT=
 	@scripts/setup-web --test
@@ -223,7 +222,7 @@ WALKS := target/walks.log
 	@target/physics/bin/python tools/physics/judge.py target/physics/walk.xml
 	@cd crates && ../$(HOST)/debug/lizard-physics $(if $(WRITE),--write,--one-in $(or $(ONE_IN),1))
 
-# ONLY=serial.rs selects the mistakes in this file.
+# ONLY=serial.rs selects the mutants of this file.
 .mutants:
 	@scripts/mutants $(or $(PART),board) $(ONLY)
 
@@ -256,7 +255,7 @@ WALKS := target/walks.log
 	@mkdocs build --strict --quiet
 	@echo "the book: out/book/index.html"
 
-# Runs tests that `make test` leaves out; BLESS_GAITS=1 writes the pages.
+# Runs tests that `make test` omits; BLESS_GAITS=1 writes the pages.
 .docs-check:
 	@cd crates && $(CARGO) test $(ALL) --quiet --test robot -- docs:: --ignored
 
@@ -313,7 +312,7 @@ PREFIX ?= $(HOME)/.local
 	@scripts/desks $(HOST)/debug/lizard
 
 # Without the project's linker, the robot's section is at another address. The tests depend on this address, so they are
-# built separately. Robots that do not fit are left out.
+# built separately. Robots that do not fit are omitted.
 PLAIN := $(CURDIR)/target/plain
 .plain-test: export LIZARD_PLAIN_LINK := 1
 .plain-test: export CARGO_TARGET_DIR := $(PLAIN)

@@ -1,4 +1,4 @@
-# Functions for the set-up scripts, which install missing Debian packages.
+# Functions of the set-up scripts that install missing Debian packages.
 
 say() { printf 'setup: %s\n' "$*"; }
 is_installed() { [ "$(dpkg-query -W -f='${Status}' "$1" 2>/dev/null)" = 'install ok installed' ]; }

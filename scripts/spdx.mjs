@@ -19,13 +19,13 @@ const relationships = new Set();
 const relate = (from, kind, to) => relationships.add(`${from} ${kind} ${to}`);
 
 /** Adds a package and returns its SPDXID. */
-function add(source, name, versionInfo, license, more = {}) {
+function add(source, name, versionInfo, license, fields = {}) {
   const SPDXID = `SPDXRef-${source}-${name}-${versionInfo}`.replace(/[^A-Za-z0-9.-]+/g, '-');
   packages.set(SPDXID, {
     SPDXID, name, versionInfo,
     downloadLocation: 'NOASSERTION', filesAnalyzed: false,
     licenseConcluded: 'NOASSERTION', licenseDeclared: license, copyrightText: 'NOASSERTION',
-    ...more,
+    ...fields,
   });
   return SPDXID;
 }
@@ -62,32 +62,32 @@ function readChecksums(folder) {
 function addCrates(folder, top, product, excluded, ...filter) {
   const text = execFileSync('cargo', ['metadata', '--locked', '--format-version', '1', ...filter], { cwd: folder, encoding: 'utf8', maxBuffer: 1 << 28 });
   const metadata = JSON.parse(text);
-  const sums = readChecksums(folder);
-  const crate = new Map(metadata.packages.map((entry) => [entry.id, entry]));
-  const node = new Map(metadata.resolve.nodes.map((entry) => [entry.id, entry]));
+  const checksums = readChecksums(folder);
+  const cratesById = new Map(metadata.packages.map((entry) => [entry.id, entry]));
+  const nodesById = new Map(metadata.resolve.nodes.map((entry) => [entry.id, entry]));
   const ids = new Map();
   const visit = (id) => {
     if (ids.has(id)) return ids.get(id);
-    const { name, version: number, license, source } = crate.get(id);
-    const sum = sums.get(`${name} ${number}`);
-    const more = source
-      ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${number}.crate`, ...purl(`pkg:cargo/${name}@${number}`) }
+    const { name, version: crateVersion, license, source } = cratesById.get(id);
+    const checksum = checksums.get(`${name} ${crateVersion}`);
+    const fields = source
+      ? { downloadLocation: `https://static.crates.io/crates/${name}/${name}-${crateVersion}.crate`, ...purl(`pkg:cargo/${name}@${crateVersion}`) }
       : {};
-    if (sum) more.checksums = [{ algorithm: 'SHA256', checksumValue: sum }];
+    if (checksum) fields.checksums = [{ algorithm: 'SHA256', checksumValue: checksum }];
     // Old crates write "MIT/Apache-2.0", which is not valid in SPDX.
-    const mine = add('cargo', [name, ...(name === top ? excluded : [])].join(' without '), number, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', more);
-    ids.set(id, mine);
-    for (const { pkg, dep_kinds } of node.get(id).deps) {
-      if (excluded.includes(crate.get(pkg).name)) continue;
+    const crateId = add('cargo', [name, ...(name === top ? excluded : [])].join(' without '), crateVersion, license?.replace(/\s*\/\s*/g, ' OR ') ?? 'NOASSERTION', fields);
+    ids.set(id, crateId);
+    for (const { pkg, dep_kinds } of nodesById.get(id).deps) {
+      if (excluded.includes(cratesById.get(pkg).name)) continue;
       for (const { kind } of dep_kinds) {
-        if (kind === null) relate(mine, 'DEPENDS_ON', visit(pkg));
-        if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', mine);
+        if (kind === null) relate(crateId, 'DEPENDS_ON', visit(pkg));
+        if (kind === 'build') relate(visit(pkg), 'BUILD_DEPENDENCY_OF', crateId);
       }
     }
-    return mine;
+    return crateId;
   };
-  const first = metadata.packages.find(({ name, source }) => name === top && !source);
-  relate(product, 'CONTAINS', visit(first.id));
+  const topCrate = metadata.packages.find(({ name, source }) => name === top && !source);
+  relate(product, 'CONTAINS', visit(topCrate.id));
 }
 const machine = run('rustc', '--print', 'host-tuple').trim();
 addCrates('crates', 'lizard-host', program, [], '--filter-platform', machine);
@@ -110,11 +110,11 @@ function addNodePackages(folder) {
   for (const [path, entry] of Object.entries(lock.packages)) {
     if (path === '') continue;
     const name = path.slice(path.lastIndexOf('node_modules/') + 'node_modules/'.length);
-    const more = purl(`pkg:npm/${name.replace('@', '%40')}@${entry.version}`);
-    if (entry.resolved) more.downloadLocation = entry.resolved;
+    const fields = purl(`pkg:npm/${name.replace('@', '%40')}@${entry.version}`);
+    if (entry.resolved) fields.downloadLocation = entry.resolved;
     const [algorithm, base64] = entry.integrity?.split('-') ?? [];
-    if (base64) more.checksums = [{ algorithm: algorithm.toUpperCase(), checksumValue: Buffer.from(base64, 'base64').toString('hex') }];
-    const id = add('npm', name, entry.version, entry.license ?? 'NOASSERTION', more);
+    if (base64) fields.checksums = [{ algorithm: algorithm.toUpperCase(), checksumValue: Buffer.from(base64, 'base64').toString('hex') }];
+    const id = add('npm', name, entry.version, entry.license ?? 'NOASSERTION', fields);
     if (entry.dev || entry.devOptional) relate(id, 'BUILD_TOOL_OF', page);
     else relate(page, 'CONTAINS', id);
   }
@@ -126,10 +126,10 @@ addNodePackages('tools/judge');
 
 /** Adds a Debian package whose library is part of a product. */
 function addDebianPackage(name, license, product, kind = 'STATIC_LINK') {
-  const number = run('dpkg-query', '-W', '-f=${Version}', name);
+  const packageVersion = run('dpkg-query', '-W', '-f=${Version}', name);
   const [source, sourceVersion] = run('dpkg-query', '-W', '-f=${source:Package} ${source:Version}', name).split(' ');
-  const id = add('debian', name, number, license, {
-    ...purl(`pkg:deb/debian/${name}@${encodeURIComponent(number)}`),
+  const id = add('debian', name, packageVersion, license, {
+    ...purl(`pkg:deb/debian/${name}@${encodeURIComponent(packageVersion)}`),
     sourceInfo: `built from the Debian source package ${source} ${sourceVersion}`,
   });
   relate(product, kind, id);

@@ -5,7 +5,7 @@
 #![feature(abi_avr_interrupt, asm_experimental_arch)]
 
 use lizard_avr::Region;
-use lizard_core::step::{Main, Step};
+use lizard_core::step::{Main, StepResult};
 use panic_halt as _;
 
 mod board;
@@ -27,7 +27,7 @@ fn main() -> ! {
     let main = unsafe { &mut *main_pointer };
     main.begin(Region::DEFAULT, &mut uno);
     loop {
-        if let Step::Idle(ticks) = main.step(&mut uno) {
+        if let StepResult::Idle(ticks) = main.step(&mut uno) {
             sleep::wait_for_event(ticks);
         }
     }

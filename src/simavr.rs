@@ -1,7 +1,7 @@
 //! The note in the ELF file with the chip, the clock and the voltages for stock simavr. It is not part of the flash.
 //! Without the note, simavr assumes a supply of 3.3 V, at which the firmware moves no servo.
 
-/// Makes a record as in simavr's `avr_mcu_section.h`: tag, length and a 32-bit number.
+/// Makes a record as in simavr's `avr_mcu_section.h`: tag, length and 32-bit number.
 const fn make_record(tag: u8, value: u32) -> [u8; 6] {
     let [a, b, c, d] = value.to_le_bytes();
     [tag, 4, a, b, c, d]
@@ -13,9 +13,9 @@ const NAME_BYTES: usize = 64;
 /// The layout of the note: records of tag, length and value.
 #[repr(C)]
 struct Note {
-    name: [u8; 2 + NAME_BYTES],
-    numbers: [[u8; 6]; 4],
-    end: [u8; 2],
+    name_record: [u8; 2 + NAME_BYTES],
+    number_records: [[u8; 6]; 4],
+    end_record: [u8; 2],
 }
 
 /// The note, with the tags 1 to 5 for the name, the clock in Hz, and VCC, AVCC and AREF in mV, followed by the end tag
@@ -24,18 +24,18 @@ struct Note {
 #[unsafe(no_mangle)]
 #[unsafe(link_section = ".mmcu")]
 static SIMAVR: Note = Note {
-    name: {
-        let mut name = [0; 2 + NAME_BYTES];
-        let (header, text) = name.split_at_mut(2);
+    name_record: {
+        let mut record = [0; 2 + NAME_BYTES];
+        let (header, text) = record.split_at_mut(2);
         header.copy_from_slice(&[1, NAME_BYTES as u8]);
         text.split_at_mut(10).0.copy_from_slice(b"atmega328p");
-        name
+        record
     },
-    numbers: [
+    number_records: [
         make_record(2, 16_000_000),
         make_record(3, 5000),
         make_record(4, 5000),
         make_record(5, 5000),
     ],
-    end: [0; 2],
+    end_record: [0; 2],
 };

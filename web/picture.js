@@ -1,5 +1,6 @@
 // Writes pictures of the page into a folder: the frames of the README's animation, which shows one cycle of a walk; the
-// gait editor for docs/web.md; and the preview that a chat shows with a link. scripts/page-picture runs this script.
+// gait editor for docs/web.md; and the preview that a chat shows with a link. scripts/update-page-pictures runs this
+// script.
 import { mkdir } from 'node:fs/promises';
 import { join } from 'node:path';
 
@@ -35,16 +36,16 @@ await page.setViewportSize({ width: 1240, height: 1300 });
 await page.goto(`${address()}#room=gaits`);
 await page.getByLabel('Rounds of 40 gaits').fill('1');
 await page.getByRole('button', { name: 'Make it faster' }).click();
-await page.waitForFunction(() => document.querySelector('#faster-said').textContent.startsWith('Faster on'));
+await page.waitForFunction(() => document.querySelector('#faster-message').textContent.startsWith('Faster on'));
 await page.getByRole('button', { name: 'Use this gait' }).click();
-await page.waitForFunction(() => document.querySelector('#gait-way').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
+await page.waitForFunction(() => document.querySelector('#gait-distance').textContent === document.querySelector('#faster-rows tr:nth-child(2) td:last-child').textContent);
 await page.locator('#gait-editor').screenshot({ path: join(folder, 'editor.png') });
 // The preview: the first room, with the robot in 3D. Without a GPU the page halves the resolution of 3D, so the picture
-// is taken with twice the pixels, and scripts/page-picture reduces it.
+// is taken with twice the pixels, and scripts/update-page-pictures reduces it.
 const previewPage = await openPage({ viewport: { width: 1600, height: 840 }, deviceScaleFactor: 1.5, colorScheme: 'light' }, () => {});
 await previewPage.goto(`${address()}#room=start`);
 await previewPage.locator('#button-3d').click();
-await previewPage.waitForFunction(() => document.querySelector('#parts-said').textContent.startsWith('Click'));
+await previewPage.waitForFunction(() => document.querySelector('#parts-message').textContent.startsWith('Click'));
 await previewPage.clock.runFor(1500);
 await previewPage.screenshot({ path: join(folder, 'preview.png') });
 await closeBrowser();

@@ -20,8 +20,8 @@ use crate::robots::{robot, root};
 pub struct FirmwareBench(pub SimulatedBoard);
 
 impl FirmwareBench {
-    /// The path of the firmware's ELF file, which `LIZARD_ELF` can set. The default is the file that `make firmware`
-    /// builds.
+    /// Returns the path of the firmware's ELF file, which `LIZARD_ELF` can set. The default is the file that
+    /// `make firmware` builds.
     ///
     /// The file may contain any robot; [`FirmwareBench::image`] replaces it.
     pub fn elf_path() -> PathBuf {
@@ -29,7 +29,7 @@ impl FirmwareBench {
         std::env::var_os("LIZARD_ELF").map_or(built_elf, PathBuf::from)
     }
 
-    /// The firmware's image, with [`robot`] in place of the file's robot.
+    /// Returns the firmware's image, with [`robot`] in place of the file's robot.
     ///
     /// # Panics
     /// If there is no firmware.
@@ -38,7 +38,7 @@ impl FirmwareBench {
         IMAGE.clone()
     }
 
-    /// The firmware's image, with the given robot in place of the file's robot.
+    /// Returns the firmware's image, with the given robot in place of the file's robot.
     ///
     /// # Panics
     /// If there is no firmware.

@@ -14,6 +14,7 @@ use lizard_robot::Robot;
 use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::{Edge, Image, Pin, SerialByte};
 
+use crate::helpers::decode_text;
 use crate::robots::root;
 
 /// Cycles at the end of a run in which no pulses are compared, because a pulse may have ended on only one simulator.
@@ -366,9 +367,5 @@ fn select_ended_pulses(pulses: &[PinPulse], end_cycle: u64) -> Vec<PinPulse> {
 /// Returns an excerpt of 60 bytes, about a line, that ends with byte `index`.
 fn excerpt(bytes: &[SerialByte], index: usize) -> String {
     let end = bytes.len().min(index + 1);
-    let bytes: Vec<u8> = bytes[end.saturating_sub(60)..end]
-        .iter()
-        .map(|byte| byte.byte)
-        .collect();
-    String::from_utf8_lossy(&bytes).into_owned()
+    decode_text(&bytes[end.saturating_sub(60)..end])
 }

@@ -3,16 +3,16 @@
 
 pub mod avr_gcc;
 mod bench;
-mod checks;
-mod extent;
+mod environment;
+mod helpers;
 pub mod judge;
 pub mod random_robot;
 mod robots;
 pub mod trouble;
 
 pub use bench::FirmwareBench;
-pub use checks::{assert_contains, decode_text, pulse_widths};
-pub use extent::{dialogue_minutes, read_number, scaled_count};
+pub use environment::{dialogue_minutes, read_number, scaled_count};
+pub use helpers::{assert_contains, decode_text, pulse_widths};
 pub use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 pub use lizard_host::sim::lines::Line;
 pub use robots::{

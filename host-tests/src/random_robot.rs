@@ -6,8 +6,6 @@
 //! [`Robot::parse`] rejects invalid robots, so each result is a robot that a user could build. Each robot has a gait
 //! that moves, and about half of the robots measure the voltage of their servo rail.
 
-use std::fmt::Write;
-
 use fastrand::Rng;
 use lizard_core::numbers::gaits::{Gait, Wave};
 use lizard_core::numbers::section::REGION_BYTES;
@@ -24,10 +22,10 @@ const PINS: [&str; 17] = [
 ];
 
 /// Names of the servos in robot.toml.
-const SERVOS: [&str; 4] = ["A1", "A2", "A3", "A4"];
+const SERVO_NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 
 /// Names of the legs in robot.toml, in the order of their servos.
-const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
+const LEG_NAMES: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
 /// Returns a random valid robot and the text of its robot.toml.
 ///
@@ -36,14 +34,14 @@ const LEGS: [&str; 4] = ["LF", "RF", "RH", "LH"];
 pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
     (0..MAX_DRAFT_COUNT)
         .find_map(|_| {
-            let body = Body::generate(rng)?;
-            let mut text = body.to_toml();
+            let base = RobotBase::generate(rng)?;
+            let mut text = base.to_toml();
             Robot::parse(&text).ok()?;
-            for gait in random_gaits(rng, &body) {
+            for gait in random_gaits(rng, &base) {
                 text = with_allowed_gait(text, &gait);
             }
             if rng.bool() {
-                append_line(&mut text, &random_rail(rng, &body.pins));
+                text += &random_rail(rng, &base.pins);
             }
             let robot = Robot::parse(&text).ok()?;
             let has_moving_gait = robot.gaits().iter().any(|gait| gait.has_movement());
@@ -52,7 +50,7 @@ pub fn random_robot(rng: &mut Rng) -> (String, Robot) {
         .expect("one of the drafts is a valid robot")
 }
 
-/// Returns a robot with as many additional gaits as fit in flash. No room is left for the maps of certified cells. The
+/// Returns a robot with as many additional gaits as fit in flash. No space is left for the maps of certified cells. The
 /// names of the additional gaits have `name_length` characters and differ only in the last two.
 ///
 /// # Panics
@@ -61,7 +59,7 @@ pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
     let robot = Robot::parse(text).expect("the text describes a valid robot");
     let gait = robot.gaits().iter().find(|gait| gait.has_movement());
     let gait_name = gait.expect("the robot has a gait that moves").name();
-    // Leaves room for one more waveform, which the additional gaits may need.
+    // Leaves space for one more waveform, which the additional gaits may need.
     let used_bytes = robot.content().section_bytes().len() + size_of::<Wave>();
     let free_bytes = usize::from(REGION_BYTES).saturating_sub(used_bytes);
     let gaits = (0..free_bytes / (size_of::<Gait>() + name_length)).map(|number| {
@@ -73,7 +71,7 @@ pub fn with_many_gaits(text: &str, name_length: usize) -> Robot {
 }
 
 /// All properties of a robot except its gaits.
-struct Body {
+struct RobotBase {
     /// The scale of all lengths; about 1 for a robot of the paper's size.
     scale: f64,
     /// The lengths l0 to l19, mm.
@@ -82,16 +80,16 @@ struct Body {
     neutral: [f64; 4],
     limits: Limits,
     /// The keys of the tables of A1 to A4.
-    servos: [String; 4],
+    servo_tables: [String; 4],
     /// The pins of the four servos, then all other pins.
     pins: [&'static str; PINS.len()],
     /// The speed limits `slew` and `gait_slew`, deg/s.
-    slew: [f64; 2],
+    slew_limits: [f64; 2],
     lizard: Lizard,
 }
 
-impl Body {
-    /// Returns a random body with a safe neutral pose; `None` if no safe pose was found.
+impl RobotBase {
+    /// Returns a random base with a safe neutral pose; `None` if no safe pose was found.
     fn generate(rng: &mut Rng) -> Option<Self> {
         let scale = 0.3 * (4.0f64 / 0.3).powf(rng.f64());
         let mut random_length = |min: f64, max: f64| round(scale * random_between(rng, min, max));
@@ -138,7 +136,7 @@ impl Body {
         lizard.links = Links::from(links);
         let mut pins = PINS;
         rng.shuffle(&mut pins);
-        let servos = std::array::from_fn(|servo| {
+        let servo_tables = std::array::from_fn(|servo| {
             let sign = if rng.bool() { 1.0 } else { -1.0 };
             let random_us =
                 |rng: &mut Rng, us: f64| (us + random_between(rng, -60.0, 60.0)).round();
@@ -157,9 +155,9 @@ impl Body {
             links,
             neutral,
             limits,
-            servos,
+            servo_tables,
             pins,
-            slew: [
+            slew_limits: [
                 random_between(rng, 120.0, 500.0).round(),
                 random_between(rng, 150.0, 800.0).round(),
             ],
@@ -169,74 +167,58 @@ impl Body {
 
     /// Returns the robot.toml text of a robot whose only gait is `stand`.
     fn to_toml(&self) -> String {
-        let mut text = String::from("[links]\n");
-        let Lizard { leg, .. } = self.lizard;
-        for (link, length) in self.links.iter().enumerate() {
-            append_line(&mut text, &format!("l{link} = {length}"));
-        }
-        append_line(
-            &mut text,
-            &format!(
-                "[leg]\nground = {0}\ncrank = {1}\ncoupler = {0}\nfollower = {1}",
-                leg.ground, leg.crank
-            ),
-        );
-        append_line(
-            &mut text,
-            &format!(
-                "hip_forward = {}\nhip_side = {}\nmount = 7.5",
-                round(self.scale * 55.0),
-                round(self.scale * 35.0)
-            ),
-        );
-        for (name, servo) in SERVOS.iter().zip(&self.servos) {
-            append_line(&mut text, &format!("[servo.{name}]\n{servo}"));
-        }
-        let Limits {
-            type2,
-            type1,
-            leg,
-            stroke_min,
-            stroke_max,
-        } = self.limits;
-        let [slew, gait_slew] = self.slew;
-        append_line(
-            &mut text,
-            &format!(
-                "[limits]\ntype2 = {type2}\ntype1 = {type1}\nleg = {leg}\n\
-                 stroke_min = {stroke_min}\nstroke_max = {stroke_max}\n\
-                 slew = {slew}\ngait_slew = {gait_slew}\n\
-                 [ground]\nfriction_back_over_forward = 0.8\n\
-                 [gait.stand]\nperiod = 1.0\nwaveform = \"still\""
-            ),
-        );
-        text
+        let (leg, limits) = (&self.lizard.leg, &self.limits);
+        let links = self.links.iter().enumerate();
+        let links = links.map(|(link, length)| format!("l{link} = {length}\n"));
+        let servos = SERVO_NAMES.iter().zip(&self.servo_tables);
+        let servos = servos.map(|(name, table)| format!("[servo.{name}]\n{table}\n"));
+        let [slew, gait_slew] = self.slew_limits;
+        format!(
+            "[links]\n{}[leg]\nground = {ground}\ncrank = {crank}\n\
+             coupler = {ground}\nfollower = {crank}\n\
+             hip_forward = {}\nhip_side = {}\nmount = 7.5\n{}\
+             [limits]\ntype2 = {}\ntype1 = {}\nleg = {}\nstroke_min = {}\nstroke_max = {}\n\
+             slew = {slew}\ngait_slew = {gait_slew}\n\
+             [ground]\nfriction_back_over_forward = 0.8\n\
+             [gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n",
+            links.collect::<String>(),
+            round(self.scale * 55.0),
+            round(self.scale * 35.0),
+            servos.collect::<String>(),
+            limits.type2,
+            limits.type1,
+            limits.leg,
+            limits.stroke_min,
+            limits.stroke_max,
+            ground = leg.ground,
+            crank = leg.crank,
+        )
     }
 }
 
 /// Returns the angles of a random neutral pose, deg; `None` if no pose was found. The pose's margins exceed their
-/// limits by at least `ROOM`; the strokes are not checked.
+/// limits by at least `MIN_RESERVE`; the strokes are not checked.
 fn random_neutral(rng: &mut Rng, lizard: &Lizard, limits: &Limits) -> Option<[f64; 4]> {
     /// The smallest allowed distance of a margin from its limit, a sine.
-    const ROOM: f64 = 0.12;
+    const MIN_RESERVE: f64 = 0.12;
     (0..200).find_map(|_| {
-        let [front_left, front_right, rear_left, rear_right] =
+        let [front_left, front_right, hind_left, hind_right] =
             [(); 4].map(|()| round(random_between(rng, 8.0, 80.0)));
         let neutral = [
             180.0 - front_left,
             front_right,
-            360.0 - rear_right,
-            180.0 + rear_left,
+            360.0 - hind_right,
+            180.0 + hind_left,
         ];
         let solution = lizard.solve(&neutral.into()).ok()?;
-        let limits_with_room = Limits {
-            type2: limits.type2 + ROOM,
-            type1: limits.type1 + ROOM,
-            leg: limits.leg + ROOM,
+        let stricter_limits = Limits {
+            type2: limits.type2 + MIN_RESERVE,
+            type1: limits.type1 + MIN_RESERVE,
+            leg: limits.leg + MIN_RESERVE,
             stroke_min: f64::NEG_INFINITY,
             stroke_max: f64::INFINITY,
         };
-        limits_with_room.is_safe(&solution).then_some(neutral)
+        stricter_limits.is_safe(&solution).then_some(neutral)
     })
 }
 
@@ -251,7 +233,7 @@ fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
     let rest = round(stop - random_between(rng, 0.15, 0.4));
     format!(
         "[supply]\nreference = {}\n[supply.rail]\npin = \"{pin}\"\nratio = {ratio}\n\
-         slow = {slow}\nstop = {stop}\nrest = {rest}",
+         slow = {slow}\nstop = {stop}\nrest = {rest}\n",
         round_factor(random_between(rng, 1.05, 1.15)),
     )
 }
@@ -260,11 +242,11 @@ fn random_rail(rng: &mut Rng, pins: &[&'static str]) -> String {
 type SizedGait = Box<dyn Fn(f64) -> String>;
 
 /// Returns random gaits of every kind: waves, held gaits, reversed and mirrored gaits, and paths of head and tail.
-fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<SizedGait> {
+fn random_gaits(rng: &mut Rng, base: &RobotBase) -> Vec<SizedGait> {
     let mut gaits = Vec::new();
     let random_period = |rng: &mut Rng| round(random_between(rng, 0.7, 3.0));
     let format_leg_table = |values: [f64; 4]| {
-        let pairs: Vec<String> = LEGS
+        let pairs: Vec<String> = LEG_NAMES
             .iter()
             .zip(values)
             .map(|(leg, value)| format!("{leg} = {value}"))
@@ -286,7 +268,7 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<SizedGait> {
         format_leg_table(wave_starts),
         format_leg_table(wave_gains),
     );
-    let mut order = LEGS;
+    let mut order = LEG_NAMES;
     rng.shuffle(&mut order);
     let held_text = format!(
         "[gait.creep-along]\nperiod = {}\nwaveform = \"held\"\norder = {order:?}\ngain = {}",
@@ -314,12 +296,12 @@ fn random_gaits(rng: &mut Rng, body: &Body) -> Vec<SizedGait> {
         )
     }));
     // A path of head or tail is centred on the end point's position in the neutral pose.
-    let Ok(solution) = body.lizard.solve(&body.neutral.into()) else {
+    let Ok(solution) = base.lizard.solve(&base.neutral.into()) else {
         return gaits;
     };
     for (name, end) in [("look", End::Head), ("wag", End::Tail)] {
         let point = solution.end(end).end_point;
-        let (period, reach) = (round(random_between(rng, 2.0, 5.0)), 12.0 * body.scale);
+        let (period, reach) = (round(random_between(rng, 2.0, 5.0)), 12.0 * base.scale);
         let shift = round_factor(rng.f64());
         gaits.push(Box::new(move |size| {
             format!(
@@ -343,11 +325,6 @@ fn with_allowed_gait(text: String, gait: &SizedGait) -> String {
         .map(|size| format!("{text}{}\n", gait(size)))
         .find(|longer_text| Robot::parse(longer_text).is_ok())
         .unwrap_or(text)
-}
-
-fn append_line(text: &mut String, line: &str) {
-    // Writing to a String never fails.
-    let _ = writeln!(text, "{line}");
 }
 
 fn random_between(rng: &mut Rng, min: f64, max: f64) -> f64 {

@@ -9,7 +9,7 @@ use std::thread;
 use fastrand::Rng;
 use lizard_core::memory::record::CONTENT_BYTES;
 use lizard_core::virtual_board::Eeprom;
-use lizard_fuzz::Board;
+use lizard_fuzz::ObservedBoard;
 use lizard_host_tests::{robot, scaled_count};
 
 #[path = "firmware/random_lines.rs"]
@@ -43,7 +43,7 @@ fn run_on_threads(test: impl Fn(&mut Rng, u64) + Sync) {
 #[test]
 fn millions_of_random_bytes_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
-        let mut board = Board::power_on(robot(), Eeprom::blank());
+        let mut board = ObservedBoard::power_on(robot(), Eeprom::blank());
         for byte_index in 0..count {
             // Line ends are more frequent than other bytes.
             let byte = if rng.u8(..32) == 0 { b'\n' } else { rng.u8(..) };
@@ -66,7 +66,7 @@ fn millions_of_random_bytes_do_no_harm_to_the_core() {
 #[test]
 fn millions_of_nearly_valid_lines_do_no_harm_to_the_core() {
     run_on_threads(|rng, count| {
-        let mut board = Board::power_on(robot(), Eeprom::blank());
+        let mut board = ObservedBoard::power_on(robot(), Eeprom::blank());
         let mut accepted_count = 0u64;
         for line_index in 0..count {
             for byte in random_lines::nearly_valid_line(rng) {

@@ -117,22 +117,15 @@ fn the_program_contains_the_code_built_from_the_source() {
         embedded_recording.answers, built_recording.answers,
         "{OUTDATED_MESSAGE} (its answers)"
     );
+    let [embedded_widths, built_widths] =
+        [embedded_recording, built_recording].map(|recording| recording.frames.widths);
+    assert_eq!(embedded_widths.len(), built_widths.len());
+    let mut pairs = embedded_widths.iter().zip(&built_widths);
     assert_eq!(
-        embedded_recording.frames.widths.len(),
-        built_recording.frames.widths.len()
+        pairs.position(|(embedded, built)| embedded != built),
+        None,
+        "{OUTDATED_MESSAGE} (the first frame whose pulses differ)"
     );
-    for (index, (embedded_widths, built_widths)) in embedded_recording
-        .frames
-        .widths
-        .iter()
-        .zip(&built_recording.frames.widths)
-        .enumerate()
-    {
-        assert_eq!(
-            embedded_widths, built_widths,
-            "{OUTDATED_MESSAGE} (the pulses of frame {index})"
-        );
-    }
 }
 
 #[test]

@@ -3,10 +3,10 @@
 //!
 //! `make flash-test` installs the tools and runs these tests.
 
-mod desk;
+mod connected_board;
 mod shell;
 
-use desk::{BOOT_LOADER_START, Desk};
+use connected_board::{BOOT_LOADER_START, ConnectedBoard};
 use lizard_host::sim::frame::{group_frames, servo_pins};
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, Frame, robot};
 use lizard_time_limit::TIME_LIMIT;
@@ -17,46 +17,46 @@ use simulated_uno::{Fidelity, Uno};
 const AWAKE_FRAMES: u64 = 60;
 
 /// Starts `make flash` on the board's port.
-fn start_make_flash(desk: &Desk) -> Shell {
-    Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &desk.port_path())])
+fn start_make_flash(board: &ConnectedBoard) -> Shell {
+    Shell::start("make", &["flash"], &[("RAVEDUDE_PORT", &board.port_path())])
 }
 
 /// Runs the board for a number of frames.
-fn run_frames(desk: &mut Desk, count: u64) {
-    let end_cycle = desk.uno.cycle() + count * FRAME_CYCLES;
-    let is_in_time = desk.run_until(|uno| uno.cycle() > end_cycle);
+fn run_frames(board: &mut ConnectedBoard, count: u64) {
+    let end_cycle = board.uno.cycle() + count * FRAME_CYCLES;
+    let is_in_time = board.run_until(|uno| uno.cycle() > end_cycle);
     assert!(is_in_time, "waited {TIME_LIMIT} for {count} frames");
 }
 
 #[test]
 fn make_flash_writes_the_image_and_the_robot_walks() {
-    let mut desk = Desk::with_new_uno();
-    let mut shell = start_make_flash(&desk);
-    desk.wait_for_text(&shell, "# lizard");
+    let mut board = ConnectedBoard::with_new_uno();
+    let mut shell = start_make_flash(&board);
+    board.wait_for_text(&shell, "# lizard");
     let screen = shell.screen();
     assert!(screen.contains("bytes of flash verified"), "{screen}");
 
     let elf = FirmwareBench::elf_path();
     let expected_uno = Uno::load(&elf, Fidelity::DataSheet).expect("the image loads");
-    desk.assert_written(expected_uno.flash());
+    board.assert_flashed_with(expected_uno.flash());
 
     // Waits until all four servos are awake, then walks for two gait cycles.
     shell.type_line("stand");
-    desk.wait_for_text(&shell, "ok stand");
-    run_frames(&mut desk, AWAKE_FRAMES);
+    board.wait_for_text(&shell, "ok stand");
+    run_frames(&mut board, AWAKE_FRAMES);
     shell.type_line("walk");
-    desk.wait_for_text(&shell, "ok walk");
-    desk.edges.clear();
-    run_frames(&mut desk, 110);
+    board.wait_for_text(&shell, "ok walk");
+    board.edges.clear();
+    run_frames(&mut board, 110);
     let pins = servo_pins(robot());
-    let first_edge = desk
+    let first_edge = board
         .edges
         .iter()
         .find(|edge| edge.is_rising && edge.pin == pins[0]);
     let start_cycle = first_edge.expect("A1 has a pulse").cycle;
-    let walked_widths: Vec<[u64; 4]> = group_frames(&desk.edges, pins, start_cycle, 100)
+    let walked_widths: Vec<[u64; 4]> = group_frames(&board.edges, pins, start_cycle, 100)
         .iter()
-        .map(Frame::widths)
+        .map(Frame::expect_all_widths)
         .collect();
 
     // Runs the same image in a simulation without boot loader, port and wall clock.
@@ -67,7 +67,7 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
     let bench_widths: Vec<[u64; 4]> = bench
         .run_for_frames(150)
         .iter()
-        .map(Frame::widths)
+        .map(Frame::expect_all_widths)
         .collect();
     assert!(
         bench_widths
@@ -80,30 +80,33 @@ fn make_flash_writes_the_image_and_the_robot_walks() {
 
 #[test]
 fn an_upload_keeps_the_eeprom() {
-    let mut desk = Desk::with_new_uno();
+    let mut board = ConnectedBoard::with_new_uno();
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
-    desk.uno.set_eeprom(&eeprom);
-    let mut shell = start_make_flash(&desk);
+    board.uno.set_eeprom(&eeprom);
+    let mut shell = start_make_flash(&board);
     // Compares the EEPROM before the firmware can write to it.
-    desk.wait_for_text(&shell, "bytes of flash verified");
-    assert!(desk.uno.eeprom() == eeprom, "the upload changed the EEPROM");
+    board.wait_for_text(&shell, "bytes of flash verified");
+    assert!(
+        board.uno.eeprom() == eeprom,
+        "the upload changed the EEPROM"
+    );
     shell.interrupt();
 }
 
 #[test]
 fn a_saved_calibration_is_in_effect_after_the_next_upload() {
-    let mut desk = Desk::with_new_uno();
-    let mut shell = start_make_flash(&desk);
-    desk.wait_for_text(&shell, "# lizard");
+    let mut board = ConnectedBoard::with_new_uno();
+    let mut shell = start_make_flash(&board);
+    board.wait_for_text(&shell, "# lizard");
     for line in ["trim 1 3", "deadman 700", "save"] {
         shell.type_line(line);
-        desk.wait_for_text(&shell, &format!("ok {line}"));
+        board.wait_for_text(&shell, &format!("ok {line}"));
     }
     shell.interrupt();
-    let mut shell = start_make_flash(&desk);
-    desk.wait_for_text(&shell, "# lizard");
+    let mut shell = start_make_flash(&board);
+    board.wait_for_text(&shell, "# lizard");
     shell.type_line("cal");
-    desk.wait_for_text(&shell, "ok cal");
+    board.wait_for_text(&shell, "ok cal");
     let screen = shell.screen();
     assert!(screen.contains("# A1 trim 3.00 "), "{screen}");
     assert!(screen.contains("# deadman 700"), "{screen}");
@@ -112,11 +115,11 @@ fn a_saved_calibration_is_in_effect_after_the_next_upload() {
 
 #[test]
 fn a_byte_that_changes_after_its_write_ends_the_upload() {
-    let mut desk = Desk::with_new_uno();
-    let shell = start_make_flash(&desk);
+    let mut board = ConnectedBoard::with_new_uno();
+    let shell = start_make_flash(&board);
     let mut has_flipped_bit = false;
     // After the first page is written, one of its bits changes.
-    let has_ended = desk.run_until(|uno| {
+    let has_ended = board.run_until(|uno| {
         if !has_flipped_bit && uno.flash()[0x100] != 0xff {
             uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
             has_flipped_bit = true;
@@ -128,7 +131,7 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
         "waited {TIME_LIMIT} for the end of the upload:\n{}",
         shell.screen()
     );
-    let screen = shell.last_screen();
+    let screen = shell.screen();
     assert!(has_flipped_bit, "nothing was written:\n{screen}");
     assert!(screen.contains("verification"), "{screen}");
     assert!(screen.contains("flash: the upload to"), "{screen}");
@@ -140,14 +143,14 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
 
 #[test]
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
-    let mut desk = Desk::with_new_uno();
+    let mut board = ConnectedBoard::with_new_uno();
     // Replaces the boot loader with an endless loop: `rjmp .-2`.
-    desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
-    let shell = start_make_flash(&desk);
-    let screen = desk.run_until_exit(&shell);
+    board.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
+    let shell = start_make_flash(&board);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");
     assert!(
-        desk.uno.flash()[..BOOT_LOADER_START]
+        board.uno.flash()[..BOOT_LOADER_START]
             .iter()
             .all(|&byte| byte == 0xff)
     );

@@ -10,14 +10,14 @@ use lizard_time_limit::TIME_LIMIT;
 use simulated_uno::Port;
 use tempfile::TempDir;
 
-/// Runs `scripts/flash --check` on the serial ports in a folder. Returns the script's error output, and true if the
-/// script succeeds. `user_command` runs the script as another user, or is empty for the current user. `port` is the
-/// value of RAVEDUDE_PORT.
+/// Runs `scripts/flash --check` on the serial ports in a folder. Returns the script's error output, as an error if the
+/// script fails. `user_command` runs the script as another user, or is empty for the current user. `port` is the value
+/// of RAVEDUDE_PORT.
 fn check_ports_as(
     user_command: &[&str],
     port_folder: &Path,
     port: Option<&Path>,
-) -> (String, bool) {
+) -> Result<String, String> {
     let scripts = copy_scripts();
     let script = scripts.path().join("scripts/flash");
     let command_line: Vec<&str> = [user_command, &["bash"]].concat();
@@ -33,10 +33,13 @@ fn check_ports_as(
         .run_command(&mut command, b"")
         .expect("the script ends");
     let error_output = String::from_utf8_lossy(&output.stderr).into_owned();
-    (error_output, output.status.success())
+    match output.status.success() {
+        true => Ok(error_output),
+        false => Err(error_output),
+    }
 }
 
-fn check_ports(port_folder: &Path) -> (String, bool) {
+fn check_ports(port_folder: &Path) -> Result<String, String> {
     check_ports_as(&[], port_folder, None)
 }
 
@@ -62,14 +65,13 @@ fn copy_scripts() -> TempDir {
         .arg(root().join("scripts"))
         .arg(copy.path());
     let output = TIME_LIMIT.run_command(&mut command, b"").expect("cp ends");
-    assert!(output.status.success(), "cp fails");
+    assert!(output.status.success(), "cp failed");
     copy
 }
 
 #[test]
 fn without_a_board_the_message_names_the_cable_to_connect() {
-    let (error_output, has_succeeded) = check_ports(create_folder().path());
-    assert!(!has_succeeded);
+    let error_output = check_ports(create_folder().path()).expect_err("there is no board");
     assert!(error_output.contains("no board found"), "{error_output}");
     assert!(
         error_output.contains("cable that carries data"),
@@ -78,10 +80,10 @@ fn without_a_board_the_message_names_the_cable_to_connect() {
 }
 
 #[test]
-fn a_single_board_is_used_whatever_its_usb_chip() {
+fn a_single_board_on_a_usb_serial_chip_is_used() {
     let port_folder = create_folder();
     File::create(port_folder.path().join("ttyUSB0")).expect("the file can be created");
-    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
+    assert_eq!(check_ports(port_folder.path()), Ok(String::new()));
 }
 
 #[test]
@@ -90,8 +92,7 @@ fn with_several_boards_the_user_must_name_a_port() {
     for name in ["ttyACM0", "ttyUSB3"] {
         File::create(port_folder.path().join(name)).expect("the file can be created");
     }
-    let (error_output, has_succeeded) = check_ports(port_folder.path());
-    assert!(!has_succeeded);
+    let error_output = check_ports(port_folder.path()).expect_err("there are two boards");
     assert!(
         error_output.contains("several boards found"),
         "{error_output}"
@@ -101,15 +102,14 @@ fn with_several_boards_the_user_must_name_a_port() {
         "{error_output}"
     );
     let named_port = port_folder.path().join("ttyUSB3");
-    assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).1);
+    assert!(check_ports_as(&[], port_folder.path(), Some(&named_port)).is_ok());
 }
 
 #[test]
 fn a_missing_port_is_named_in_the_message() {
     let missing_port = Path::new("/dev/no-such-port");
-    let (error_output, has_succeeded) =
-        check_ports_as(&[], create_folder().path(), Some(missing_port));
-    assert!(!has_succeeded);
+    let error_output = check_ports_as(&[], create_folder().path(), Some(missing_port))
+        .expect_err("the port does not exist");
     assert!(
         error_output.contains("/dev/no-such-port does not exist"),
         "{error_output}"
@@ -125,18 +125,17 @@ fn the_message_names_the_program_that_has_the_port_open() {
     let port = Port::new().expect("a pseudo terminal can be opened");
     let port_folder = create_folder();
     symlink(port.path(), port_folder.path().join("ttyACM0")).expect("the link can be created");
-    assert_eq!(check_ports(port_folder.path()), (String::new(), true));
+    assert_eq!(check_ports(port_folder.path()), Ok(String::new()));
     let mut options = OpenOptions::new();
     let open_port = options.read(true).write(true).open(port.path());
-    let (error_output, has_succeeded) = check_ports(port_folder.path());
-    assert!(!has_succeeded);
+    let error_output = check_ports(port_folder.path()).expect_err("the port is open");
     let own_process = format!("(process {})", std::process::id());
     assert!(
         error_output.contains("is open in ") && error_output.contains(&own_process),
         "{error_output}"
     );
     drop(open_port);
-    assert!(check_ports(port_folder.path()).1);
+    assert!(check_ports(port_folder.path()).is_ok());
 }
 
 #[test]
@@ -149,8 +148,7 @@ fn without_permission_the_message_names_the_group_to_join() {
     if !is_root() {
         // Only root can run the script as another user. A port that its owner may not open has the same effect.
         fs::set_permissions(&port, Permissions::from_mode(0o000)).expect("the test owns the file");
-        let (error_output, has_succeeded) = check_ports_as(&[], port_folder.path(), None);
-        assert!(!has_succeeded);
+        let error_output = check_ports(port_folder.path()).expect_err("the port may not be opened");
         assert!(error_output.contains("may not open"), "{error_output}");
         return;
     }
@@ -161,8 +159,8 @@ fn without_permission_the_message_names_the_group_to_join() {
         chgrp_output.status.success(),
         "the group dialout does not exist"
     );
-    let (error_output, has_succeeded) = check_ports_as(&nobody_command, port_folder.path(), None);
-    assert!(!has_succeeded);
+    let error_output = check_ports_as(&nobody_command, port_folder.path(), None)
+        .expect_err("nobody may not open the port");
     assert!(
         error_output.contains("nobody may not open"),
         "{error_output}"

@@ -8,8 +8,7 @@ use lizard_host_tests::judge::{
     AVR8JS_LAG_CYCLES, Outputs, PinPulse, compare_console, compare_pulses, run_judge_tests,
     run_on_avr8js,
 };
-use lizard_host_tests::{FirmwareBench, robot};
-use lizard_robot::CheckedGait;
+use lizard_host_tests::{FirmwareBench, gait_commands, robot};
 use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, SerialByte};
 
 /// Boots a bench until its robot stands. The bench has recorded all outputs since power-on.
@@ -17,11 +16,6 @@ fn boot_to_stand() -> FirmwareBench {
     let mut bench = FirmwareBench::power_on(Fidelity::DataSheet);
     bench.run_ms(1000);
     bench
-}
-
-/// Returns the commands for all gaits.
-fn gait_commands() -> Vec<String> {
-    robot().gaits().iter().map(CheckedGait::command).collect()
 }
 
 /// The allowed difference in time between the bytes of two consoles.

@@ -3,7 +3,7 @@
 
 use lizard_host_tests::{FirmwareBench, root};
 use servo_pulses::{CYCLES_PER_US, MIN_WIDTH_CYCLES, frame_cycles, max_width_cycles};
-use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Pin, State, Uno, max_pins_high};
 
 /// The pins of the example's servos, in the order of the example.
 const PINS: [u8; 8] = [2, 3, 7, 8, 9, 12, 14, 19];
@@ -39,7 +39,7 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
         let servo_edges = edges.iter().filter(|edge| edge.pin != Pin::d(13));
         let servo_edges: Vec<_> = servo_edges.copied().collect();
         assert_eq!(
-            most_pins_high(&servo_edges),
+            max_pins_high(&servo_edges),
             1,
             "number of pins that are high at the same time"
         );
@@ -76,7 +76,10 @@ fn eight_servos_are_exact_to_the_cycle_during_a_flood_of_echoed_bytes() {
             let expected_echo: Vec<u8> = text.iter().cycle().take(echo.len()).copied().collect();
             let wrong_index = (0..echo.len()).find(|index| echo[*index] != expected_echo[*index]);
             assert_eq!(wrong_index, None, "the first wrong byte of the echo");
-            assert_eq!((uno.overruns(), uno.bytes_sent()), (0, echo.len() as u64));
+            assert_eq!(
+                (uno.overrun_count(), uno.sent_byte_count()),
+                (0, echo.len() as u64)
+            );
         } else {
             assert!(echo.len() > 100_000, "{} bytes", echo.len());
         }
@@ -100,7 +103,7 @@ fn the_costs_in_the_readme_match_the_example() {
     let mut uno = load_sweep_example(Fidelity::DataSheet);
     uno.run_ms(100);
     let count_interrupt_cycles = |uno: &Uno| {
-        let interrupts = uno.interrupts();
+        let interrupts = uno.interrupt_stats();
         let handler_cycles = |vector| {
             interrupts
                 .iter()
@@ -149,7 +152,7 @@ fn the_costs_in_the_readme_match_the_example() {
 }
 
 #[test]
-fn the_pulse_width_limits_leave_room_for_a_servos_full_travel() {
+fn the_pulse_width_limits_allow_a_servos_full_travel() {
     let us_to_cycles = |us: u32| us * u32::from(CYCLES_PER_US);
     assert!(u32::from(MIN_WIDTH_CYCLES) <= us_to_cycles(400));
     let allows_2400_us = |count: usize| u32::from(max_width_cycles(count)) >= us_to_cycles(2_400);

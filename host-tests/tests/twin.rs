@@ -69,8 +69,9 @@ fn the_image_moves_the_body_as_predicted() {
                     row.command
                 );
             };
-        compare("ahead", cycle.way.forward, cycle.predicted.forward, 0.5);
-        compare("turn", cycle.way.turn, cycle.predicted.turn, 0.3);
+        let (displacement, expected) = (&cycle.displacement, &cycle.ideal_displacement);
+        compare("forward", displacement.forward, expected.forward, 0.5);
+        compare("turn", displacement.turn, expected.turn, 0.3);
         assert!(
             row.servo_rate <= robot().speed_limits().gait_slew + 5.0,
             "{}",

@@ -52,7 +52,7 @@ impl Uno {
         // SAFETY: only the boot loader has run before this call, and each peripheral is moved to the module that owns
         // it.
         let peripherals = unsafe { Peripherals::steal() };
-        // The servos' pins are not known yet, so no pin may stay high.
+        // The servo pins are not known yet, so no pin may stay high.
         // SAFETY: a port may have any value; D0 and D1, the serial port, keep their levels.
         unsafe {
             peripherals.PORTB.portb.write(|w| w.bits(0));
@@ -89,9 +89,9 @@ impl Board for Uno {
     const CYCLES_PER_US: u16 = servo_pulses::CYCLES_PER_US;
 
     #[inline(always)]
-    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
-        pulses::connect_pins(servos);
-        self.converter.connect(rail);
+    fn connect(&mut self, servo_pins: [u8; 4], rail_pin: Option<u8>) {
+        pulses::connect_pins(servo_pins);
+        self.converter.connect(rail_pin);
     }
 
     #[inline(always)]

@@ -1,5 +1,5 @@
-//! The four servos' pulses and the 50 Hz clock: the engine of `servo-pulses`, whose pins are known once the robot's
-//! section has been read.
+//! The pulses of the four servos and the 50 Hz clock: the engine of `servo-pulses`, whose pins are known once the
+//! robot's section has been read.
 //!
 //! The documentation of `servo-pulses` explains the generation of pulses that are exact to the cycle, and the rules for
 //! all other interrupts. With four servos, a slot is 4 ms and a frame is 20 ms; main has 3.9 ms to compute a frame.

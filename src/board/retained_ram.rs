@@ -7,8 +7,7 @@ use avr_device::atmega328p::CPU;
 use lizard_core::memory::restart::{Cause, Restart, ServoState};
 use lizard_core::memory::retained_ram::{self, CELL_COUNT, Cells};
 use lizard_core::numbers::rate::BaudRate;
-
-use servo_pulses::cells::Byte;
+use servo_pulses::cells::SharedByte;
 
 // The start-up code does not clear this section, and the image contains no values for it. A Rust static would put
 // initial values into the image.
@@ -23,13 +22,13 @@ global_asm!(
 unsafe extern "C" {
     #[link_name = "lizard_retained_ram"]
     #[allow(improper_ctypes, reason = "no other language uses it")]
-    static RETAINED_BYTES: [Byte; CELL_COUNT];
+    static RETAINED_BYTES: [SharedByte; CELL_COUNT];
 }
 
 /// Access to the bytes of [`RETAINED_BYTES`].
-struct Ram;
+struct RetainedRam;
 
-impl Cells for Ram {
+impl Cells for RetainedRam {
     #[inline(always)]
     fn get(&self, index: usize) -> u8 {
         cell(index).get()
@@ -43,10 +42,10 @@ impl Cells for Ram {
 
 /// The byte of [`RETAINED_BYTES`] at an index below `CELL_COUNT`.
 #[inline(always)]
-fn cell(index: usize) -> &'static Byte {
-    // SAFETY: a `Byte` may have any value, so any contents of the RAM are valid; the core checks them before use, and
-    // uses only indices below `CELL_COUNT`.
-    unsafe { &*(&raw const RETAINED_BYTES).cast::<Byte>().add(index) }
+fn cell(index: usize) -> &'static SharedByte {
+    // SAFETY: a `SharedByte` may have any value, so any contents of the RAM are valid; the core checks them before use,
+    // and uses only indices below `CELL_COUNT`.
+    unsafe { &*(&raw const RETAINED_BYTES).cast::<SharedByte>().add(index) }
 }
 
 /// Returns the information that survived the reset, and marks the program as running. Call this function once, with
@@ -67,20 +66,20 @@ pub fn begin(cpu: &CPU) -> Restart {
     };
     // While WDRF is set, the watchdog cannot be changed.
     cpu.mcusr.reset();
-    retained_ram::begin(&Ram, reported_cause)
+    retained_ram::begin(&RetainedRam, reported_cause)
 }
 
 /// Stores the servo state, and the number of consecutive resets that a weak supply may have caused.
 pub fn store_servo_state(servo_state: &ServoState, suspected_brown_outs: u8) {
-    retained_ram::store_servo_state(&Ram, servo_state, suspected_brown_outs);
+    retained_ram::store_servo_state(&RetainedRam, servo_state, suspected_brown_outs);
 }
 
 /// Stores the baud rate.
 pub fn store_rate(rate: BaudRate) {
-    retained_ram::store_rate(&Ram, rate);
+    retained_ram::store_rate(&RetainedRam, rate);
 }
 
-/// Marks the program as hung; called by the watchdog's interrupt.
+/// Marks the program as hung; called by the interrupt handler of the watchdog.
 pub fn mark_hung() {
-    retained_ram::mark_hung(&Ram);
+    retained_ram::mark_hung(&RetainedRam);
 }

@@ -3,7 +3,7 @@
 //! At 115 200 baud a byte takes 1389 cycles and the receiver holds two bytes, while main may be busy with a frame for
 //! 12 000 cycles. Therefore each direction has a ring buffer between main and an interrupt handler. One side moves only
 //! the head, the other side only the tail. Head and tail are single bytes, so no lock is necessary. The handlers are
-//! short, because an edge of a servo's pulse may have to wait for a handler.
+//! short, because a pulse edge may have to wait for a handler.
 
 use core::convert::Infallible;
 
@@ -11,9 +11,8 @@ use avr_device::atmega328p::USART0;
 use avr_device::atmega328p::usart0::RegisterBlock;
 use lizard_core::console::line::GARBLED_BYTE;
 use lizard_core::numbers::rate::BaudRate;
+use servo_pulses::cells::{SharedByte, SharedCounter};
 use ufmt::uWrite;
-
-use servo_pulses::cells::{Byte, Counter};
 
 /// The size of the receive ring in bytes. The ring holds a complete line, so main may be busy for the time of 64 bytes,
 /// 89 000 cycles, which is seven times the limit for a frame.
@@ -36,9 +35,9 @@ const fn compute_divisor(rate: BaudRate) -> u16 {
 /// A ring buffer of bytes between main and a handler. The side that puts bytes moves `head`, the side that takes bytes
 /// moves `tail`; both indices count modulo 256.
 struct Ring<const N: usize> {
-    bytes: [Byte; N],
-    head: Byte,
-    tail: Byte,
+    bytes: [SharedByte; N],
+    head: SharedByte,
+    tail: SharedByte,
 }
 
 impl<const N: usize> Ring<N> {
@@ -52,9 +51,9 @@ impl<const N: usize> Ring<N> {
 
     const fn new() -> Self {
         Self {
-            bytes: [const { Byte::new(0) }; N],
-            head: Byte::new(0),
-            tail: Byte::new(0),
+            bytes: [const { SharedByte::new(0) }; N],
+            head: SharedByte::new(0),
+            tail: SharedByte::new(0),
         }
     }
 
@@ -71,7 +70,7 @@ impl<const N: usize> Ring<N> {
     fn put(&self, byte: u8) {
         let head = self.head.get();
         self.bytes[usize::from(head & Self::MASK)].set(byte);
-        // The byte before the head: the other side looks at the head first.
+        // The byte is stored before the head moves, because the move shows the byte to the other side.
         self.head.set(head.wrapping_add(1));
     }
 
@@ -88,10 +87,10 @@ impl<const N: usize> Ring<N> {
     }
 }
 
-static RECEIVED: Ring<RECEIVE_RING_SIZE> = Ring::new();
-static TO_SEND: Ring<SEND_RING_SIZE> = Ring::new();
+static RECEIVE_RING: Ring<RECEIVE_RING_SIZE> = Ring::new();
+static SEND_RING: Ring<SEND_RING_SIZE> = Ring::new();
 /// The number of received bytes that were lost or garbled.
-static LOST: Counter = Counter::new();
+static LOST_BYTES: SharedCounter = SharedCounter::new();
 
 /// Starts the port at a baud rate. Call this function once, with interrupts off.
 pub fn start(usart: USART0, rate: BaudRate) {
@@ -124,30 +123,30 @@ pub fn set_rate(rate: BaudRate) {
     usart.ubrr0.write(|w| w.bits(divisor));
 }
 
-/// Takes the next received byte, if any, or [`GARBLED_BYTE`] in place of a byte without its stop bit.
+/// Takes the next received byte, if any, or [`GARBLED_BYTE`] in place of a byte that lacks its stop bit.
 pub fn read() -> Option<u8> {
-    RECEIVED.take()
+    RECEIVE_RING.take()
 }
 
 /// True if [`read`] would return a byte.
 pub fn has_input() -> bool {
-    !RECEIVED.is_empty()
+    !RECEIVE_RING.is_empty()
 }
 
 /// True while bytes wait to be sent.
 pub fn is_sending() -> bool {
-    !TO_SEND.is_empty()
+    !SEND_RING.is_empty()
 }
 
 /// Returns the number of bytes that [`Writer`] accepts now without waiting, at most 255.
 pub fn room() -> u8 {
-    TO_SEND.room()
+    SEND_RING.room()
 }
 
 /// Returns the number of received bytes that were garbled, or lost because the ring was full or the receiver overran.
 /// An overrun counts once, even if more than one byte was lost. The count saturates at 65535.
 pub fn lost_count() -> u16 {
-    LOST.read()
+    LOST_BYTES.read()
 }
 
 /// A writer of text to the serial port. Main checks [`room`] before it writes; without room, a byte waits until another
@@ -175,14 +174,15 @@ impl uWrite for Writer {
 #[inline(never)]
 fn send(byte: u8) {
     while room() == 0 {}
-    TO_SEND.put(byte);
+    SEND_RING.put(byte);
     // SAFETY: a single store writes all of UCSR0B, with the value for a ring that is not empty. If the handler has
     // already sent the byte, it runs once more and only switches its interrupt off again.
     enable_interrupts(unsafe { &*USART0::ptr() }, true);
 }
 
-/// Switches on the receiver, the transmitter and the receive interrupt, and also the transmit interrupt if `has_output`
-/// is true. This is a single store, not a read and a write, so that main and a handler cannot undo each other's change.
+/// Switches on the receiver, the transmitter and the receive interrupt, and also the interrupt for an empty data
+/// register if `has_output` is true. This is a single store, not a read and a write, so that main and a handler cannot
+/// undo each other's change.
 #[inline(always)]
 fn enable_interrupts(usart: &RegisterBlock, has_output: bool) {
     usart.ucsr0b.write(|w| {
@@ -207,15 +207,15 @@ fn USART_RX() {
     let mut byte = usart.udr0.read().bits();
     if status.fe0().bit_is_set() {
         byte = GARBLED_BYTE;
-        LOST.count();
+        LOST_BYTES.count();
     }
-    if RECEIVED.room() != 0 {
-        RECEIVED.put(byte);
+    if RECEIVE_RING.room() != 0 {
+        RECEIVE_RING.put(byte);
     } else {
-        LOST.count();
+        LOST_BYTES.count();
     }
     if status.dor0().bit_is_set() {
-        LOST.count();
+        LOST_BYTES.count();
     }
 }
 
@@ -224,7 +224,7 @@ fn USART_RX() {
 fn USART_UDRE() {
     // SAFETY: only this handler writes UDR0; for UCSR0B see `send`.
     let usart = unsafe { &*USART0::ptr() };
-    match TO_SEND.take() {
+    match SEND_RING.take() {
         Some(byte) => usart.udr0.write(|w| w.bits(byte)),
         None => enable_interrupts(usart, false),
     }

@@ -6,7 +6,7 @@
 
 use core::arch::global_asm;
 
-use servo_pulses::cells::Byte;
+use servo_pulses::cells::SharedByte;
 
 /// The pattern of the guard word, which the stack rarely contains by chance.
 const GUARD: [u8; 4] = [0xde, 0x5a, 0xc3, 0x17];
@@ -23,11 +23,11 @@ global_asm!(
 unsafe extern "C" {
     #[link_name = "lizard_stack_guard"]
     #[allow(improper_ctypes, reason = "no other language uses it")]
-    static GUARD_WORD: [Byte; 4];
+    static GUARD_WORD: [SharedByte; 4];
 }
 
-fn guard_word() -> &'static [Byte; 4] {
-    // SAFETY: a `Byte` may have any value, so any contents of the RAM are valid.
+fn guard_word() -> &'static [SharedByte; 4] {
+    // SAFETY: a `SharedByte` may have any value, so any contents of the RAM are valid.
     unsafe { &GUARD_WORD }
 }
 

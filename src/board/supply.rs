@@ -27,12 +27,12 @@ const START_CONVERSION: u8 = 0x40;
 pub struct Converter {
     registers: ADC,
     reading: Reading,
-    /// The channel of the servos' rail, if the rail is measured.
+    /// The channel of the servo rail, if the rail is measured.
     rail_channel: Option<u8>,
     /// True while the rail is being measured, false while the reference is being measured.
     is_measuring_rail: bool,
-    /// True if a channel is selected and its conversion has not been started yet.
-    is_conversion_due: bool,
+    /// True if a channel is selected, but its conversion has not been started yet.
+    is_conversion_pending: bool,
     /// True once every voltage has been measured.
     is_complete: bool,
 }
@@ -48,12 +48,12 @@ impl Converter {
             reading: Reading::default(),
             rail_channel: None,
             is_measuring_rail: false,
-            is_conversion_due: true,
+            is_conversion_pending: true,
             is_complete: false,
         }
     }
 
-    /// Connects the rail to the pin with this Arduino number; with `None`, the rail is not measured.
+    /// Connects the rail to the pin with this Arduino number; if that is `None`, the rail is not measured.
     pub fn connect(&mut self, pin: Option<u8>) {
         self.rail_channel = pin.map(|pin| pin.wrapping_sub(A0) & 7);
     }
@@ -61,8 +61,8 @@ impl Converter {
     /// Starts the next part of a measurement. Returns the latest values, or an empty reading until every voltage has
     /// been measured. Call this function once per frame.
     pub fn advance_frame(&mut self) -> Reading {
-        if self.is_conversion_due {
-            self.is_conversion_due = false;
+        if self.is_conversion_pending {
+            self.is_conversion_pending = false;
             // SAFETY: any value of ADCSRA is valid; this value also starts a conversion.
             self.registers
                 .adcsra
@@ -70,7 +70,7 @@ impl Converter {
         } else {
             let value = self.registers.adc.read().bits();
             self.store_value(value);
-            self.is_conversion_due = true;
+            self.is_conversion_pending = true;
         }
         if self.is_complete {
             self.reading

@@ -47,14 +47,14 @@ function makeRegistryUrl(path, version) {
 }
 
 /** Downloads a URL; retries after a failure. */
-async function download(url, triesLeft = 4) {
+async function download(url, attemptsLeft = 4) {
   try {
     const response = await fetch(url);
     if (!response.ok) throw new Error(`${url} returned status ${response.status}`);
     return Buffer.from(await response.arrayBuffer());
   } catch (error) {
-    if (triesLeft === 1) throw error;
-    return download(url, triesLeft - 1);
+    if (attemptsLeft === 1) throw error;
+    return download(url, attemptsLeft - 1);
   }
 }
 

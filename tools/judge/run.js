@@ -1,7 +1,7 @@
-// Runs a firmware on avr8js: node run.js FIRMWARE.hex < SCRIPT
+// Runs firmware on avr8js: node run.js FIRMWARE.hex < SCRIPT
 //
-// src/script.js explains SCRIPT. Prints these lines; all cycles count from power-on:
-//   pulse <pin> <rise> <width>   a pin was high; pins 14 to 19 are A0 to A5
+// src/script.js explains SCRIPT. Prints these lines; all cycles are counted from power-on:
+//   pulse <pin> <rise> <width>   the pin was high for `width` cycles from cycle `rise`; pins 14 to 19 are A0 to A5
 //   sent <cycle> <hex byte>      the UNO sent a byte, whose stop bit ended at this cycle
 //   eeprom <2048 hex digits>     the EEPROM's contents at the end
 //   cpu <ms>                     processor time of the simulation
@@ -10,7 +10,7 @@ import { readFileSync } from 'node:fs';
 
 import { corrections } from './src/corrections/index.js';
 import { loadHex } from './src/hex.js';
-import { Scope } from './src/scope.js';
+import { PulseRecorder } from './src/pulse-recorder.js';
 import { readScript } from './src/script.js';
 import { Uno } from './src/uno.js';
 
@@ -22,9 +22,9 @@ function run(firmwarePath, script) {
   const { analogue, bytes, endCycle } = readScript(script);
   for (const { channel, volts } of analogue) uno.adc.channelValues[channel] = volts;
   const lines = [];
-  new Scope(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
+  new PulseRecorder(uno, (pin, rise, width) => lines.push(`pulse ${pin} ${rise} ${width}`));
   uno.usart.onByteTransmit = (byte, cycle) => lines.push(`sent ${cycle} ${toHex(byte)}`);
-  uno.deliver(bytes);
+  uno.scheduleBytes(bytes);
   uno.run(endCycle);
   lines.push(`eeprom ${Array.from(uno.eepromBytes, toHex).join('')}`);
   return lines;

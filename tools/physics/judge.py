@@ -35,9 +35,9 @@ def main():
     paths = sorted(path.glob("*.xml")) if path.is_dir() else [path]
     has_failed = False
     with multiprocessing.Pool(2) as pool:
-        for answer in pool.imap_unordered(simulate, paths):
-            print(json.dumps(answer), flush=True)
-            has_failed |= "error" in answer
+        for result in pool.imap_unordered(simulate, paths):
+            print(json.dumps(result), flush=True)
+            has_failed |= "error" in result
     sys.exit(has_failed)
 
 

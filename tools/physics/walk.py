@@ -9,7 +9,7 @@ import math
 import mujoco
 import numpy
 
-from grain import Grain
+from grain import GrainedPads
 
 
 FRAME_S = 0.02
@@ -45,7 +45,7 @@ class Walk:
         self.model = mujoco.MjModel.from_xml_path(str(path))
         self.data = mujoco.MjData(self.model)
         ratio = float(self.model.numeric("back over forward").data[0])
-        self.grain = None if ratio == 1 else Grain(self.model, ratio)
+        self.grained_pads = None if ratio == 1 else GrainedPads(self.model, ratio)
         names = [self.model.numeric(index).name for index in range(self.model.nnumeric)]
         self.burst_drive = BurstDrive(self.model) if "bursts" in names else None
         self.start_s, self.period_s, self.cycle_count = None, None, None
@@ -71,12 +71,12 @@ class Walk:
                 self.burst_drive.set_targets(self.data, targets)
             else:
                 self.data.ctrl[:] = targets
-        if self.grain:
-            self.grain.set_friction(self.data)
+        if self.grained_pads:
+            self.grained_pads.set_coefficients(self.data)
         mujoco.mj_step(self.model, self.data)
 
-    def compute_place(self):
-        """Returns the chassis's place on the floor: mm forward, mm to the left, and the heading in rad."""
+    def compute_pose(self):
+        """Returns the chassis's pose on the floor: mm forward, mm to the left, and the heading in rad."""
         x, y, _, w, qx, qy, qz = self.data.qpos[:7]
         heading = math.atan2(2 * (w * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz))
         return 1000 * y, -1000 * x, heading
@@ -92,10 +92,10 @@ class Walk:
 
     def walk(self, step_count):
         """Runs some steps of the engine and returns the displacement in the frame of their start."""
-        forward, left, heading = self.compute_place()
+        forward, left, heading = self.compute_pose()
         for _ in range(step_count):
             self.step()
-        end_forward, end_left, end_heading = self.compute_place()
+        end_forward, end_left, end_heading = self.compute_pose()
         forward_change, left_change = end_forward - forward, end_left - left
         cos, sin = math.cos(heading), math.sin(heading)
         turn = math.remainder(end_heading - heading, math.tau)

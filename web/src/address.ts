@@ -1,6 +1,6 @@
 // The fragment of the page's address, the part after the #, names a room and a robot, so that a link or a bookmark
 // keeps both. The browser does not send the fragment to a server.
-import { pack } from './link-text';
+import { pack } from './share-link';
 import type { Session } from './session';
 
 /** Delay between a change of the robot and the update of the address, ms: browsers limit the rate of updates. */
@@ -10,7 +10,7 @@ const UPDATE_DELAY_MS = 300;
 export const parseFragment = (hash: string) => new URLSearchParams(hash.slice(1));
 
 /** The `state` of the browser history entries that the page itself wrote. */
-export const PAGE_ENTRY = 'own';
+export const PAGE_ENTRY_STATE = 'own';
 
 export class Address {
   private timer = 0;
@@ -31,7 +31,6 @@ export class Address {
     this.scheduleUpdate();
   }
 
-  /** Schedules an update of the address. */
   scheduleUpdate(): void {
     if (!this.isInitialAddressRead) return;
     clearTimeout(this.timer);
@@ -46,12 +45,12 @@ export class Address {
     const robot = toml === original ? null : await pack(toml);
     // If the robot has changed meanwhile, another update is scheduled.
     if (this.session.toml !== toml) return;
-    const parts = new URLSearchParams();
+    const parameters = new URLSearchParams();
     const room = parseFragment(location.hash).get('room');
-    if (room) parts.set('room', room);
-    if (robot) parts.set('robot', robot);
-    else if (file !== '' && file !== this.defaultFile) parts.set('file', file);
+    if (room) parameters.set('room', room);
+    if (robot) parameters.set('robot', robot);
+    else if (file !== '' && file !== this.defaultFile) parameters.set('file', file);
     const pageAddress = location.href.split('#')[0] ?? '';
-    history.replaceState(PAGE_ENTRY, '', parts.size > 0 ? `${pageAddress}#${parts}` : pageAddress);
+    history.replaceState(PAGE_ENTRY_STATE, '', parameters.size > 0 ? `${pageAddress}#${parameters}` : pageAddress);
   }
 }

@@ -34,12 +34,12 @@ function store(key: string, value: unknown): void {
 /** Loads the stored robots that this version of the page can use; returns an empty list for a damaged text. */
 function loadSavedChanges(key: string): SavedChanges[] {
   try {
-    const states = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
-    return states.flatMap((state) => {
-      if (!state || typeof state.toml !== 'string' || typeof state.file !== 'string') return [];
+    const robots = [JSON.parse(localStorage.getItem(key) ?? '[]')].flat() as (SavedChanges | null)[];
+    return robots.flatMap((robot) => {
+      if (!robot || typeof robot.toml !== 'string' || typeof robot.file !== 'string') return [];
       // An earlier version of the page stored springs in another format, which is dropped.
-      const isCurrentFormat = typeof state.floor?.twist === 'number' && ['rigid', 'strut'].includes(state.floor.kind);
-      return [{ ...state, floor: isCurrentFormat ? state.floor : null }];
+      const isCurrentFormat = typeof robot.floor?.twist === 'number' && ['rigid', 'strut'].includes(robot.floor.kind);
+      return [{ ...robot, floor: isCurrentFormat ? robot.floor : null }];
     });
   } catch {
     return [];
@@ -55,7 +55,7 @@ function isGait(value: unknown): value is Bars {
 
 export const browserStorage = {
   /** Stores the changes; without storage in the browser, a reload loses them. */
-  putChanges: (state: SavedChanges) => store(CHANGES_KEY, state),
+  putChanges: (changes: SavedChanges) => store(CHANGES_KEY, changes),
 
   /** Returns the stored changes; null if no usable changes are stored. */
   getChanges: (): SavedChanges | null => loadSavedChanges(CHANGES_KEY)[0] ?? null,

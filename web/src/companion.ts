@@ -2,7 +2,7 @@
 import { isRefused, type Floor, type Frame, Robot } from './robot';
 
 /** Number of frames between power-on and standing. */
-const WAKE_FRAMES = 200;
+const WAKE_FRAME_COUNT = 200;
 
 export class Companion {
   /** The last frame; null before the first frame. */
@@ -25,9 +25,9 @@ export class Companion {
     if (isRefused(result)) throw new Error(result.refused);
     robot.setFloor(floor);
     robot.setServos(servoModel);
-    robot.runCore();
+    robot.startCore();
     const companion = new Companion(robot, volts);
-    for (let frame = 0; frame < WAKE_FRAMES; frame++) companion.step();
+    for (let frame = 0; frame < WAKE_FRAME_COUNT; frame++) companion.step();
     robot.restart();
     companion.step();
     return companion;
@@ -45,8 +45,8 @@ export class Companion {
 
   /** Advances by one frame of 20 ms. */
   step(): void {
-    const output = this.robot.coreFrame(this.pendingLines, this.volts);
+    const output = this.robot.runCoreFrame(this.pendingLines, this.volts);
     this.pendingLines = '';
-    if (output) this.frame = this.robot.pulses(output.widths) ?? this.frame;
+    if (output) this.frame = this.robot.followPulses(output.widths) ?? this.frame;
   }
 }

@@ -36,13 +36,13 @@ export const files = {
   /** The UNO's boot loader, from its first byte on. */
   bootLoader: (): Promise<Uint8Array> => getBytes('files/optiboot.bin'),
   /** The WebAssembly module of the robot. */
-  wasm: (): Promise<WebAssembly.Module> => compileWasm('files/lizard.wasm'),
+  robotModule: (): Promise<WebAssembly.Module> => compileWasm('files/lizard.wasm'),
   /** The module of the robot with the search for a faster gait; loaded on demand. */
-  tune: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),
+  searchModule: (): Promise<WebAssembly.Module> => compileWasm('files/tune.wasm'),
   /** The module of the robot's parts; loaded when their panel is opened. */
-  parts: (): Promise<WebAssembly.Module> => compileWasm('files/parts.wasm'),
+  partsModule: (): Promise<WebAssembly.Module> => compileWasm('files/parts.wasm'),
   /** The module that writes to boards, calibrates and identifies them; loaded on demand. */
-  board: (): Promise<WebAssembly.Module> => compileWasm('files/board.wasm'),
+  boardModule: (): Promise<WebAssembly.Module> => compileWasm('files/board.wasm'),
   /** The module that measures videos; loaded when the user opens a camera or a video, or saves the sheet of tags. */
-  measure: (): Promise<WebAssembly.Module> => compileWasm('files/measure.wasm'),
+  measureModule: (): Promise<WebAssembly.Module> => compileWasm('files/measure.wasm'),
 };

@@ -1,7 +1,7 @@
 // The page: a session, and the views that follow its state.
 import { effect } from '@preact/signals-core';
 
-import { Address, PAGE_ENTRY, parseFragment } from './address';
+import { Address, PAGE_ENTRY_STATE, parseFragment } from './address';
 import { runInRealTime } from './real-time';
 import { files } from './files';
 import { follow } from './follow';
@@ -15,44 +15,44 @@ import { canLag, load } from './robot';
 import { Session } from './session';
 import type { BoardBanner } from './session-state';
 import { getMessage } from './problem';
-import { Alarm } from './view/alarm';
-import { BoardRobot } from './view/board-robot';
-import { Calibrate } from './view/calibrate';
-import { element, setText, showMessage } from './view/canvas';
+import { AlarmView } from './view/alarm';
+import { BoardRobotWarning } from './view/board-robot-warning';
+import { CalibrationView } from './view/calibrate';
+import { element, setText, showMessage } from './view/elements';
 import { RobotChoice } from './view/robot-choice';
 import { downloadRobot } from './view/download';
-import { Drive, formatDisplacement } from './view/drive';
+import { DriveView, formatDisplacement } from './view/drive';
 import { FitView } from './view/fit';
 import { FlashView } from './view/flash';
-import { Floor } from './view/floor';
-import { GaitsView } from './view/gaits';
-import { Health } from './view/health';
+import { FloorView } from './view/floor';
+import { GaitEditorView } from './view/gait-editor';
+import { HealthView } from './view/health';
 import { RecordView } from './view/record';
-import { Lengths } from './view/lengths';
-import { Log } from './view/log';
+import { LengthsView } from './view/lengths';
+import { LogView } from './view/log';
 import { MapView } from './view/maps';
 import { MarginsView } from './view/margins';
 import type { MeasureView } from './view/measure';
-import { Pace } from './view/pace';
-import { OwnRobot } from './view/own-robot';
+import { PaceView } from './view/pace';
+import { OwnRobots } from './view/own-robots';
 import { PartsView } from './view/parts';
-import { PathView } from './view/path';
-import { Remote } from './view/remote';
-import { RobotText } from './view/robot-text';
+import { GestureEditorView } from './view/gesture-editor';
+import { RemoteView } from './view/remote';
+import { RobotTextView } from './view/robot-text';
 import { ROOM_OPENED, openRoom } from './view/rooms';
 import { RoutinesView } from './view/routines';
 import { ScopeView } from './view/scope';
 import { chooseGait, Steering } from './view/steer';
-import { Setup } from './view/setup';
-import { Sketch } from './view/sketch';
+import { SetupDialog } from './view/setup';
+import { SketchView } from './view/sketch';
 import { ProblemList } from './view/problems';
-import { World } from './view/world';
-import { Writer } from './view/writer';
+import { WorldView } from './view/world';
+import { BoardWriter } from './view/writer';
 import { WORDS, findUnknownWords } from './words';
 
 /** Update rate of the shown numbers, 1/s. */
 const NUMBER_UPDATES_PER_SECOND = 10;
-/** Number of animation frames per drawing of scope, margins and maps, because painting takes the most time. */
+/** Number of animation frames per drawing of scope, margins and maps, because drawing takes the most time. */
 const FRAMES_PER_DRAWING = 3;
 
 declare global {
@@ -65,7 +65,7 @@ declare global {
 const problems = new ProblemList();
 
 async function start(): Promise<void> {
-  const [module, choice] = await Promise.all([files.wasm(), RobotChoice.load()]);
+  const [module, choice] = await Promise.all([files.robotModule(), RobotChoice.load()]);
   const session = new Session(load(module), {
     onFrame(frame, widths, seconds) {
       floor.addToTrack(frame.place);
@@ -79,12 +79,12 @@ async function start(): Promise<void> {
     },
     onSent(line) {
       log.showSent(line);
-      measure?.noteSent(line);
+      measure?.handleSent(line);
     },
     onReceived(line) {
       log.showReceived(line);
-      setup.noteReceived(line);
-      measure?.noteReceived(line);
+      setup.handleReceived(line);
+      measure?.handleReceived(line);
       if (line.startsWith('# fault')) remote.vibrate();
     },
     confirmUno: () =>
@@ -107,37 +107,37 @@ async function start(): Promise<void> {
   const scope = new ScopeView(session);
   const margins = new MarginsView(session);
   const maps = [new MapView(session, 0), new MapView(session, 1)];
-  const log = new Log((line) => void session.ask(line));
-  const floor = new Floor(() => {
+  const log = new LogView((line) => void session.ask(line));
+  const floor = new FloorView(() => {
     session.returnToStart();
     floor.clearTracks();
   });
   session.followRobot(() => floor.clearTracks());
   const isSetupOpen = () => setup.isOpen;
-  const drive = new Drive(session, predictor);
-  new Pace(session);
+  const drive = new DriveView(session, predictor);
+  new PaceView(session);
   const steer = new Steering(session, predictor, isSetupOpen);
-  const writer = new Writer(session);
-  new World(session);
-  new Health(session, writer);
-  new Lengths(session, (edits) => sketch.offerValidLengths(edits));
+  const writer = new BoardWriter(session);
+  new WorldView(session);
+  new HealthView(session, writer);
+  new LengthsView(session, (edits) => sketch.offerValidLengths(edits));
   const parts = new PartsView(session);
   const fit = new FitView(session, parts);
-  const sketch = new Sketch(session, fit);
+  const sketch = new SketchView(session, fit);
   const recordView = new RecordView(session, floor);
-  new Calibrate(session);
-  const alarm = new Alarm(session);
-  const remote = new Remote();
-  const text: RobotText = new RobotText(session, writer, () => routines.show());
+  new CalibrationView(session);
+  const alarm = new AlarmView(session);
+  const remote = new RemoteView();
+  const text: RobotTextView = new RobotTextView(session, writer, () => routines.show());
   const routines = new RoutinesView(session, text, writer);
-  new GaitsView(session, writer, (ownGait, foundGait, output) => {
+  new GaitEditorView(session, writer, (ownGait, foundGait, output) => {
     // The second robot is drawn only from above.
     parts.set3d(false);
     return recordView.compare(ownGait, foundGait, output);
   });
-  new PathView(session, writer);
+  new GestureEditorView(session, writer);
   const flash = new FlashView(session, writer);
-  const setup: Setup = new Setup(session, writer, () => connectBoard());
+  const setup: SetupDialog = new SetupDialog(session, writer, () => connectBoard());
   const address = new Address(session, choice.chosenFile);
   // The view of the room Measure is loaded when the room is opened.
   let measure: MeasureView | null = null;
@@ -148,7 +148,7 @@ async function start(): Promise<void> {
   };
   document.addEventListener(ROOM_OPENED, () => void openMeasure());
   session.followRobot(() => void openMeasure());
-  new BoardRobot(session, problems, ({ file, toml }) => {
+  new BoardRobotWarning(session, problems, ({ file, toml }) => {
     choice.select(file);
     void replaceRobot(async () => {
       await loadChosenFile();
@@ -226,14 +226,14 @@ async function start(): Promise<void> {
       problems.setMessage('robot', getMessage(error));
     }
   };
-  const ownRobot = new OwnRobot(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
+  const ownRobots = new OwnRobots(session, problems, (file) => (choice.select(file), loadChosenFile()), (names) => choice.showOwn(names));
   /** Loads another robot with `loadRobot`, and puts the user's changed robot aside. */
   const replaceRobot = async (loadRobot: () => Promise<unknown>) => {
     const saved = browserStorage.getChanges();
     await loadRobot();
-    ownRobot.putAside(saved);
+    ownRobots.putAside(saved);
   };
-  choice.onChange(() => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobot.restore(choice.chosenOwnIndex)));
+  choice.onChange(() => void (choice.chosenOwnIndex === null ? replaceRobot(loadChosenFile) : ownRobots.restore(choice.chosenOwnIndex)));
 
   element('reset').addEventListener('click', () => void session.reset());
 
@@ -275,12 +275,12 @@ async function start(): Promise<void> {
     problems.setMessage('robot', message, remedy);
   }
   if (await text.loadFromAddress()) address.start();
-  if (isRobotInAddress) ownRobot.putAside(saved);
+  if (isRobotInAddress) ownRobots.putAside(saved);
   addEventListener('popstate', ({ state }) => {
     const { hash } = location;
     openRoom(hash);
     // Between the page's own entries, Back and Forward change only the room; the robot stays.
-    if (state === PAGE_ENTRY) return address.scheduleUpdate();
+    if (state === PAGE_ENTRY_STATE) return address.scheduleUpdate();
     const file = parseFragment(hash).get('file');
     if (file === null) return void replaceRobot(async () => (await text.loadFromAddress(hash)) && address.start());
     if (choice.select(file)) void replaceRobot(loadChosenFile);
@@ -302,7 +302,7 @@ async function start(): Promise<void> {
     () => {
       steer.readGamepads();
       if (!session.description) return;
-      if (!parts.is3d || floor.paintsAlways) floor.draw(session.description.plate, recordView.chooseFrame(session.last), recordView.companionFrame);
+      if (!parts.is3d || floor.drawsAlways) floor.draw(session.description.plate, recordView.chooseFrame(session.last), recordView.companionFrame);
       recordView.afterDrawing();
       parts.render(session.last);
       frameCount += 1;

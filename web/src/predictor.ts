@@ -3,9 +3,9 @@
 import { signal } from '@preact/signals-core';
 
 import { follow } from './follow';
-import type { Helper } from './helper';
+import type { CallableWorker } from './callable-worker';
 import type { GaitPrediction } from './robot';
-import { startRobotHelper } from './robot-helper';
+import { startRobotWorker } from './robot-requests';
 import type { RobotWorkerApi } from './robot-worker';
 import type { Session } from './session';
 
@@ -18,7 +18,7 @@ export interface PredictedGait {
 export class Predictor {
   /** The predictions so far for the session's robot, by the gaits' commands. */
   readonly predictions = signal<ReadonlyMap<string, GaitPrediction>>(new Map());
-  private helper: Promise<Helper<RobotWorkerApi>> | null = null;
+  private worker: Promise<CallableWorker<RobotWorkerApi>> | null = null;
   /** Number of calls of `predict` so far; a later call cancels an earlier call. */
   private callCount = 0;
 
@@ -46,7 +46,7 @@ export class Predictor {
     const firstIndex = Math.max(0, gaits.findIndex(({ command }) => command === currentGait));
     for (let n = 0; n < gaits.length; n++) {
       const gait = (firstIndex + n) % gaits.length;
-      const prediction = await (await (this.helper ??= startRobotHelper())).call((robot) => robot.predict({ toml, floor, servos, gait }));
+      const prediction = await (await (this.worker ??= startRobotWorker())).call((robot) => robot.predict({ toml, floor, servos, gait }));
       if (callNumber !== this.callCount) return;
       this.put(gaits[gait].command, prediction);
     }

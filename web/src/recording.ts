@@ -32,7 +32,7 @@ export class Recording {
   }
 
   /** Returns the current frame at `time`, s; null if the recording is empty. */
-  findFrame(time: number): RecordedFrame | null {
+  frameAt(time: number): RecordedFrame | null {
     const laterIndex = this.frames.findIndex((frame) => frame.time > time + 1e-9);
     return this.frames[laterIndex < 0 ? this.frames.length - 1 : Math.max(0, laterIndex - 1)] ?? null;
   }

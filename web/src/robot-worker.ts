@@ -1,4 +1,4 @@
-// The worker that `startRobotHelper` starts. It has its own instance of the WebAssembly robot.
+// The worker that `startRobotWorker` starts. It has its own instance of the WebAssembly robot.
 import { expose } from 'comlink';
 
 import { type EditedGait, type Edits, type Four, isRefused, load, type OnFloor, Robot, type Scene } from './robot';
@@ -23,7 +23,7 @@ function loadNeutralScene(toml: string): Scene | null {
   const description = robot.read(toml);
   if (isRefused(description)) return null;
   loadedToml = toml;
-  return robot.pose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
+  return robot.followPose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1)?.scene ?? null;
 }
 
 const api = {
@@ -36,18 +36,18 @@ const api = {
   predict: (request: OnFloor & { gait: number }) => (loadRobot(request) ? robot.predict(request.gait) : null),
 
   /** Tries an edited gait; returns null if the robot is refused, or if a drawn line has no length. */
-  trial: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.trial(request.gait) : null),
+  tryGait: (request: OnFloor & { gait: EditedGait }) => (loadRobot(request) ? robot.tryGait(request.gait) : null),
 
   /** Simulates the path of a routine's round; returns null if the robot is refused or has no such routine. */
-  round: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.round(request.routine) : null),
+  simulateRound: (request: OnFloor & { routine: string }) => (loadRobot(request) ? robot.simulateRound(request.routine) : null),
 
   /**
    * Tries other lengths; if they are accepted, returns the scene of the neutral pose. `isLast` is true at the end of a
    * drag: only then does a refusal start a search for valid lengths. If `keys` is not empty, also returns the range of
    * the values that all lengths of these keys may have together.
    */
-  lengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
-    const result = Robot.lengths(toml, edits, isLast);
+  tryLengths({ toml, edits, isLast, keys }: { toml: string; edits: Edits; isLast: boolean; keys: string[] }) {
+    const result = Robot.tryLengths(toml, edits, isLast);
     const range = keys.length === 0 ? null : Robot.lengthRange(toml, keys);
     return { ...result, edits, scene: result.refusal ? null : loadNeutralScene(result.text), isLast, range };
   },

@@ -1,9 +1,9 @@
 // The robot in WebAssembly, which computes everything; TypeScript repeats no formula. The types come from wasm/src.
-import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type Refused, type RefusedTrial, Robot } from '../generated/lizard';
+import { type Description, type DrawnGait, type Floor, type GaitPrediction, initSync, type Refusal, type RefusedTrial, Robot } from '../generated/lizard';
 
 export { formatCalibration, parseBanner, parseCalibration, parsePoseReport, parseStatus, Robot } from '../generated/lizard';
 export type {
-  Banner, Bars, Calibration, Description, Displacement, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, LegDrive, Place, Point, Refused, RefusedTrial, RoundPath, Routine, Scene, ServoSettings, SingularityMap, Status, Trial, TriedLengths, Workspace,
+  Banner, Bars, Calibration, Description, Displacement, DrawnGait, Edits, EditedGait, Floor, Four, Frame, GaitPrediction, LegDrive, Place, Point, Refusal, RefusedTrial, RoundPath, Routine, Scene, ServoSettings, SingularityMap, Status, Trial, TriedLengths, Workspace,
   PlateEntry as Plate, ServoModelEntry as ServoModel,
 } from '../generated/lizard';
 
@@ -28,8 +28,8 @@ export function load(module: WebAssembly.Module): Robot {
   return new Robot();
 }
 
-export function isRefused(answer: object): answer is Refused {
-  return 'refused' in answer;
+export function isRefused(result: object): result is Refusal {
+  return 'refused' in result;
 }
 
 /** Returns true if a leg can lag behind its servo. */

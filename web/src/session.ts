@@ -3,36 +3,36 @@
 // change.
 import { batch } from '@preact/signals-core';
 
-import { loadBoard } from './board';
+import { loadBoardModule } from './board-module';
 import { files } from './files';
 import { type SavedChanges, browserStorage } from './browser-storage';
-import { BootLine } from './link/boot-line';
+import { BootLoaderLine } from './link/boot-loader-line';
 import { Deadman } from './link/deadman';
-import { type Answer, Dialogue, DroppedQuestion, BANNER_PREFIX } from './link/dialogue';
+import { type Answer, Dialogue, DroppedRequest, BANNER_PREFIX } from './link/dialogue';
 import { GONE_MESSAGE, type Link } from './link/link';
 import { UnoLink } from './link/uno-link';
 import { isRefused, parseBanner, parsePoseReport, parseStatus } from './robot';
-import type { Banner, Description, Floor, Four, Frame, Predictions, Refused, Robot, Status } from './robot';
+import type { Banner, Description, Floor, Four, Frame, Predictions, Refusal, Robot, Status } from './robot';
 import { type BoardBanner, FULL_PACE, SessionState } from './session-state';
 import { type Cause, getMessage } from './problem';
-import { SimulatedBoard } from './uno/board';
+import { SimulatedBoard } from './uno/simulated-board';
 import { type CycleDisplacement, WalkedPath } from './walked-path';
 import { DONE_LINE, GAITS, WORDS } from './words';
 
 /** Number of frames per reported pose; a radio at 9600 baud cannot transmit more poses. */
-const WATCH_FRAMES = { usb: 2, radio: 10, simulated: 1 };
+const FRAMES_PER_REPORT = { usb: 2, radio: 10, simulated: 1 };
 /** Longest time between a reset and this firmware's banner, ms. */
 const BANNER_TIMEOUT_MS = 2500;
-/** Longest time until the answer of a board that was not reset, ms. */
-const ANSWER_TIMEOUT_MS = 500;
+/** Longest wait for the answer of a board that was not reset, ms. */
+const PROBE_TIMEOUT_MS = 500;
 /**
  * Number of `status` lines sent to a board that was not reset: the board needs up to five lines to find the baud rate,
  * and a radio may lose some.
  */
-const MAX_ATTEMPTS = { usb: 5, radio: 12, simulated: 1 };
-/** Longest time until the answer to `status`, ms. */
+const MAX_PROBE_COUNTS = { usb: 5, radio: 12, simulated: 1 };
+/** Longest wait for the answer to `status`, ms. */
 const STATUS_TIMEOUT_MS = 1000;
-/** Longest time for a board to stop before the port is closed, ms. */
+/** Longest wait for a board to stop before the port is closed, ms. */
 const STOP_TIMEOUT_MS = 1000;
 /** Longest time between a reset and the `boot` action, which runs after three seconds, ms. */
 const BOOT_TIMEOUT_MS = 4000;
@@ -62,7 +62,7 @@ export interface SessionListener {
 }
 
 /** Called with the progress of a write: `done` of the `total` pages of a step are finished. */
-export type Progress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void;
+export type ReportProgress = (step: 'reading' | 'writing' | 'verifying' | 'again', done: number, total: number) => void;
 
 const isBanner = (banner: BoardBanner | undefined): banner is Banner => typeof banner === 'object' && banner !== null;
 
@@ -174,7 +174,7 @@ export class Session {
   }
 
   /** Loads a changed robot.toml or returns its refusal. The simulated UNO restarts with it and keeps its EEPROM. */
-  async change(toml: string): Promise<Refused | null> {
+  async change(toml: string): Promise<Refusal | null> {
     const refusal = this.loadToml(toml);
     if (refusal) return refusal;
     await this.restartBoard(true);
@@ -199,25 +199,25 @@ export class Session {
     if (file !== '') browserStorage.putChanges({ file, original, toml, floor, servos, volts });
   }
 
-  private loadToml(toml: string, floorSetting = this.state.floor.value, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refused | null {
-    const answer = this.robot.read(toml);
-    if (isRefused(answer)) return answer;
+  private loadToml(toml: string, floorSetting = this.state.floor.value, originalFile: [string, Predictions | null] = [this.original, this.predictions]): Refusal | null {
+    const description = this.robot.read(toml);
+    if (isRefused(description)) return description;
     this.toml = toml;
     [this.original, this.predictions] = originalFile;
     this.robotSection = this.robot.section();
-    this.robot.setFloor(floorSetting ?? answer.floor);
+    this.robot.setFloor(floorSetting ?? description.floor);
     this.walkedPath.clear();
-    this.last = this.robot.pose(answer.servos.map(({ neutral }) => neutral) as Four<number>, 1);
+    this.last = this.robot.followPose(description.servos.map(({ neutral }) => neutral) as Four<number>, 1);
     batch(() => {
       this.state.floor.value = floorSetting;
-      this.state.description.value = answer;
+      this.state.description.value = description;
     });
     return null;
   }
 
   /** Restarts a simulated board with the page's robot; a real board keeps its own robot. */
   private async restartBoard(keepsEeprom: boolean): Promise<void> {
-    if (!this.isReal) await this.simulate(keepsEeprom ? this.simulated?.board.eeprom : undefined);
+    if (!this.isReal) await this.simulate(keepsEeprom ? this.simulatedLink?.board.eeprom : undefined);
   }
 
   /** The firmware and the robot as one image of the flash. */
@@ -230,7 +230,6 @@ export class Session {
     return image;
   }
 
-  /** True if this firmware answers. */
   get isFirmwareAnswering(): boolean {
     return this.banner !== undefined && this.banner !== null;
   }
@@ -263,7 +262,7 @@ export class Session {
     const board = new SimulatedBoard(this.image, this.bootLoader, this.description.rail, eeprom);
     for (const [name, pin] of this.description.inputs) board.setContact(pin, this.closedInputs.has(name));
     await this.attach(new UnoLink(board, pins, { onFrame: (widths) => this.handleWidths(widths), onPulse: (...pulse) => this.listener.onPulse(...pulse) }));
-    this.simulated?.board.setSupply(this.volts);
+    this.simulatedLink?.board.setSupply(this.volts);
   }
 
   /**
@@ -281,7 +280,7 @@ export class Session {
     // Opening a USB port resets the board. The boot loader would receive bytes that are sent before the banner.
     const isRadio = link.kind === 'radio';
     const hasSentBanner = !isRadio && (await this.waitForBanner());
-    for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_ATTEMPTS[link.kind]; n++) {
+    for (let n = 0; !hasSentBanner && this.banner === undefined && n < MAX_PROBE_COUNTS[link.kind]; n++) {
       if (this.link === link && (await this.answersStatus())) this.state.banner.value = 'unknown';
     }
     if (this.link !== link) return false;
@@ -307,7 +306,7 @@ export class Session {
     const message = `The ${link.name} is out of range. A walking robot stops by itself; the page reconnects as soon as possible.`;
     this.listener.onProblem('port', isInRange ? null : message);
     if (!isInRange) return;
-    for (let n = 0; n < MAX_ATTEMPTS.radio && this.link === link; n++) {
+    for (let n = 0; n < MAX_PROBE_COUNTS.radio && this.link === link; n++) {
       if ((await this.status()) === null) continue;
       if (!this.banner) this.state.banner.value = 'unknown';
       this.listener.onProblem('board', null);
@@ -323,7 +322,7 @@ export class Session {
 
   /** Resolves to true if this firmware answers `status`; used if the port does not reset the board. */
   private async answersStatus(): Promise<boolean> {
-    const answer = await this.dialogue.ask(WORDS.status, true, ANSWER_TIMEOUT_MS).catch(() => null);
+    const answer = await this.dialogue.ask(WORDS.status, true, PROBE_TIMEOUT_MS).catch(() => null);
     return answer?.ok ?? false;
   }
 
@@ -346,7 +345,7 @@ export class Session {
   /** Requests reports of the board's poses. */
   private async watch(): Promise<void> {
     this.isWatching = true;
-    await this.ask(`${WORDS.watch} ${WATCH_FRAMES[this.link.kind]}`);
+    await this.ask(`${WORDS.watch} ${FRAMES_PER_REPORT[this.link.kind]}`);
   }
 
   /** Stops a board, disconnects it and returns to the simulation. */
@@ -501,17 +500,17 @@ export class Session {
         if (!isConfirmed) throw new Error(`"${line}" was not sent, because the robot did not confirm its deadman setting`);
       }
       // `cal` must print and `save` must store the robot's own setting, not the page's setting.
-      const needsOwnDeadman = deadman.isSet && [WORDS.cal, WORDS.save].some((word) => word === command);
+      const needsOwnDeadman = deadman.isEngaged && [WORDS.cal, WORDS.save].some((word) => word === command);
       if (needsOwnDeadman) deadman.restore();
       const pendingAnswer = this.dialogue.ask(line, isQuiet, timeoutMs);
       if (needsOwnDeadman && this.isBoardWalking) void deadman.engage();
       const answer = await pendingAnswer;
       if (!isQuiet) this.listener.onProblem('line', null);
-      deadman.noteLine(command, answer.ok);
+      deadman.observeUserLine(command, answer.ok);
       return answer;
     } catch (error) {
       // A quiet line is sent again later; until then, the page shows that the robot is silent.
-      if (!isQuiet && !(error instanceof DroppedQuestion)) this.listener.onProblem('line', `${getMessage(error)}.`);
+      if (!isQuiet && !(error instanceof DroppedRequest)) this.listener.onProblem('line', `${getMessage(error)}.`);
       return null;
     } finally {
       if (isDrive) {
@@ -531,7 +530,7 @@ export class Session {
     if (answer) this.state.refusal.value = answer.ok ? '' : `${line}: ${answer.text.replace(/^err \d+ /, '')}`;
   }
 
-  /** Requests the robot's status; returns null without an answer. */
+  /** Requests the robot's status; returns null if it does not answer. */
   async status(): Promise<Status | null> {
     const answer = await this.ask(WORDS.status, true, STATUS_TIMEOUT_MS);
     return answer && parseStatus(answer.text);
@@ -551,7 +550,7 @@ export class Session {
 
   /** Presses the reset button of the board. */
   async reset(): Promise<void> {
-    this.dialogue.dropQuestions();
+    this.dialogue.dropRequests();
     this.deadman.reset();
     this.setGait('');
     await this.link.reset();
@@ -561,7 +560,7 @@ export class Session {
    * Writes firmware and robot, or only the robot after the board's firmware, and starts the board. Throws an error
    * whose message tells the user the board's content.
    */
-  async flash(bytes: Uint8Array, isRobotAlone: boolean, progress: Progress): Promise<void> {
+  async flash(bytes: Uint8Array, isRobotAlone: boolean, reportProgress: ReportProgress): Promise<void> {
     const { link } = this;
     if (link.kind === 'radio') throw new Error(NO_WRITING_BY_RADIO);
     const endAddress = bytes.length + (isRobotAlone ? this.description.start : 0);
@@ -570,16 +569,16 @@ export class Session {
       this.state.banner.value = undefined;
       this.isWatching = false;
       this.mayAsk = false;
-      await upload(line, bytes, isRobotAlone, board, progress);
+      await upload(line, bytes, isRobotAlone, board, reportProgress);
     });
   }
 
   /** Runs `action` with the boot loader, which uses the line meanwhile. Throws an error with a message for the user. */
-  private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoard>>, line: BootLine) => Promise<T>): Promise<T> {
-    const board = await loadBoard();
+  private async withBootLoader<T>(link: Link, action: (board: Awaited<ReturnType<typeof loadBoardModule>>, line: BootLoaderLine) => Promise<T>): Promise<T> {
+    const board = await loadBoardModule();
     if (this.link !== link) throw new Error(GONE_MESSAGE);
     this.dialogue.close();
-    const line = new BootLine(link);
+    const line = new BootLoaderLine(link);
     try {
       return await action(board, line);
     } finally {
@@ -593,7 +592,7 @@ export class Session {
 
   /**
    * Waits for the banner of a board that was just written, and compares the robot's hash with `hash` unless `hash` is
-   * null. Returns the problem as the end of a sentence; null without a problem.
+   * null. Returns the problem as the end of a sentence; null if there is none.
    */
   async checkWrittenBoard(hash: string | null): Promise<string | null> {
     const { link } = this;
@@ -609,19 +608,19 @@ export class Session {
   }
 
   /** The link to the simulated board; null while a real board is connected. */
-  private get simulated(): UnoLink | null {
+  private get simulatedLink(): UnoLink | null {
     return this.link instanceof UnoLink ? this.link : null;
   }
 
   /** Advances the simulation; does nothing with a real board. */
   advance(ms: number): void {
     try {
-      const { simulated } = this;
+      const { simulatedLink } = this;
       // The steps are short, so that each line of the robot gets its own time, even on a slow machine that catches up.
-      for (let remainingMs = simulated ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
+      for (let remainingMs = simulatedLink ? ms : 0; remainingMs > 0; remainingMs -= CLOCK_STEP_MS) {
         const stepMs = Math.min(remainingMs, CLOCK_STEP_MS);
         this.clock += stepMs / 1000;
-        simulated?.advance(stepMs);
+        simulatedLink?.advance(stepMs);
       }
     } catch (error) {
       this.listener.onProblem('simulation', `The simulated UNO has stopped: ${getMessage(error)}`);
@@ -630,15 +629,15 @@ export class Session {
   }
 
   private handleWidths(widths: Four<number>): void {
-    const frame = this.robot.pulses(widths);
+    const frame = this.robot.followPulses(widths);
     if (frame) this.handleFrame(frame, widths, FRAME_SECONDS);
   }
 
   private handlePose(angles: Four<number>): void {
-    const frames = WATCH_FRAMES[this.link.kind];
-    const frame = this.robot.pose(angles, frames);
-    this.clock += FRAME_SECONDS * frames;
-    if (frame) this.handleFrame(frame, null, FRAME_SECONDS * frames);
+    const frameCount = FRAMES_PER_REPORT[this.link.kind];
+    const frame = this.robot.followPose(angles, frameCount);
+    this.clock += FRAME_SECONDS * frameCount;
+    if (frame) this.handleFrame(frame, null, FRAME_SECONDS * frameCount);
   }
 
   private handleFrame(frame: Frame, widths: Four<number> | null, seconds: number): void {
@@ -647,7 +646,7 @@ export class Session {
     this.listener.onFrame(frame, widths, seconds);
   }
 
-  /** Returns the displacement in the last complete cycle; null without a moving gait or a complete cycle. */
+  /** Returns the displacement in the last complete cycle; null if the gait does not move or no cycle is complete. */
   measured(): CycleDisplacement | null {
     const gait = this.description.gaits.find(({ command }) => command === this.gait);
     return gait?.moves ? this.walkedPath.computeDisplacement((gait.period * FULL_PACE) / this.state.pace.value) : null;
@@ -688,13 +687,12 @@ export class Session {
     if (isClosed) this.closedInputs.add(name);
     else this.closedInputs.delete(name);
     const input = this.description.inputs.find(([inputName]) => inputName === name);
-    if (input) this.simulated?.board.setContact(input[1], isClosed);
+    if (input) this.simulatedLink?.board.setContact(input[1], isClosed);
   }
 
-  /** Sets the supply voltage of the simulated board. */
   setSupply(volts: number): void {
     this.volts = volts;
-    this.simulated?.board.setSupply(volts);
+    this.simulatedLink?.board.setSupply(volts);
     this.storeChanges();
   }
 }

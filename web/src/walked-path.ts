@@ -27,7 +27,6 @@ export class WalkedPath {
     this.frames = [];
   }
 
-  /** Adds a frame that lasts `seconds`. */
   add(frame: Frame, seconds: number): void {
     this.time += seconds;
     this.frameSeconds = seconds;
@@ -43,6 +42,6 @@ export class WalkedPath {
     const startIndex = this.frames.findLastIndex(({ time }) => time <= lastFrame.time - cycleSeconds + this.frameSeconds / 2);
     if (startIndex < 0) return null;
     const lags = this.frames.slice(startIndex + 1).flatMap(({ frame }) => frame.lag.map(Math.abs));
-    return { ...Robot.between(this.frames[startIndex].frame.place, lastFrame.frame.place), lag: Math.max(0, ...lags) };
+    return { ...Robot.displacementBetween(this.frames[startIndex].frame.place, lastFrame.frame.place), lag: Math.max(0, ...lags) };
   }
 }

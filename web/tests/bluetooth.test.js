@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, test } from 'node:test';
 
-import { complaints, openBrowserWithBluetooth, openPage, readText, unfold, useBrowser, hidePage } from './browser.js';
+import { browserErrors, openBrowserWithBluetooth, openPage, readText, unfold, useBrowser, hidePage } from './browser.js';
 import { HM10, NORDIC, Radio } from './radio.js';
 
 let radio;
@@ -160,4 +160,4 @@ test('on an iPhone, the page names a suitable browser at once', async () => {
   assert.equal(await page.locator('#radio').isVisible(), false);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { complaints, readText, unfold, useBrowser, chooseRobot } from './browser.js';
+import { browserErrors, readText, unfold, useBrowser, chooseRobot } from './browser.js';
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, waitForText } from './board.js';
 
 useBrowser();
@@ -23,11 +23,11 @@ test('the page identifies a new UNO, and one button writes its firmware', async 
   await page.locator('#problems', { hasText: 'The board is an Arduino UNO, an ATmega328P according to its boot loader, without this firmware.' }).waitFor();
   assert.equal(await readText(page, '#where'), 'on a board on USB without this firmware');
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).click();
-  await page.locator('#flash-said', { hasText: 'calling the boot loader' }).waitFor();
+  await page.locator('#flash-message', { hasText: 'calling the boot loader' }).waitFor();
   for (const control of ['#robot', '#connect']) {
     assert.ok(await page.locator(control).isDisabled(), `${control} would take the port from the boot loader`);
   }
-  await waitForText(page, '#flash-said', /^written and verified in [\d.]+ s$/);
+  await waitForText(page, '#flash-message', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(8000);
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper [0-9a-f]{8}$/);
   for (const control of ['#robot', '#connect']) assert.ok(await page.locator(control).isEnabled(), control);
@@ -170,7 +170,7 @@ test('a HEX file of another program is written only after the user confirms', as
   const chooseFile = () =>
     page.getByLabel('HEX file').setInputFiles({ name: 'blink.hex', mimeType: 'text/plain', buffer: Buffer.from(loopHex) });
   await chooseFile();
-  const question = page.locator('#flash-what', { hasText: 'blink.hex, 2 bytes. It is not this firmware' });
+  const question = page.locator('#flash-question-text', { hasText: 'blink.hex, 2 bytes. It is not this firmware' });
   await question.waitFor();
   const readFirstByte = () => page.evaluate(() => window.attachedBoard.flash[0]);
   const firstByte = await readFirstByte();
@@ -181,7 +181,7 @@ test('a HEX file of another program is written only after the user confirms', as
   assert.equal(await question.isVisible(), false);
   await chooseFile();
   await page.locator('#flash-yes').click();
-  await waitForText(page, '#flash-said', /^(not )?written/);
+  await waitForText(page, '#flash-message', /^(not )?written/);
   await page.clock.runFor(3000);
   await page.locator('#problems', { hasText: 'sends no banner: the written program is not this firmware.' }).waitFor();
   await page.getByRole('button', { name: 'Write firmware and robot to it' }).waitFor();
@@ -190,10 +190,10 @@ test('a HEX file of another program is written only after the user confirms', as
 test('the page removes the refusal by a board when the board is gone', async () => {
   const page = await openWithBoard('robot', 8000);
   await page.evaluate(() => void window.lizard.drive('pose 0 0 0 0'));
-  await waitForText(page, '#drive-said', /^pose 0 0 0 0: /);
+  await waitForText(page, '#drive-message', /^pose 0 0 0 0: /);
   await page.evaluate(() => window.unplug());
   await waitForText(page, '#where', /simulated UNO/);
-  assert.equal(await readText(page, '#drive-said'), '');
+  assert.equal(await readText(page, '#drive-message'), '');
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

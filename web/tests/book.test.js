@@ -4,7 +4,7 @@ import { spawnSync } from 'node:child_process';
 import { before, test } from 'node:test';
 
 import { openBlank, useBrowser } from './browser.js';
-import { makeFolder } from './folder.js';
+import { makeFolder } from './temporary-folder.js';
 
 const folder = await makeFolder();
 

@@ -69,7 +69,7 @@ function addTimeouts(object, name, methods) {
 }
 
 /** Errors and warnings of all pages so far. */
-export const complaints = [];
+export const browserErrors = [];
 
 let browser;
 let server;
@@ -77,7 +77,6 @@ const pages = [];
 /** The servers of single tests. */
 const testServers = [];
 
-/** Opens a session of the browser's DevTools protocol. */
 export const openDevTools = () => browser.newBrowserCDPSession();
 
 /** Closes the pages of a test; otherwise their robots would continue to walk. */
@@ -119,7 +118,6 @@ export async function serveInTest(...args) {
   return webServer;
 }
 
-/** Stops a web server at once. */
 export async function stopServer(webServer) {
   webServer.closeAllConnections();
   await withTimeout('the server to close', new Promise((resolve) => webServer.close(resolve)));
@@ -193,7 +191,6 @@ function openRoomsOnUse(page) {
   };
 }
 
-/** Returns the address of the page on a server. */
 export const address = (webServer = server) => `http://127.0.0.1:${webServer.address().port}${BASE_PATH}`;
 
 /**
@@ -224,7 +221,6 @@ export const measureOverflow = (page) =>
 /** Returns an element's box in the window, CSS pixels. */
 export const readBox = (page, selector) => page.evaluate((selector) => document.querySelector(selector).getBoundingClientRect().toJSON(), selector);
 
-/** Chooses a robot of the page's list. */
 export async function chooseRobot(page, name) {
   await page.locator('#robot').selectOption(name);
   await page.waitForFunction((name) => window.lizard?.file === name, name);
@@ -266,7 +262,6 @@ export const hidePage = (page) =>
     document.dispatchEvent(new Event('visibilitychange'));
   });
 
-/** Returns the text of an element. */
 export const readText = (page, selector) => page.locator(selector).innerText();
 
 /** Waits until a function in the page returns true, or a promise of true. */
@@ -288,9 +283,9 @@ export async function openPage(options = {}, initScript = undefined, url = addre
     // Expected where a test forbids a feature.
     if (message.text().startsWith('Permissions policy violation:')) return;
     if (message.text().startsWith('Web Bluetooth is experimental on this platform')) return;
-    if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
+    if (['error', 'warning'].includes(message.type())) browserErrors.push(message.text());
   });
-  page.on('pageerror', (error) => complaints.push(error.stack ?? String(error)));
+  page.on('pageerror', (error) => browserErrors.push(error.stack ?? String(error)));
   if (initScript) {
     // The clock needs an event-loop turn for each timer, and the browser runs nested timers only every 4 ms.
     await page.addInitScript(() => {

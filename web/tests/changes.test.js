@@ -3,16 +3,14 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, complaints, openStanding, sendLine, unfold, useBrowser, chooseRobot, readLength, waitForLength, typeLength, download } from './browser.js';
+import { address, advance, browserErrors, openStanding, sendLine, unfold, useBrowser, chooseRobot, readLength, waitForLength, typeLength, download } from './browser.js';
 
 useBrowser();
 
-/** Sets a slider to a value, as a user would. */
 async function setSlider(page, label, value) {
   await page.getByLabel(label).fill(value);
 }
 
-/** Downloads a robot.toml and returns its text. */
 async function downloadToml(page, buttonName = 'Download robot.toml') {
   const { bytes } = await download(page, page.getByRole('button', { name: buttonName }));
   return bytes.toString();
@@ -71,7 +69,7 @@ async function openLengths() {
 /** Types a length that is refused; returns the message, and the text of the button that offers another length. */
 async function typeRefusedLength(page, key, value) {
   await typeLength(page, key, value);
-  const offer = page.locator('#lengths-instead button');
+  const offer = page.locator('#lengths-alternatives button');
   await offer.waitFor();
   return [await page.locator('#lengths-refusal').innerText(), await offer.innerText()];
 }
@@ -82,9 +80,9 @@ test('the message about a refused length names its effect on the robot, and a bu
   assert.equal(refusalText, '80 mm is too long: in the neutral pose the left slider would hit its end stop.');
   const nearest = Number(/^Try ([0-9.]+) mm$/.exec(offerText)?.[1]);
   assert.ok(nearest > 45 && nearest < 80, offerText);
-  await page.locator('#lengths-instead button').click();
+  await page.locator('#lengths-alternatives button').click();
   await waitForLength(page, 'links.l12', nearest);
-  assert.equal(await page.locator('#lengths-instead button').count(), 0);
+  assert.equal(await page.locator('#lengths-alternatives button').count(), 0);
   // Half a millimetre more is refused, so the offered length is the nearest.
   await typeLength(page, 'links.l12', nearest + 0.5);
   await page.locator('#lengths-refusal', { hasText: `${nearest + 0.5} mm is too long` }).waitFor();
@@ -94,7 +92,7 @@ test('the message about a refused length names its effect on the robot, and a bu
 test('a length is accepted after a button drops the gait that forbids it', async () => {
   const page = await openLengths();
   assert.deepEqual(await typeRefusedLength(page, 'links.l2', 60), ['60 mm is too long: in "look" the left front leg would lock.', 'Drop “look”']);
-  await page.locator('#lengths-instead button', { hasText: 'Drop' }).click();
+  await page.locator('#lengths-alternatives button', { hasText: 'Drop' }).click();
   await waitForLength(page, 'links.l2', 60);
   const gaits = await page.evaluate(() => window.lizard.description.gaits.map(({ name }) => name));
   assert.ok(!gaits.includes('look') && gaits.includes('walk'), gaits.join());
@@ -164,7 +162,7 @@ test("the servos' load follows the robot's pace and the servos' supply", async (
   const page = await openStanding();
   await unfold(page, '#power');
   const readHighestLoad = async (pace) => {
-    const note = page.locator('#line-note', { hasText: `line at a pace of ${pace} %` });
+    const note = page.locator('#load-note', { hasText: `line at a pace of ${pace} %` });
     await note.waitFor();
     return Number((await note.innerText()).match(/ (\d\.\d\d) of/)[1]);
   };
@@ -176,7 +174,7 @@ test("the servos' load follows the robot's pace and the servos' supply", async (
   assert.deepEqual([fullPaceLoad, halfPaceLoad], [0.82, 0.51]);
   // Compares with the loads in docs/gaits.md to a hundredth; a load of at least 0.9 has a mark.
   const assertLoads = async (...expectedLoads) => {
-    const labels = await page.locator('#gaits .line').allInnerTexts();
+    const labels = await page.locator('#gaits .load').allInnerTexts();
     assert.equal(labels.length, expectedLoads.length);
     for (const [n, label] of labels.entries()) {
       const load = Number(label.match(/load (\d\.\d\d)$/)[1]);
@@ -187,8 +185,8 @@ test("the servos' load follows the robot's pace and the servos' supply", async (
   await assertLoads(0.45, 0.49, 0.51, 0.45, 0.5, 0.5, 0.45, 0.45, 0.24);
   await sendLine(page, 'speed 100', 'ok speed 100');
   await setSlider(page, 'Supply of the servos', '4.2');
-  await page.locator('#line-note.warning').waitFor();
-  await page.waitForFunction(() => [...document.querySelectorAll('#gaits .line')].at(-1).textContent > 'load 0.3');
+  await page.locator('#load-note.warning').waitFor();
+  await page.waitForFunction(() => [...document.querySelectorAll('#gaits .load')].at(-1).textContent > 'load 0.3');
   await assertLoads(0.83, 0.92, 0.93, 0.83, 0.93, 0.93, 0.82, 0.82, 0.33);
   // Another servo model sets its own supply.
   await page.locator('#servos').selectOption('MG90S');
@@ -247,4 +245,4 @@ test('the page has stored predictions for unchanged robots, and computes new one
   await page.waitForFunction((walkNote) => document.querySelector('#gaits button[data-command="walk"] small').textContent === walkNote, walkNote);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

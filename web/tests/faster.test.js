@@ -6,13 +6,13 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { findViolations } from './axe.js';
-import { advance, complaints, measureOverflow, openStanding, readText, unfold, withTimeout, useBrowser, typeLength } from './browser.js';
+import { advance, browserErrors, measureOverflow, openStanding, readText, unfold, withTimeout, useBrowser, typeLength } from './browser.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 
 useBrowser();
 
-const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
+const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
 
 /** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
 async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
@@ -27,7 +27,7 @@ async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {
 }
 
 const startSearch = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
-const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-said').textContent !== '');
+const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-message').textContent !== '');
 /** Waits until the search has tried `count` gaits. */
 const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
@@ -54,7 +54,7 @@ async function waitForFoundGait(page) {
 async function stopAndCompare(page) {
   await page.keyboard.press('Escape');
   await advance(page, 1000);
-  return readText(page, '#faster-ways');
+  return readText(page, '#faster-distances');
 }
 
 test('the search finds the gait of lizard tune with the same seed, which the user can try and undo', async () => {
@@ -70,18 +70,18 @@ test('the search finds the gait of lizard tune with the same seed, which the use
   const tuneResult = JSON.parse(stdout);
   const gainPercent = Math.round(100 * (tuneResult.tuned.speeds[0] / tuneResult.gait.speeds[0] - 1));
   assert.equal(
-    await readText(page, '#faster-said'),
+    await readText(page, '#faster-message'),
     `Faster on ${tuneResult.faster} of 200 random robots and floors; the speed that 95 % of them exceed is ${gainPercent} % higher. No servo turns faster than ${tuneResult.rate.toFixed(0)} °/s.`,
   );
   const previousTable = await readText(page, '#gait-table');
-  const distanceText = await readText(page, '#gait-way');
+  const distanceText = await readText(page, '#gait-distance');
   const readRows = () => page.locator('#faster-rows tr').allInnerTexts();
   const [, distanceRow] = (await readRows()).map((row) => row.split('\t'));
   assert.deepEqual(distanceRow.slice(0, 2), ['distance per cycle', distanceText]);
   await page.getByRole('button', { name: 'Use this gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent !== previousTable, previousTable);
   assert.equal(await readText(page, '#gait-table'), tuneResult.fragment);
-  assert.equal(await readText(page, '#gait-way'), distanceRow[2]);
+  assert.equal(await readText(page, '#gait-distance'), distanceRow[2]);
   // Undoes the change, and makes it again.
   await page.getByRole('button', { name: 'Back to the previous gait' }).click();
   await page.waitForFunction((previousTable) => document.querySelector('#gait-table').textContent === previousTable, previousTable);
@@ -98,7 +98,7 @@ test('the search finds the gait of lizard tune with the same seed, which the use
 test('a search stopped midway returns the best gait so far, and the page can search again', async () => {
   const page = await openEditor({ rounds: 200 });
   await searchUntil(page, 21);
-  const message = await readText(page, '#faster-said');
+  const message = await readText(page, '#faster-message');
   const [, triedCount] = /^Stopped after (\d+) of 8040 gaits\. Faster on \d+ of 200 random robots/.exec(message) ?? assert.fail(message);
   assert.ok(Number(triedCount) >= 21 && Number(triedCount) < 8040, message);
   assert.ok(await page.locator('#faster-progress').isHidden());
@@ -122,7 +122,7 @@ test('the found gait walks beside the previous gait, and is faster by the promis
   assert.ok(await page.locator('#canvas-3d').isHidden(), 'the drawing from above shows both robots');
   await waitForFoundGait(page);
   await advance(page, 8000);
-  await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-ways').textContent));
+  await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-distances').textContent));
   const comparison = await stopAndCompare(page);
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} Predicted: ${foundSpeed} mm/s, before ${previousSpeed} mm/s`);
@@ -160,7 +160,7 @@ test('changing the robot ends the search for the previous robot', async () => {
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
   await waitForSearchEnd(page);
-  assert.equal(await readText(page, '#faster-said'), 'The robot has changed; the search for the previous robot has ended.');
+  assert.equal(await readText(page, '#faster-message'), 'The robot has changed; the search for the previous robot has ended.');
   assert.ok((await page.locator('#faster-progress').isHidden()) && (await page.locator('#faster-result').isHidden()));
 });
 
@@ -169,7 +169,7 @@ test('the page reports a gait that cannot be made faster', async () => {
   const page = await openEditor({ gait: 'left', rate: 200, seed: 1 });
   await startSearch(page);
   await waitForSearchEnd(page);
-  assert.equal(await readText(page, '#faster-said'), 'No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.');
+  assert.equal(await readText(page, '#faster-message'), 'No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.');
   assert.ok(await page.locator('#faster-result').isHidden());
 });
 
@@ -177,13 +177,13 @@ test('an impossible search is refused with a message, and a number out of range 
   const page = await openEditor({ gait: 'arc-left' });
   await startSearch(page);
   await waitForSearchEnd(page);
-  assert.match(await readText(page, '#faster-said'), /^This gait cannot be made faster: the gait `mine` walks along a curve; /);
+  assert.match(await readText(page, '#faster-message'), /^This gait cannot be made faster: the gait `mine` walks along a curve; /);
   await page.locator('#gait-from').selectOption({ label: 'walk' });
   const rate = page.getByLabel('Servos at most');
   await rate.fill('900');
   await startSearch(page);
-  await page.waitForFunction(() => document.querySelector('#faster-said').textContent.includes('900'));
-  assert.equal(await readText(page, '#faster-said'), 'This gait cannot be made faster: servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml).');
+  await page.waitForFunction(() => document.querySelector('#faster-message').textContent.includes('900'));
+  assert.equal(await readText(page, '#faster-message'), 'This gait cannot be made faster: servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml).');
   await rate.fill('5');
   assert.equal(await rate.getAttribute('aria-invalid'), 'true');
   await page.keyboard.press('Tab');
@@ -201,8 +201,8 @@ test('the search works by keyboard alone, fits a phone, and has no violations fo
   assert.deepEqual(await findViolations(page, '.faster'), []);
   await page.keyboard.press('Enter');
   await waitForSearchEnd(page);
-  assert.match(await readText(page, '#faster-said'), /^Stopped after /);
+  assert.match(await readText(page, '#faster-message'), /^Stopped after /);
   assert.equal(await page.evaluate(() => document.activeElement.id), 'faster-start', 'the focus stays');
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

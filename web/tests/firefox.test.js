@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { DIST, advance, complaints, openFirefox, measureOverflow, openStanding, assertStops, useBrowser, serveInTest, stopServer, openStored } from './browser.js';
+import { DIST, advance, browserErrors, openFirefox, measureOverflow, openStanding, assertStops, useBrowser, serveInTest, stopServer, openStored } from './browser.js';
 
 useBrowser(openFirefox);
 
@@ -46,13 +46,13 @@ test('every step of the first connection can be tried with the simulated board',
     await advance(page, 2000);
     assert.match(await readText(page, '#setup-step'), new RegExp(`^${n + 1} of 9: `));
     // The steps are read from a module that a busy machine loads late.
-    await page.waitForFunction(() => document.querySelector('#setup-what').textContent.length > 40);
-    assert.doesNotMatch(await readText(page, '#setup-what'), /No robot/);
+    await page.waitForFunction(() => document.querySelector('#setup-content').textContent.length > 40);
+    assert.doesNotMatch(await readText(page, '#setup-content'), /No robot/);
   }
   await page.evaluate(() => document.querySelectorAll('#setup-steps button')[2].click());
-  await page.evaluate(() => [...document.querySelectorAll('#setup-what button')].find(({ textContent }) => /middle/.test(textContent)).click());
-  for (let n = 0; n < 40 && (await readText(page, '#setup-said')) === ''; n++) await advance(page, 250);
-  assert.match(await readText(page, '#setup-said'), /^Every servo now holds its middle position/);
+  await page.evaluate(() => [...document.querySelectorAll('#setup-content button')].find(({ textContent }) => /middle/.test(textContent)).click());
+  for (let n = 0; n < 40 && (await readText(page, '#setup-message')) === ''; n++) await advance(page, 250);
+  assert.match(await readText(page, '#setup-message'), /^Every servo now holds its middle position/);
 });
 
 test('the page fits a phone and a large screen without scrolling sideways', async () => {
@@ -73,4 +73,4 @@ test('the page works without a server once it was opened', async () => {
   assert.ok((await readPlace(page)).y > 20);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

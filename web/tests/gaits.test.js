@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, openStanding, unfold, useBrowser } from './browser.js';
+import { advance, browserErrors, openStanding, unfold, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -23,7 +23,7 @@ async function reload(page) {
 
 const readEditorText = (page, id) => page.locator(`#gait-${id}`).innerText();
 /** Waits until the prediction of the shown gait is displayed. */
-const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-way').textContent));
+const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
 const waitForChange = (page, id, previousText) => page.waitForFunction(([id, previousText]) => document.querySelector(`#gait-${id}`).textContent !== previousText, [id, previousText]);
 
 /** Drags from one phase to another, 0 to 1, on a ring of the circle. Rings count from 0, the outermost, to 3. */
@@ -43,23 +43,23 @@ test('for an unchanged gait, the editor predicts the distance shown on its butto
   const page = await openEditor();
   const button = page.locator('#gaits button[data-command="walk"] small');
   await page.waitForFunction(() => document.querySelector('#gaits button[data-command="walk"] small').textContent !== '');
-  assert.equal(await readEditorText(page, 'way'), await button.innerText());
+  assert.equal(await readEditorText(page, 'distance'), await button.innerText());
   assert.match(await readEditorText(page, 'table'), /^\[gait\.mine\]\nperiod = 1\.0\nwaveform = "wave"\nduty = 0\.75\namplitude = 20\.0\nstart = /);
 });
 
 test('the numbers follow a bar and its end while they are dragged', async () => {
   const page = await openEditor();
-  const previousDistance = await readEditorText(page, 'way');
+  const previousDistance = await readEditorText(page, 'distance');
   // walk has LF from 0.25 to 0.25 + 0.75.
   await drag(page, 0, 0.5, 0.6);
   assert.ok(Math.abs(Number(await page.getByLabel('LF starts at').inputValue()) - 0.35) < 0.011);
-  await waitForChange(page, 'way', previousDistance);
+  await waitForChange(page, 'distance', previousDistance);
   await drag(page, 1, 0.5, 0.42);
   assert.ok(Math.abs(Number(await page.locator('#gait-duty').inputValue()) - 0.67) < 0.011);
   // Editing the number fields has the same effect.
   await page.getByLabel('LF starts at').fill('0.25');
   await page.locator('#gait-duty').fill('0.75');
-  await page.waitForFunction((distance) => document.querySelector('#gait-way').textContent === distance, previousDistance);
+  await page.waitForFunction((distance) => document.querySelector('#gait-distance').textContent === distance, previousDistance);
 });
 
 test('an edited gait survives a reload, and an invalid stored gait is dropped', async () => {
@@ -80,7 +80,7 @@ test('an edited gait survives a reload, and an invalid stored gait is dropped', 
 test('a value that violates a limit is refused, and a button offers the nearest valid value', async () => {
   const page = await openEditor();
   await page.locator('#gait-amplitude').fill('40');
-  const button = page.locator('#gait-instead button', { hasText: 'amplitude' });
+  const button = page.locator('#gait-alternatives button', { hasText: 'amplitude' });
   await button.waitFor();
   assert.match(await readEditorText(page, 'refusal'), /^in "mine" the left front leg would lock: margin leg_lf [0-9.]+ is below 0\.300/);
   assert.ok(await page.locator('#gait-try').isDisabled());
@@ -88,7 +88,7 @@ test('a value that violates a limit is refused, and a button offers the nearest 
   await button.click();
   await waitForPrediction(page);
   assert.equal(Number(await page.locator('#gait-amplitude').inputValue()), value);
-  assert.ok(await page.locator('#gait-no').isHidden());
+  assert.ok(await page.locator('#gait-refused').isHidden());
   // A tenth of a degree more is refused again, so the offered value is the nearest.
   await page.locator('#gait-amplitude').fill(String(value + 0.1));
   await button.waitFor();
@@ -116,11 +116,11 @@ test('a number out of range is marked and ignored, and the box restores its valu
 
 test('an edited gait is added to robot.toml and walks as far as predicted', async () => {
   const page = await openEditor();
-  const previousDistance = await readEditorText(page, 'way');
+  const previousDistance = await readEditorText(page, 'distance');
   await page.locator('#gait-name').fill('stride');
   await page.locator('#gait-amplitude').fill('16');
-  await waitForChange(page, 'way', previousDistance);
-  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await readEditorText(page, 'way'))[1]);
+  await waitForChange(page, 'distance', previousDistance);
+  const predictedMm = Number(/^([0-9.]+) mm$/.exec(await readEditorText(page, 'distance'))[1]);
   await page.locator('#gait-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.stride]'));
   await advance(page, 3000);
@@ -138,29 +138,29 @@ test('an edited gait is added to robot.toml and walks as far as predicted', asyn
 
 test('a backward gait can be edited, and any gait can be reversed', async () => {
   const page = await openEditor();
-  const forwardMm = Number.parseFloat(await readEditorText(page, 'way'));
+  const forwardMm = Number.parseFloat(await readEditorText(page, 'distance'));
   await page.getByRole('button', { name: 'Reverse' }).click();
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
-  assert.ok(Math.abs(forwardMm + Number.parseFloat(await readEditorText(page, 'way'))) < 0.3);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-distance').textContent) < -1);
+  assert.ok(Math.abs(forwardMm + Number.parseFloat(await readEditorText(page, 'distance'))) < 0.3);
   assert.equal(await page.locator('#gait-circle .bar.against').count(), 4);
   assert.equal(await page.getByLabel('LF gain').inputValue(), '-1');
   // `back` of robot.toml is walk in reverse.
   await page.getByRole('button', { name: 'Reverse' }).click();
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) > 1);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-distance').textContent) > 1);
   await page.locator('#gait-from').selectOption({ label: 'back' });
-  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-way').textContent) < -1);
+  await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-distance').textContent) < -1);
   const backMm = Number.parseFloat(await page.locator('#gaits button[data-command="back"] small').innerText());
-  assert.ok(Math.abs(backMm - Number.parseFloat(await readEditorText(page, 'way'))) < 0.3);
+  assert.ok(Math.abs(backMm - Number.parseFloat(await readEditorText(page, 'distance'))) < 0.3);
 });
 
-test('Exchange left and right mirrors a gait', async () => {
+test('Swap left and right mirrors a gait', async () => {
   const page = await openEditor();
   await page.locator('#gait-from').selectOption({ label: 'arc-left' });
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) > 1);
   const turn = Number.parseFloat(await readEditorText(page, 'turn'));
-  await page.getByRole('button', { name: 'Exchange left and right' }).click();
+  await page.getByRole('button', { name: 'Swap left and right' }).click();
   await page.waitForFunction(() => Number.parseFloat(document.querySelector('#gait-turn').textContent) < -1);
   assert.ok(Math.abs(turn + Number.parseFloat(await readEditorText(page, 'turn'))) < 0.2);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, openBlank, openStanding, complaints, useBrowser } from './browser.js';
+import { address, advance, openBlank, openStanding, browserErrors, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -78,4 +78,4 @@ test('the view follows the size of the floor until the user zooms, and again aft
   assert.deepEqual(await readZooms(page), [smallFit, smallFit]);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

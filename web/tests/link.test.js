@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, waitForText, sendToBoard } from './board.js';
-import { advance, complaints, openStanding, readText, useBrowser, hidePage } from './browser.js';
+import { advance, browserErrors, openStanding, readText, useBrowser, hidePage } from './browser.js';
 
 useBrowser();
 
@@ -249,4 +249,4 @@ test('a hidden page stops sending the lines that keep a robot walking', async ()
   assert.equal(await isMoving(page, 500), false);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -6,9 +6,9 @@ import { dirname, join } from 'node:path';
 import { afterEach, before, test } from 'node:test';
 
 import { connect } from './board.js';
-import { address, openBlank, closeBrowser, complaints, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
+import { address, openBlank, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
-import { makeFolder } from './folder.js';
+import { makeFolder } from './temporary-folder.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
@@ -140,11 +140,11 @@ test('the gait in a recorded video file is recognized by its path, and rejected 
   assert.equal(report.gait, 'walk');
   await page.locator('#measure-gait').selectOption('left');
   await page.getByRole('button', { name: 'Measure again' }).click();
-  await waitForMessage(page, 'said', /^left: the path does not match this gait.*; it resembles walk\./);
+  await waitForMessage(page, 'message', /^left: the path does not match this gait.*; it resembles walk\./);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
   // A file that is not a video.
   await page.locator('#measure-file').setInputFiles({ name: 'words.mp4', mimeType: 'video/mp4', buffer: Buffer.from('words') });
-  await waitForMessage(page, 'said', /^words\.mp4 is not a video that this browser can play/);
+  await waitForMessage(page, 'message', /^words\.mp4 is not a video that this browser can play/);
 });
 
 test('a video that is recorded until Done while another program drives is measured', async () => {
@@ -163,7 +163,7 @@ test('a hidden tag is named while the camera is on, and no result is computed', 
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(1000);
   await page.getByRole('button', { name: 'Done' }).click();
-  await waitForMessage(page, 'said', /floor tag 2 is not completely visible/);
+  await waitForMessage(page, 'message', /floor tag 2 is not completely visible/);
   assert.ok(!(await page.locator('#measure-results').isVisible()));
 });
 
@@ -175,10 +175,10 @@ test('a video without tags is reported', async () => {
 test('the page offers to open a video if there is no camera or the browser may not use it', async () => {
   const page = await openRoomWithVideo(null);
   await page.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(page, 'said', /This machine has no camera|not allowed to use the camera/);
+  await waitForMessage(page, 'message', /This machine has no camera|not allowed to use the camera/);
   await page.evaluate(() => (navigator.mediaDevices.getUserMedia = () => Promise.reject(new DOMException('no', 'NotAllowedError'))));
   await page.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(page, 'said', /not allowed to use the camera.*record a video and open it here/);
+  await waitForMessage(page, 'message', /not allowed to use the camera.*record a video and open it here/);
 });
 
 test('Stop and leaving the room end the protocol and stop the robot, and leaving switches the camera off', async () => {
@@ -186,7 +186,7 @@ test('Stop and leaving the room end the protocol and stop the robot, and leaving
   await startDriving(page, ['walk', 'left'], 20);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.keyboard.press('Escape');
-  await waitForMessage(page, 'said', 'it was stopped');
+  await waitForMessage(page, 'message', 'it was stopped');
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   // A robot that was stopped stays stopped.
   await page.waitForTimeout(2000);
@@ -206,10 +206,10 @@ test('after a cut link, the board is no longer driven, the room reports the cut,
   await page.waitForFunction(() => window.lizard.isReal && window.lizard.gait === 'stand' && window.lizard.mayAsk);
   // At the start of the video the robot is near the end of the sheet, and the page would first drive it back.
   await startDriving(page, ['walk', 'left'], 8, 2500);
-  await waitForMessage(page, 'said', '1 of 2: walk');
+  await waitForMessage(page, 'message', '1 of 2: walk');
   await page.waitForTimeout(6000);
   await page.evaluate(() => window.unplug());
-  await waitForMessage(page, 'said', 'Ended before all gaits were walked: the link to the robot was cut');
+  await waitForMessage(page, 'message', 'Ended before all gaits were walked: the link to the robot was cut');
   assertNearTruth(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
   assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent');
   assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'nor to the simulated board that follows');
@@ -228,14 +228,14 @@ test('the printed sheet equals the output of lizard measure sheet for both paper
 
 test('a worker that cannot be loaded is reported, and the next press of the button loads it', async () => {
   const page = await openRoomWithVideo(null);
-  const previousCount = complaints.length;
+  const previousCount = browserErrors.length;
   await page.route(/assets\/worker-/, (route) => route.abort());
   await page.getByRole('button', { name: 'Print the sheet' }).click();
-  await waitForMessage(page, 'said', /^the worker could not be loaded/);
+  await waitForMessage(page, 'message', /^the worker could not be loaded/);
   await page.unroute(/assets\/worker-/);
   await download(page, page.getByRole('button', { name: 'Print the sheet' }));
   // The browser also reports the file that was not loaded, as expected.
-  for (const complaint of complaints.splice(previousCount)) assert.match(complaint, /Failed to load|worker/i);
+  for (const browserError of browserErrors.splice(previousCount)) assert.match(browserError, /Failed to load|worker/i);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

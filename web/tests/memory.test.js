@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, complaints, openPage, useBrowser } from './browser.js';
+import { address, browserErrors, openPage, useBrowser } from './browser.js';
 import { readPageFile, memory, Robot } from './wasm.js';
 
 useBrowser();
@@ -24,7 +24,7 @@ test('ten thousand robots with different lengths do not enlarge the memory', asy
   // Only with `stand`, because other gaits would only take time.
   const standingToml = toml.slice(0, toml.indexOf('[gait.walk]'));
   const growthBytes = measureGrowth(10_000, (_, n) => {
-    const { text, refusal } = Robot.lengths(standingToml, [['links.l0', 20 + n / 5000]], false);
+    const { text, refusal } = Robot.tryLengths(standingToml, [['links.l0', 20 + n / 5000]], false);
     assert.equal(refusal, null);
     assert.ok(text.includes('[gait.stand]') && text.includes('l0 = 2'));
   });
@@ -35,7 +35,7 @@ test('refused gaits, and gaits tried for an offer, do not enlarge the memory', a
   let bars;
   const growthBytes = measureGrowth(100, (robot, n) => {
     bars ??= robot.bars(1);
-    const { refused, alternatives } = robot.trial({ ...bars, amplitude: 30 + n / 20 });
+    const { refused, alternatives } = robot.tryGait({ ...bars, amplitude: 30 + n / 20 });
     assert.match(refused, /margin/);
     assert.equal(alternatives[0].parameter, 'amplitude');
   });
@@ -51,7 +51,7 @@ test('an invalid argument is refused and changes nothing', () => {
   for (const wrongFloor of [null, {}, { ...floor, kind: 'soft' }, { ...floor, twist: undefined }]) {
     assert.throws(() => robot.setFloor(wrongFloor), /Error/, JSON.stringify(wrongFloor));
   }
-  assert.throws(() => robot.pulses([1, 2, 3]), /Error/);
+  assert.throws(() => robot.followPulses([1, 2, 3]), /Error/);
   assert.match(robot.read('').refused, /./);
   assert.deepEqual(robot.predict(1), firstPrediction);
   robot.setFloor({ ...floor, ratio: 0.5 });
@@ -63,8 +63,8 @@ test('an invalid argument is refused and changes nothing', () => {
  * fills its buffers for the last pulses, the log and the track.
  */
 const SECONDS_IN_ROOM = Number(process.env.STAY ?? 8);
-/** Growth that is allowed without a leak: a kilobyte that leaks in each frame would be 3 MB in a round. */
-const ALLOWED_BYTES = 2_000_000;
+/** Largest growth without a leak: a kilobyte that leaks in each frame would be 3 MB in a round. */
+const MAX_GROWTH_BYTES = 2_000_000;
 
 test('while a robot walks, a second visit to every room takes no more memory than the first visit', async (t) => {
   const page = await openPage({ reducedMotion: 'no-preference' });
@@ -89,10 +89,10 @@ test('while a robot walks, a second visit to every room takes no more memory tha
   for (const [n, { room, ...later }] of (await visitRooms()).entries()) {
     const { heap, nodes, listeners } = firstRound.at(-1);
     t.diagnostic(`${room}: ${firstRound[n].heap}, then ${later.heap} bytes; ${firstRound[n].nodes}, then ${later.nodes} nodes`);
-    assert.ok(later.heap < heap + ALLOWED_BYTES, `${room}: ${heap}, then ${later.heap} bytes`);
+    assert.ok(later.heap < heap + MAX_GROWTH_BYTES, `${room}: ${heap}, then ${later.heap} bytes`);
     assert.ok(later.nodes < nodes + 200, `${room}: ${nodes}, then ${later.nodes} nodes`);
     assert.ok(later.listeners < listeners + 20, `${room}: ${listeners}, then ${later.listeners} listeners`);
   }
   assert.equal(await page.evaluate(() => window.lizard.gait), 'walk');
-  assert.deepEqual(complaints, []);
+  assert.deepEqual(browserErrors, []);
 });

@@ -7,8 +7,8 @@ import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, address, advance, openBlank, complaints, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
-import { makeFolder } from './folder.js';
+import { DIST, address, advance, openBlank, browserErrors, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
+import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
 
@@ -102,4 +102,4 @@ test('the first load is below 500 KB compressed, and nothing is requested from a
   assert.deepEqual(foreignUrls, []);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -5,7 +5,7 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
 import { test } from 'node:test';
 
-import { makeFolder } from './folder.js';
+import { makeFolder } from './temporary-folder.js';
 
 const SCRIPT = new URL('../../scripts/packages.sh', import.meta.url).pathname;
 
@@ -20,28 +20,28 @@ async function updateLists(failureCount, message, waitSeconds) {
     encoding: 'utf8',
     timeout: 60_000,
   });
-  return { status, stdout, tryCount: Number(await readFile(join(folder, 'n'), 'utf8')) };
+  return { status, stdout, attemptCount: Number(await readFile(join(folder, 'n'), 'utf8')) };
 }
 
 const LOCK_MESSAGE = 'E: Could not get lock /var/lib/apt/lists/lock. It is held by process 4711 (apt-get)';
 
 test('the update waits while another program holds the lock', async () => {
-  const { status, stdout, tryCount } = await updateLists(2, LOCK_MESSAGE, 60);
+  const { status, stdout, attemptCount } = await updateLists(2, LOCK_MESSAGE, 60);
   assert.equal(status, 0, stdout);
-  assert.equal(tryCount, 3);
+  assert.equal(attemptCount, 3);
   assert.match(stdout, /^setup: another program is installing packages; waiting up to 60 s$/m);
 });
 
 test('the wait for a lock ends after the given time', async () => {
-  const { status, stdout, tryCount } = await updateLists(1000, LOCK_MESSAGE, 3);
+  const { status, stdout, attemptCount } = await updateLists(1000, LOCK_MESSAGE, 3);
   assert.notEqual(status, 0);
   assert.match(stdout, /held by process 4711/);
-  assert.ok(tryCount <= 4, `${tryCount} tries`);
+  assert.ok(attemptCount <= 4, `${attemptCount} attempts`);
 });
 
 test('any other problem is reported at once', async () => {
-  const { status, stdout, tryCount } = await updateLists(1000, 'E: The repository has no Release file.', 60);
+  const { status, stdout, attemptCount } = await updateLists(1000, 'E: The repository has no Release file.', 60);
   assert.notEqual(status, 0);
   assert.match(stdout, /no Release file/);
-  assert.equal(tryCount, 1);
+  assert.equal(attemptCount, 1);
 });

@@ -4,8 +4,8 @@ import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
 import { openWithBoard } from './board.js';
-import { advance, assertStops, complaints, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, waitForLength, typeLength } from './browser.js';
-import { formatHex, makeImage } from './image.js';
+import { advance, assertStops, browserErrors, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot, waitForLength, typeLength } from './browser.js';
+import { formatHex, makeImage } from './flash-image.js';
 
 useBrowser();
 
@@ -204,7 +204,7 @@ test('a refused setting shows the reason, and its box shows the previous value',
   await fromInput.fill('125');
   await fromInput.press('Enter');
   await advance(page, 1000);
-  await page.locator('#cal-said', { hasText: /^err 3 A1's travel must cover/ }).waitFor();
+  await page.locator('#cal-message', { hasText: /^err 3 A1's travel must cover/ }).waitFor();
   assert.equal(await fromInput.inputValue(), '48.59');
 });
 
@@ -213,9 +213,9 @@ async function writeImage(page, runFor, targetText = '') {
   await unfold(page, '#flash');
   const buffer = Buffer.from(formatHex(await makeImage('large')));
   await page.getByLabel('HEX file').setInputFiles({ name: 'large.hex', mimeType: 'text/plain', buffer });
-  await page.locator('#flash-what', { hasText: /^large\.hex, \d+ bytes\. It is lizard firmware\./ }).waitFor();
+  await page.locator('#flash-question-text', { hasText: /^large\.hex, \d+ bytes\. It is lizard firmware\./ }).waitFor();
   await page.locator('#flash-yes').click();
-  const message = page.locator('#flash-said');
+  const message = page.locator('#flash-message');
   for (let n = 0; n < 400; n++) {
     await runFor(100);
     if (/written/.test(await message.innerText())) break;
@@ -242,7 +242,7 @@ test('an invalid HEX file is refused before anything is written', async () => {
   await unfold(page, '#flash');
   const input = page.getByLabel('HEX file');
   await input.setInputFiles({ name: 'x.hex', mimeType: 'text/plain', buffer: Buffer.from('hello\n') });
-  await page.locator('#flash-said', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
+  await page.locator('#flash-message', { hasText: "not written: line 1 is not Intel HEX: missing start code ':'" }).waitFor();
   assert.equal((await sendLine(page, 'status', 'ok gait=')).slice(0, 8), 'ok gait=', 'the robot continues');
 });
 
@@ -380,4 +380,4 @@ test('at half the pace, the last cycle covers the predicted distance', async () 
   assert.ok(Math.abs(cycleMm / predictedMm - 1) < 0.05, `last cycle: ${cycleMm} mm, predicted ${predictedMm} mm`);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

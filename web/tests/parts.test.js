@@ -10,8 +10,8 @@ import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, openBlank, address, complaints, openStanding, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
-import { makeFolder } from './folder.js';
+import { advance, openBlank, address, browserErrors, openStanding, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
+import { makeFolder } from './temporary-folder.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 /** Limit of the page's first load, compressed. */
@@ -29,7 +29,7 @@ async function listPaths(root) {
   return entries.filter((entry) => entry.isFile()).map(({ parentPath, name }) => relative(root, join(parentPath, name)));
 }
 
-const findMessage = (page) => page.locator('#parts-said');
+const findMessage = (page) => page.locator('#parts-message');
 
 async function openParts(options) {
   const page = await openStanding(options);
@@ -55,9 +55,9 @@ test('the page reports an unprintable length with the nearest length that lizard
   const page = await openStanding();
   await unfold(page, '#lengths-panel');
   const length = await typeLength(page, 'leg.crank', 46);
-  await page.locator('#fit-said', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
+  await page.locator('#fit-message', { hasText: /^The parts fit: no two come nearer than \d\.\d\d mm\.$/ }).waitFor();
   await typeLength(page, 'leg.crank', 52);
-  await page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
+  await page.locator('#fit-message', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ }).waitFor();
   const useButton = page.locator('#fit-use');
   await useButton.waitFor();
   const nearestMm = Number(/ ([\d.]+)$/.exec(await useButton.innerText())[1]);
@@ -69,7 +69,7 @@ test('the page reports an unprintable length with the nearest length that lizard
     const path = join(trialFolder, 'robot.toml');
     const toml = await page.evaluate((mm) => {
       const { robot, toml } = window.lizard;
-      return robot.constructor.lengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
+      return robot.constructor.tryLengths(toml, [['leg.crank', mm], ['leg.follower', mm]], false).text;
     }, mm);
     await writeFile(path, toml);
     return runLizard('parts', join(trialFolder, 'parts'), '--corner', '--robot', path).then(() => 'made', ({ stderr }) => stderr);
@@ -78,7 +78,7 @@ test('the page reports an unprintable length with the nearest length that lizard
   assert.match(await makeParts(nearestMm + 0.5), /overlap|may come as near as/);
 
   await useButton.click();
-  await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
+  await page.locator('#fit-message', { hasText: /^The parts fit/ }).waitFor();
   assert.equal(await length.inputValue(), String(nearestMm));
   assert.equal(await useButton.isHidden(), true);
 
@@ -110,9 +110,9 @@ test('colliding parts are red in 3D while a length is dragged, and the page show
     return page.evaluate(async (picture) => {
       const bytes = Uint8Array.from(atob(picture), (letter) => letter.charCodeAt(0));
       const image = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
-      const pen = new OffscreenCanvas(image.width, image.height).getContext('2d');
-      pen.drawImage(image, 0, 0);
-      const { data } = pen.getImageData(0, 0, image.width, image.height);
+      const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      context.drawImage(image, 0, 0);
+      const { data } = context.getImageData(0, 0, image.width, image.height);
       let redCount = 0;
       for (let n = 0; n < data.length; n += 4) {
         const [r, g, b] = data.subarray(n, n + 3);
@@ -126,17 +126,17 @@ test('colliding parts are red in 3D while a length is dragged, and the page show
   const previousToml = await page.evaluate(() => window.lizard.toml);
   const dragTo = (mm) => slider.evaluate((slider, mm) => ((slider.value = String(mm)), slider.dispatchEvent(new Event('input'))), mm);
   await dragTo(52);
-  const message = page.locator('#fit-said', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
+  const message = page.locator('#fit-message', { hasText: /^These lengths cannot be printed: .* would overlap by [\d.]+ mm\.$/ });
   await message.waitFor();
   const [, pair, overlapMm] = /printed: (.*) would overlap by ([\d.]+) mm/.exec(await message.innerText());
-  await page.locator('#parts-said', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
+  await page.locator('#parts-message', { hasText: `${pair} overlap by ${overlapMm} mm.` }).waitFor();
   assert.equal(await page.evaluate(() => window.lizard.toml), previousToml, 'the slider is not released yet');
   // The stop button is red, too. The picture follows the slider after a moment.
   const hasRedParts = async () => (await countRedPixels()) > initialRedCount + 50;
   await repeatUntil('red parts', hasRedParts, () => page.waitForTimeout(200));
   // At the old length the parts fit again.
   await dragTo(45);
-  await page.locator('#fit-said', { hasText: /^The parts fit/ }).waitFor();
+  await page.locator('#fit-message', { hasText: /^The parts fit/ }).waitFor();
   await repeatUntil('no red parts', async () => !(await hasRedParts()), () => page.waitForTimeout(200));
 });
 
@@ -144,7 +144,7 @@ test('the page lists the files that a changed length affects, and downloads only
   const page = await openStanding();
   await unfold(page, '#parts');
   assert.ok(await page.locator('#parts-changed').isHidden(), 'nothing is changed');
-  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.lengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
+  assert.equal(await page.evaluate(() => window.lizard.change(window.lizard.robot.constructor.tryLengths(window.lizard.toml, [['leg.crank', 46], ['leg.follower', 46]], false).text)), null);
   const savedFile = await download(page, page.locator('#parts-changed'));
   assert.equal(savedFile.name, 'robot-changed-parts.zip');
   const archive = unzipSync(savedFile.bytes);
@@ -162,7 +162,7 @@ test('the page lists the files that a changed length affects, and downloads only
   assert.deepEqual(Object.keys(archive).sort(), changedNames.sort());
   assert.ok(changedNames.length > 5 && changedNames.length < paths.length - 20, `${changedNames.length} of ${paths.length}`);
   assert.deepEqual((await page.locator('#files-list li').allInnerTexts()).sort(), changedNames.sort());
-  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from the files of robot\\.toml:`));
+  assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${changedNames.length} of ${paths.length} files differ from the files of robot\\.toml:`));
 });
 
 test('opening the page loads no parts, and less than 500 KB compressed', async () => {
@@ -176,7 +176,7 @@ test('opening the page loads no parts, and less than 500 KB compressed', async (
   const totalBytes = sizes.reduce((a, b) => a + b, 0);
   assert.ok(names.includes('files/lizard.wasm'), names.join(' '));
   assert.ok(totalBytes < MAX_FIRST_LOAD_BYTES, `${totalBytes} bytes`);
-  const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|robot-view|workshop|worker-.*parts/.test(name));
+  const earlyNames = names.filter((name) => /parts\.wasm|tune\.wasm|robot-view|make-parts|worker-.*parts/.test(name));
   assert.deepEqual(earlyNames, []);
   await unfold(page, '#parts');
   await page.getByText('Click a part for its name').waitFor();
@@ -188,7 +188,7 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   await unfold(page, '#parts');
   // Every message is recorded when it appears, because polling a busy browser would miss some.
   await page.evaluate(() => {
-    const box = document.querySelector('#files-said');
+    const box = document.querySelector('#files-message');
     window.shownMessages = [];
     new MutationObserver(() => window.shownMessages.push(box.textContent)).observe(box, { childList: true });
     // Reports of the progress have their own port. On a busy machine they may arrive after the files, as they do here.
@@ -211,7 +211,7 @@ test('the archive has the files of lizard parts, byte for byte', async () => {
   // The smallest distance between two parts that `lizard fit` prints.
   const { stdout } = await runLizard('fit', '--robot', join(ROOT, 'robot.toml'));
   const smallestMm = /no two parts come nearer than ([0-9.]+) mm/.exec(stdout)[1];
-  assert.match(await page.locator('#files-said').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${smallestMm} mm`));
+  assert.match(await page.locator('#files-message').innerText(), new RegExp(`^${paths.length} files. No two parts come nearer than ${smallestMm} mm`));
 });
 
 test('the page saves nothing if making the files is stopped', async () => {
@@ -221,7 +221,7 @@ test('the page saves nothing if making the files is stopped', async () => {
   await unfold(page, '#parts');
   // Stops from within the page, because in a slow browser the work might have ended before the test stops it.
   await page.evaluate(() => {
-    const box = document.querySelector('#files-said');
+    const box = document.querySelector('#files-message');
     const observer = new MutationObserver(() => {
       if (!box.textContent.startsWith('Proving that no two parts collide')) return;
       observer.disconnect();
@@ -279,7 +279,7 @@ test('the parts move with the robot', async () => {
           for (const type of ['pointerdown', 'pointerup']) {
             canvas.dispatchEvent(new PointerEvent(type, { pointerId: 1, clientX: left + x, clientY: top + y, bubbles: true }));
           }
-          if (document.querySelector('#parts-said').textContent.startsWith('head plate')) hits.push([x, y]);
+          if (document.querySelector('#parts-message').textContent.startsWith('head plate')) hits.push([x, y]);
         }
       }
       return [0, 1].map((axis) => hits.reduce((sum, point) => sum + point[axis], 0) / hits.length);
@@ -332,4 +332,4 @@ test('3D rendering takes less than a core on a machine without a graphics chip',
   assert.ok(shownFraction - hiddenFraction < 0.8, `fraction of a core: ${shownFraction} with the robot in 3D, ${hiddenFraction} without`);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, measureOverflow, openStanding, unfold, useBrowser } from './browser.js';
+import { advance, browserErrors, measureOverflow, openStanding, unfold, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -16,7 +16,7 @@ const waitForOtherTable = (page, table) => page.waitForFunction((table) => docum
 async function openPanel(options) {
   const page = await openStanding(options);
   await unfold(page, '#path-editor');
-  await waitForValue(page, 'least');
+  await waitForValue(page, 'margin');
   return page;
 }
 
@@ -68,14 +68,14 @@ test('a drawn circle is added to robot.toml as the path of the head', async () =
 test('a line that is too large is refused, and a button offers the largest valid size', async () => {
   const page = await openPanel();
   await draw(page, 45);
-  const button = page.locator('#path-instead button', { hasText: 'a size of' });
+  const button = page.locator('#path-alternatives button', { hasText: 'a size of' });
   await button.waitFor();
   assert.notEqual(await readPanelText(page, 'refusal'), '');
   for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
   const size = Number(/a size of (\d+) %/.exec(await button.innerText())[1]);
   await button.click();
-  await waitForValue(page, 'least');
-  await page.waitForFunction(() => document.querySelector('#path-no').hidden);
+  await waitForValue(page, 'margin');
+  await page.waitForFunction(() => document.querySelector('#path-refused').hidden);
   assert.equal(Number(await page.locator('#path-size').inputValue()), size);
   await page.locator('#path-size').fill(String(size + 1));
   await button.waitFor();
@@ -91,7 +91,7 @@ test('the keyboard can choose every shape, also for the tail', async () => {
     const table = await readPanelText(page, 'table');
     await page.locator('#path-shape').selectOption(shape);
     await waitForOtherTable(page, table);
-    assert.ok(await page.locator('#path-no').isHidden(), `${shape}: ${await readPanelText(page, 'refusal')}`);
+    assert.ok(await page.locator('#path-refused').isHidden(), `${shape}: ${await readPanelText(page, 'refusal')}`);
   }
 });
 
@@ -100,7 +100,7 @@ test('a tap is refused with the message that it is not a line', async () => {
   const previousTable = await readPanelText(page, 'table');
   await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   await page.locator('#path-plane').click();
-  assert.equal(await readPanelText(page, 'said'), 'A tap is not a line: press, hold and draw.');
+  assert.equal(await readPanelText(page, 'message'), 'A tap is not a line: press, hold and draw.');
   assert.equal(await readPanelText(page, 'table'), previousTable);
 });
 
@@ -112,4 +112,4 @@ test('a finger draws on a phone, and the page does not scroll meanwhile', async 
   assert.equal(await measureOverflow(page), 0);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

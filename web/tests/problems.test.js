@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, complaints, openBlank, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, browserErrors, openBlank, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 useBrowser();
@@ -26,7 +26,7 @@ test('the message about an unreadable robot file stays while the previous robot 
   await chooseRobot(page, 'large');
   assert.equal(await findProblems(page).isVisible(), false, 'a readable robot file removes the message');
   // The browser also reports the missing file, as expected.
-  complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/404/.test(complaint)));
+  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/404/.test(browserError)));
 });
 
 test('the page reports an unreadable first robot and accepts another robot', async () => {
@@ -93,7 +93,7 @@ test('a refusal is on the screen beside the buttons, also on a phone', async () 
   await advance(page, 300);
   await page.locator('#gaits button[data-command="walk"]').click();
   await advance(page, 300);
-  const message = page.locator('#drive-said');
+  const message = page.locator('#drive-message');
   await message.getByText('walk: the servos are resting; send stand first').waitFor();
   const { y, height } = await message.boundingBox();
   assert.ok(y >= 0 && y + height <= 844, `the message is on the screen: ${y} to ${y + height}`);
@@ -102,4 +102,4 @@ test('a refusal is on the screen beside the buttons, also on a phone', async () 
   await message.waitFor({ state: 'hidden' });
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -9,11 +9,11 @@ const { Protocol } = await importSource('measure/protocol.ts');
 
 const STEPS_PER_SECOND = 20;
 /** Distance of the sheet's tags from the middle of the sheet, mm. */
-const TAG_DISTANCE = 210;
+const TAG_DISTANCE_MM = 210;
 /** Distance from the tags at which a robot is near the end of the sheet, mm. */
-const NEAR_MARGIN = 50;
+const NEAR_MARGIN_MM = 50;
 /** Distance from the tags up to which a video is measured, mm. */
-const END_MARGIN = 200;
+const END_MARGIN_MM = 200;
 /** Time after which a robot that receives nothing stops. */
 const DEADMAN_SECONDS = 0.9;
 /** Predicted displacements in a cycle, mm and deg. */
@@ -53,7 +53,7 @@ class World {
   lines = [];
   linesAfterCut = [];
   /** Largest distance of the robot from the middle of the sheet, mm. */
-  maxDistance = 0;
+  maxDistanceMm = 0;
   timers = [];
   putBackCount = 0;
 
@@ -72,16 +72,16 @@ class World {
     return new Promise((resolve) => this.timers.push({ dueSeconds: this.seconds + seconds, resolve }));
   }
 
-  /** Path from the robot to the middle of the sheet, mm, in the robot's own coordinates. */
-  get pathBack() {
+  /** The vector from the robot to the middle of the sheet, mm, in the robot's own coordinates. */
+  get offsetToCentre() {
     const { x, y, heading } = this.place;
     const [forward, left] = [-x * Math.cos(heading) - y * Math.sin(heading), x * Math.sin(heading) - y * Math.cos(heading)];
-    return { forward, left, reach: TAG_DISTANCE + NEAR_MARGIN, isNear: Math.hypot(x, y) > TAG_DISTANCE + NEAR_MARGIN };
+    return { forward, left, reach: TAG_DISTANCE_MM + NEAR_MARGIN_MM, isNearEdge: Math.hypot(x, y) > TAG_DISTANCE_MM + NEAR_MARGIN_MM };
   }
 
   /** Sends a line to the robot, which acts at once and answers later. */
   async ask(line) {
-    this.protocol.noteSent(line);
+    this.protocol.handleSent(line);
     if (this.isCut) this.linesAfterCut.push(line);
     else this.lines.push(line);
     const [, gait = line, cycleCount] = /^(.+?) (\d+)$/.exec(line) ?? [];
@@ -121,15 +121,15 @@ class World {
     if (this.phase < this.cycleCount - 1e-9) return;
     this.activity = 'stop';
     if (this.isCut) return;
-    this.protocol.noteReceived('# done');
+    this.protocol.handleReceived('# done');
     this.protocol.setActivity('stop');
   }
 
   async step() {
     this.seconds += 1 / STEPS_PER_SECOND;
     this.move();
-    this.maxDistance = Math.max(this.maxDistance, Math.hypot(this.place.x, this.place.y));
-    this.protocol.setPlace(this.isHidden ? null : this.pathBack);
+    this.maxDistanceMm = Math.max(this.maxDistanceMm, Math.hypot(this.place.x, this.place.y));
+    this.protocol.setOffset(this.isHidden ? null : this.offsetToCentre);
     const dueTimers = this.timers.filter((timer) => timer.dueSeconds <= this.seconds);
     this.timers = this.timers.filter((timer) => timer.dueSeconds > this.seconds);
     for (const { resolve } of dueTimers) resolve();
@@ -142,7 +142,7 @@ class World {
    */
   async run(plan, onStep = () => {}) {
     let [isOver, reason] = [false, null];
-    this.protocol.setPlace(this.pathBack);
+    this.protocol.setOffset(this.offsetToCentre);
     const runEnd = this.protocol.run(plan).catch((error) => (reason = error.message)).then(() => (isOver = true));
     for (let extraSteps = 0; extraSteps < 5 * STEPS_PER_SECOND; extraSteps += isOver ? 1 : 0) {
       assert.ok(this.seconds < 1000, `the plan does not end: ${this.lines}`);
@@ -165,13 +165,13 @@ async function runWorlds(count, act) {
   for (let seed = 1; seed <= count; seed++) {
     const generator = makeGenerator(seed);
     const world = new World();
-    const [distance, direction] = [generator.between(0, TAG_DISTANCE + NEAR_MARGIN), generator.between(0, 2 * Math.PI)];
+    const [distance, direction] = [generator.between(0, TAG_DISTANCE_MM + NEAR_MARGIN_MM), generator.between(0, 2 * Math.PI)];
     world.place = { x: distance * Math.cos(direction), y: distance * Math.sin(direction), heading: generator.between(0, 2 * Math.PI) };
     world.answerDelay = generator.between(0.01, 0.5);
     await act(world, generator, seed);
     const isWalking = PREDICTIONS.some(({ command }) => command === world.activity);
     assert.ok(!isWalking, `world ${seed}: the robot still does ${world.activity}`);
-    assert.ok(world.maxDistance < TAG_DISTANCE + END_MARGIN, `world ${seed}: ${world.maxDistance} mm from the middle`);
+    assert.ok(world.maxDistanceMm < TAG_DISTANCE_MM + END_MARGIN_MM, `world ${seed}: ${world.maxDistanceMm} mm from the middle`);
   }
 }
 

@@ -7,15 +7,15 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 
 import { loadHex } from '../../tools/judge/src/hex.js';
-import { TIMEOUT_MS, complaints, openPage, useBrowser } from './browser.js';
-import { makeFolder } from './folder.js';
+import { TIMEOUT_MS, browserErrors, openPage, useBrowser } from './browser.js';
+import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
 
 const ROOT = new URL('../../', import.meta.url).pathname;
 const ROBOT_FILE = join(ROOT, 'robot.toml');
 /** The image of the same robot from the compiler. */
-const HEX = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
+const HEX_FILE = join(ROOT, 'target/avr-atmega328p/release/lizard.hex');
 
 /** Script of a run: ms since power-on, and the line sent then. */
 const SCRIPT = [
@@ -39,8 +39,8 @@ async function simulate(toml) {
     writeFileSync(scriptPath, SCRIPT.map(([ms, line]) => `${ms} ${line}\n`).join(''));
     const robotPath = join(folder, 'robot.toml');
     writeFileSync(robotPath, toml);
-    const files = ['--robot', robotPath, '--svg', join(folder, 'x.svg')];
-    const output = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', scriptPath, ...files], {
+    const fileArguments = ['--robot', robotPath, '--svg', join(folder, 'x.svg')];
+    const output = execFileSync(process.env.LIZARD, ['sim', '--json', '--script', scriptPath, ...fileArguments], {
       cwd: ROOT,
       maxBuffer: 1 << 26,
       timeout: TIMEOUT_MS,
@@ -55,7 +55,7 @@ async function simulate(toml) {
 test('the image of robot.toml equals that of the compiler, byte for byte', async () => {
   const page = await openPage();
   const flash = new Uint8Array(32 * 1024).fill(0xff);
-  loadHex(readFileSync(HEX, 'utf8'), flash);
+  loadHex(readFileSync(HEX_FILE, 'utf8'), flash);
   const image = await page.evaluate(() => Array.from(window.lizard.image));
   assert.ok(image.length > 0x6e00 + 1000, `${image.length} bytes`);
   assert.deepEqual(image, Array.from(flash.subarray(0, image.length)));
@@ -86,9 +86,9 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
       const rises = [];
       // Records the frames that the page itself computes.
       lizard.robot.setServos('ideal');
-      const originalPulses = lizard.robot.pulses.bind(lizard.robot);
-      lizard.robot.pulses = (widths) => {
-        const frame = originalPulses(widths);
+      const originalFollowPulses = lizard.robot.followPulses.bind(lizard.robot);
+      lizard.robot.followPulses = (widths) => {
+        const frame = originalFollowPulses(widths);
         if (widths.every((width) => width > 0)) frames.push(frame.scene.angles);
         return frame;
       };
@@ -121,4 +121,4 @@ for (const [robotName, toml] of [['robot.toml', TOML], ['a robot that was typed 
   assert.deepEqual([...periods], [0], 'a frame is exactly 20 ms');
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

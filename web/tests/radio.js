@@ -92,21 +92,21 @@ export class Radio {
     if (adapter !== 'powered-on') return radio;
     const { name, service } = module;
     await browserSession.send('BluetoothEmulation.simulatePreconnectedPeripheral', { address: MODULE_ADDRESS, name, manufacturerData: [], knownServiceUuids: [service] });
-    // An answer may fail after the page was closed. After an earlier failure the test times out.
-    browserSession.on('BluetoothEmulation.gattOperationReceived', (event) => radio.answerGatt(event).catch(() => {}));
-    browserSession.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.answerCharacteristic(event).catch(() => {}));
+    // A response may fail after the page was closed. After an earlier failure the test times out.
+    browserSession.on('BluetoothEmulation.gattOperationReceived', (event) => radio.respondToGatt(event).catch(() => {}));
+    browserSession.on('BluetoothEmulation.characteristicOperationReceived', (event) => radio.respondToCharacteristic(event).catch(() => {}));
     await radio.pageSession.send('DeviceAccess.enable');
     return radio;
   }
 
-  async answerGatt({ type }) {
+  async respondToGatt({ type }) {
     if (type === 'discovery') await this.addService();
     if (type === 'connection' && this.isInRange) await this.connect();
     const code = this.isInRange ? 0 : OUT_OF_RANGE;
     await this.browserSession.send('BluetoothEmulation.simulateGATTOperationResponse', { address: MODULE_ADDRESS, type, code }).catch(() => {});
   }
 
-  /** Connects the module, which then sends the robot a text without a line end, as an HM-10 does. */
+  /** Connects the module, which then sends the robot a text without a line ending, as an HM-10 does. */
   async connect() {
     await this.page.evaluate(() => {
       window.isInRange = true;
@@ -123,7 +123,7 @@ export class Radio {
     }
   }
 
-  async answerCharacteristic({ characteristicId, type, data, writeType }) {
+  async respondToCharacteristic({ characteristicId, type, data, writeType }) {
     if (type === 'write') {
       const bytes = [...Buffer.from(data, 'base64')];
       await this.page.evaluate((bytes) => window.isInRange && window.attachedBoard?.send(bytes), bytes);
@@ -163,7 +163,6 @@ export class Radio {
     }, ms);
   }
 
-  /** Takes the module out of range. */
   async takeOutOfRange() {
     this.isInRange = false;
     await this.page.evaluate(() => {

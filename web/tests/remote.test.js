@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { DIST, address, advance, complaints, openStanding, useBrowser } from './browser.js';
+import { DIST, address, advance, browserErrors, openStanding, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -53,7 +53,7 @@ test('stick and stop are in reach of the thumbs, and the robot fills the screen'
   assert.ok(width - stop.x <= REACH_PX && height - stop.y <= REACH_PX, JSON.stringify(stop));
   assert.deepEqual([floor.x, floor.y], [0, 0]);
   assert.ok(floor.width >= width && floor.height >= height);
-  for (const hiddenSelector of ['header', '.console', '#gaits', '#reset']) assert.equal(await page.locator(hiddenSelector).first().isVisible(), false, hiddenSelector);
+  for (const hiddenSelector of ['header', '#console', '#gaits', '#reset']) assert.equal(await page.locator(hiddenSelector).first().isVisible(), false, hiddenSelector);
 });
 
 test('the remote drives and stops, and keeps the screen on while it is open', async () => {
@@ -80,4 +80,4 @@ test('the phone vibrates when the robot stops by itself', async () => {
   assert.ok((await page.evaluate(() => window.vibrationCount)) > 0);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

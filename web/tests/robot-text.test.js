@@ -8,8 +8,8 @@ import { test } from 'node:test';
 import jsQR from 'jsqr';
 import { parse } from 'smol-toml';
 
-import { address, complaints, openPage, openStanding, unfold, waitUntil, useBrowser, chooseRobot } from './browser.js';
-import { makeFolder } from './folder.js';
+import { address, browserErrors, openPage, openStanding, unfold, waitUntil, useBrowser, chooseRobot } from './browser.js';
+import { makeFolder } from './temporary-folder.js';
 
 const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
 
@@ -133,11 +133,11 @@ async function scanQrCode(page) {
     const picture = new Image();
     picture.src = `data:image/svg+xml,${encodeURIComponent(new XMLSerializer().serializeToString(copy))}`;
     await picture.decode();
-    const pen = new OffscreenCanvas(side, side).getContext('2d');
-    pen.fillStyle = 'white';
-    pen.fillRect(0, 0, side, side);
-    pen.drawImage(picture, 0, 0);
-    return { data: Array.from(pen.getImageData(0, 0, side, side).data), side };
+    const context = new OffscreenCanvas(side, side).getContext('2d');
+    context.fillStyle = 'white';
+    context.fillRect(0, 0, side, side);
+    context.drawImage(picture, 0, 0);
+    return { data: Array.from(context.getImageData(0, 0, side, side).data), side };
   });
   return jsQR.default(Uint8ClampedArray.from(data), side, side)?.data;
 }
@@ -281,4 +281,4 @@ test('the list has the names of the user\'s own robots, and restores each unchan
   assert.deepEqual(await readNames(), ['anna']);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

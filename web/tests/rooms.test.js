@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { findViolations } from './axe.js';
-import { address, complaints, openPage, measureOverflow, openStanding, readBox, unfold, useBrowser, typeLength } from './browser.js';
+import { address, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, useBrowser, typeLength } from './browser.js';
 
 useBrowser();
 
@@ -143,4 +143,4 @@ test('one press switches between 3D and the plan view, and three.js is loaded on
   assert.ok(!(await page.locator('#canvas-3d').isVisible()));
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

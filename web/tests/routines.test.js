@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, runUntil, reconnect, waitForText } from './board.js';
-import { address, advance, complaints, openStanding, readText, unfold, useBrowser, hidePage } from './browser.js';
+import { address, advance, browserErrors, openStanding, readText, unfold, useBrowser, hidePage } from './browser.js';
 
 useBrowser();
 
@@ -87,7 +87,7 @@ test('a recorded drive has the robot\'s motions, and its replay ends at the pred
   await page.waitForFunction(() => window.lizard.gait === 'stop');
   await runSeconds(page, 1);
   await press(page, 'Stop recording');
-  const message = await readText(page, '#routine-said');
+  const message = await readText(page, '#routine-message');
   const [, walkCycles, pauseSeconds, turnCycles] = (/^Recorded: walk (\d+), stand ([\d.]+) s, left (\d+)$/.exec(message) ?? assert.fail(message)).map(Number);
   assert.ok(walkCycles >= 3 && walkCycles < cycles + 0.2 && walkCycles > cycles - 1.2, `${message}, but the robot has walked ${cycles} cycles`);
   // The page also advances by itself, so this is a lower bound.
@@ -123,7 +123,7 @@ test('the recording follows the robot\'s reports, not the pressed buttons', asyn
     await runSeconds(page, seconds);
   }
   await press(page, 'Stop recording');
-  const message = await readText(page, '#routine-said');
+  const message = await readText(page, '#routine-message');
   // The page also advances by itself, so these times are lower bounds.
   const [, rest, stand, look] = (/^Recorded: walk 3, stand [\d.]+ s, rest ([\d.]+) s, stand ([\d.]+) s, look ([\d.]+) s$/.exec(message) ?? assert.fail(message)).map(Number);
   assert.ok(rest >= 2.9 && stand >= 1.4 && look >= 0.7, message);
@@ -146,7 +146,7 @@ test('the recorded number of cycles does not depend on the phase of the previous
     await page.evaluate(() => void window.lizard.status());
     await runSeconds(page, 3);
     await press(page, 'Stop recording');
-    assert.match(await readText(page, '#routine-said'), /^Recorded: walk 2$/, `after ${0.5 + 0.1 * tenth} s`);
+    assert.match(await readText(page, '#routine-message'), /^Recorded: walk 2$/, `after ${0.5 + 0.1 * tenth} s`);
     await press(page, 'Drop it');
   }
 });
@@ -173,7 +173,7 @@ test('the recording uses the board\'s own phase, even after its link was cut', a
   await waitForBoardGait(page, 'stop');
   await page.clock.runFor(500);
   await press(page, 'Stop recording');
-  assert.match(await readText(page, '#routine-said'), /^Recorded: walk 3, back [23]$/);
+  assert.match(await readText(page, '#routine-message'), /^Recorded: walk 3, back [23]$/);
 });
 
 test('keys alone can change, move, copy and delete steps, and undo each change', async () => {
@@ -313,7 +313,7 @@ test('an invalid or existing name is refused, and the recorded steps stay', asyn
   ]) {
     await page.locator('#routine-name').fill(name);
     await press(page, 'Keep it');
-    await page.locator('#routine-said', { hasText: refusal }).waitFor();
+    await page.locator('#routine-message', { hasText: refusal }).waitFor();
   }
   await page.locator('#routine-name').fill('two steps');
   await press(page, 'Keep it');
@@ -331,9 +331,9 @@ test('a routine is written to a board, started by its name, and reports its end'
   const page = await openBoardWithRoutine(['walk 2', 'rest 2 s', 'left 1']);
   // Until the routine is written, the board's robot does not have it.
   await press(page, 'Start it');
-  await runUntil(page, 'the command is refused', async () => (await readText(page, '#drive-said')) === 'patrol: unknown command; send help for the list');
+  await runUntil(page, 'the command is refused', async () => (await readText(page, '#drive-message')) === 'patrol: unknown command; send help for the list');
   await press(page, 'Write it to the board');
-  await waitForText(page, '#routine-said', /^written and verified in [\d.]+ s$/);
+  await waitForText(page, '#routine-message', /^written and verified in [\d.]+ s$/);
   await page.clock.runFor(6000);
   await page.evaluate(() => (window.receivedText = ''));
   await findGaitButton(page, 'patrol').click();
@@ -352,7 +352,7 @@ test('a resting routine is stopped when the page is hidden', async () => {
   const page = await openWithBoard('robot', 8000);
   await putRoutine(page, ['walk 1', 'rest 9 s', 'walk 99']);
   await page.locator('#flash-robot').evaluate((button) => button.click());
-  await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-said').textContent()));
+  await runUntil(page, 'the robot is written', async () => /^written and verified/.test(await page.locator('#flash-message').textContent()));
   await page.clock.runFor(6000);
   await findGaitButton(page, 'patrol').click();
   await waitForBoardGait(page, 'patrol');
@@ -366,15 +366,15 @@ test('a resting routine is stopped when the page is hidden', async () => {
 test('the page reports a board that is unplugged while a routine is written, and writes the routine later', async () => {
   const page = await openBoardWithRoutine(['walk 1']);
   await press(page, 'Write it to the board');
-  await waitForText(page, '#routine-said', /^writing/, 20);
+  await waitForText(page, '#routine-message', /^writing/, 20);
   await page.clock.runFor(60);
   await page.evaluate(() => window.unplug());
-  await waitForText(page, '#routine-said', /^not written: .*\. The board now has an incomplete robot: its firmware reports fault=robot and moves no servo\. Write the robot again$/);
+  await waitForText(page, '#routine-message', /^not written: .*\. The board now has an incomplete robot: its firmware reports fault=robot and moves no servo\. Write the robot again$/);
   assert.deepEqual(await readSteps(page), ['walk 1'], 'the routine is still in the page');
   await reconnect(page);
   await runUntil(page, 'the board sends its banner', async () => (await readText(page, '#where')) === 'on a board on USB with this firmware but no robot: write this robot');
   await press(page, 'Write it to the board');
-  await waitForText(page, '#routine-said', /^written and verified/);
+  await waitForText(page, '#routine-message', /^written and verified/);
 });
 
 test('a robot whose format the firmware does not read is reported as missing', async () => {
@@ -407,4 +407,4 @@ test('two pages in one browser each keep their own routine', async () => {
   }
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

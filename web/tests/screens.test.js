@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlank, complaints, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, openBlank, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
 
 useBrowser();
 
@@ -136,9 +136,9 @@ test('a touch screen shows no keys, and the list of robots shows full names', as
     }
     assert.equal((await page.locator('.stop').innerText()).trim(), 'Stop');
     const sparePixels = await page.locator('#robot').evaluate((list) => {
-      const pen = document.createElement('canvas').getContext('2d');
-      pen.font = getComputedStyle(list).font;
-      const textWidth = Math.max(...['robot', 'large', 'paper'].map((name) => pen.measureText(name).width));
+      const context = document.createElement('canvas').getContext('2d');
+      context.font = getComputedStyle(list).font;
+      const textWidth = Math.max(...['robot', 'large', 'paper'].map((name) => context.measureText(name).width));
       const { paddingLeft, paddingRight } = getComputedStyle(list);
       // The arrow of the list is about 18 pixels wide.
       return list.clientWidth - Number.parseFloat(paddingLeft) - Number.parseFloat(paddingRight) - 18 - textWidth;
@@ -217,7 +217,7 @@ test('a script that is not the page\'s own does not run', async () => {
   });
   await blockedMessage;
   assert.equal(await page.evaluate(() => window.foreignScriptRan), undefined);
-  complaints.splice(0, complaints.length, ...complaints.filter((complaint) => !/Content Security Policy/.test(complaint)));
+  browserErrors.splice(0, browserErrors.length, ...browserErrors.filter((browserError) => !/Content Security Policy/.test(browserError)));
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

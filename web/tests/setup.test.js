@@ -8,9 +8,9 @@ import { test } from 'node:test';
 import { promisify } from 'node:util';
 
 import { openWithBoard, openWithDeafBoard, openWithErasedBoard, runUntil, connect, waitForText, sendToBoard } from './board.js';
-import { advance, complaints, openStanding, measureOverflow, openPage, TIMEOUT_MS, readText, unfold, useBrowser, download } from './browser.js';
+import { advance, browserErrors, openStanding, measureOverflow, openPage, TIMEOUT_MS, readText, unfold, useBrowser, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
-import { makeFolder } from './folder.js';
+import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
 
@@ -27,8 +27,7 @@ const goToStep = async (page, name) => {
 };
 const readPulseWidths = (page) => page.evaluate((pins) => pins.map((pin) => window.pulseWidthsUs[pin]), PINS);
 
-/** Advances the clock until the dialog shows this message. */
-const waitForMessage = (page, pattern) => waitForText(page, '#setup-said', pattern);
+const waitForMessage = (page, pattern) => waitForText(page, '#setup-message', pattern);
 /** Advances the clock until the dialog reports that the board has this firmware and this robot. */
 const waitForThisRobot = (page) =>
   runUntil(page, 'the board sends its banner', async () => (await findDialog(page).getByText('has this firmware and this robot, robot.toml.').count()) > 0);
@@ -43,7 +42,6 @@ async function leave(page) {
   await runUntil(page, 'the dialog is closed', async () => !(await findDialog(page).isVisible()));
 }
 
-/** Presses a button and waits for a message. */
 async function pressAndWait(page, name, pattern) {
   await press(page, name);
   await waitForMessage(page, pattern);
@@ -188,7 +186,7 @@ test('the dialog reports an unplugged board at any step, and keeps the step', as
     await goToStep(page, name);
     await page.clock.runFor(400);
     // The cable is pulled during the step's action, if it has one.
-    const mainButtons = findDialog(page).locator('#setup-what button.main');
+    const mainButtons = findDialog(page).locator('#setup-content button.main');
     const mainButton = (await mainButtons.count()) > 0 && !['Board', 'Firmware'].includes(name) ? mainButtons.first() : null;
     if (mainButton) await mainButton.click();
     await page.clock.runFor(60);
@@ -219,8 +217,8 @@ test('an action on a board does not continue in the simulation after the board i
   for (const name of ['Trims', 'Keep', 'Firmware']) {
     await goToStep(page, name);
     await page.clock.runFor(500);
-    await findDialog(page).locator('#setup-what').getByText('The board is no longer connected.').waitFor();
-    assert.deepEqual(await findDialog(page).locator('#setup-what button').allInnerTexts(), ['Connect it again…', 'Try this step on the simulated UNO'], name);
+    await findDialog(page).locator('#setup-content').getByText('The board is no longer connected.').waitFor();
+    assert.deepEqual(await findDialog(page).locator('#setup-content button').allInnerTexts(), ['Connect it again…', 'Try this step on the simulated UNO'], name);
   }
   await press(page, 'Try this step on the simulated UNO');
   await findDialog(page).getByText('to the simulated UNO').waitFor();
@@ -371,8 +369,8 @@ test('the keyboard alone can try every step without a board', async () => {
   await page.keyboard.press('Enter');
   // Keys must not drive the robot, since the user's fingers may be in it.
   await page.keyboard.down('ArrowUp');
-  for (let n = 0; n < 40 && (await readText(page, '#setup-said')) === ''; n++) await advance(page, 250);
-  assert.match(await readText(page, '#setup-said'), /^Every servo now holds its middle position/);
+  for (let n = 0; n < 40 && (await readText(page, '#setup-message')) === ''; n++) await advance(page, 250);
+  assert.match(await readText(page, '#setup-message'), /^Every servo now holds its middle position/);
   assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Turn all servos to their middle', 'the focus stays');
   await advance(page, 500);
   await page.keyboard.up('ArrowUp');
@@ -406,4 +404,4 @@ for (const [name, options] of [
   });
 }
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, measureOverflow, openStanding, unfold, useBrowser, readLength, waitForLength } from './browser.js';
+import { advance, browserErrors, measureOverflow, openStanding, unfold, useBrowser, readLength, waitForLength } from './browser.js';
 
 useBrowser();
 
@@ -17,27 +17,27 @@ async function openSketch(options) {
 
 const findJoint = (page, name) => page.locator(`#sketch circle[data-joint="${name}"]`);
 
-/** Grabs a joint and moves it to the right and ahead in ten steps, without releasing it. */
-async function drag(page, name, [rightMm, aheadMm]) {
-  // Both positions come from one call, because the page replaces its joints with each answer.
+/** Grabs a joint and moves it to the right and forward in ten steps, without releasing it. */
+async function drag(page, name, [rightMm, forwardMm]) {
+  // Both positions come from one call, because the page replaces its joints with each response.
   const [from, to] = await page.evaluate(
-    ({ name, rightMm, aheadMm }) => {
+    ({ name, rightMm, forwardMm }) => {
       const mark = document.querySelector(`#sketch circle[data-joint="${name}"]`);
       const [x, y] = ['cx', 'cy'].map((axis) => Number(mark.getAttribute(axis)));
-      return [new DOMPoint(x, y), new DOMPoint(x + rightMm, y - aheadMm)].map((point) => {
+      return [new DOMPoint(x, y), new DOMPoint(x + rightMm, y - forwardMm)].map((point) => {
         const position = point.matrixTransform(mark.getScreenCTM());
         return [position.x, position.y];
       });
     },
-    { name, rightMm, aheadMm },
+    { name, rightMm, forwardMm },
   );
   await page.mouse.move(...from);
   await page.mouse.down();
   for (let step = 1; step <= 10; step++) await page.mouse.move(from[0] + ((to[0] - from[0]) * step) / 10, from[1] + ((to[1] - from[1]) * step) / 10);
 }
 
-const readMessage = (page) => page.locator('#sketch-said').innerText();
-const waitForMessage = (page, pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector('#sketch-said').textContent), pattern.source);
+const readMessage = (page) => page.locator('#sketch-message').innerText();
+const waitForMessage = (page, pattern) => page.waitForFunction((pattern) => new RegExp(pattern).test(document.querySelector('#sketch-message').textContent), pattern.source);
 
 test('both couplers follow the dragged point of the head', async () => {
   const page = await openSketch();
@@ -105,4 +105,4 @@ test('the drawing has every joint and bar, also on a phone, and a tap changes no
   assert.equal(await measureOverflow(page), 0);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, complaints, openBlank, withTimeout, useBrowser } from './browser.js';
+import { address, browserErrors, openBlank, withTimeout, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -63,4 +63,4 @@ test('on a slow phone Stop stops the opening walk within 0.3 s', async (t) => {
   assert.ok(timeMs <= STOP_LIMIT_MS, `${timeMs} ms`);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

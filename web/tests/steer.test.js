@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { advance, complaints, openPage, useBrowser } from './browser.js';
+import { advance, browserErrors, openPage, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -78,12 +78,12 @@ test('a stick held half way halves the pace, and its release restores the pace',
   const page = await openPredicted();
   await page.evaluate(() => window.lizard.ask('speed 80').then(() => null));
   const waitForPace = async (percent) => page.waitForFunction((text) => document.querySelector('#speed-out').textContent === text, `${percent} %`);
-  const deflectStick = (ahead, pressed = false) => setGamepads(page, { axes: [0, -ahead], buttons: [{ pressed }] });
+  const deflectStick = (forward, pressed = false) => setGamepads(page, { axes: [0, -forward], buttons: [{ pressed }] });
   await waitForPace(80);
   await deflectStick(0.5);
   await waitForGait(page, 'walk');
   await waitForPace(40);
-  // A trembling thumb must not change the pace in each frame.
+  // An unsteady thumb must not change the pace in each frame.
   await deflectStick(0.7);
   await advance(page, 500);
   await waitForPace(40);
@@ -248,4 +248,4 @@ test('arrow keys drive after a click on the pace, the list of robots or the floo
   assert.equal(await page.locator('#doing').textContent(), 'stop');
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

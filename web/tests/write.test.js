@@ -3,15 +3,15 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
 import { openWithBoard, openWithErasedBoard, readFlash, runUntil, reconnect, waitForText } from './board.js';
-import { complaints, openStanding, openPage, readText, unfold, useBrowser } from './browser.js';
+import { browserErrors, openStanding, openPage, readText, unfold, useBrowser } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
-import { makeImage, SECTION_START } from './image.js';
+import { makeImage, SECTION_START } from './flash-image.js';
 
 useBrowser();
 
 const makeSection = async (name) => Buffer.from((await makeImage(name)).subarray(SECTION_START));
 /** Waits until a message is shown below a panel's buttons. */
-const waitForMessage = (page, pattern, selector = '#flash-said', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
+const waitForMessage = (page, pattern, selector = '#flash-message', stepMs = 100) => waitForText(page, selector, pattern, stepMs);
 const writeRobotAlone = (page) => page.locator('#flash-robot').click();
 
 /** Returns the servo pins that had a pulse; the LED's pin does not count. */
@@ -24,7 +24,7 @@ async function unfoldFlashPanel(page) {
 
 /** Waits until a write has begun, and then for some pages of the flash, which take 17 ms each. */
 async function waitUntilPartIsWritten(page) {
-  await waitForMessage(page, /^writing/, '#flash-said', 20);
+  await waitForMessage(page, /^writing/, '#flash-message', 20);
   await page.clock.runFor(60);
 }
 
@@ -41,7 +41,7 @@ test('a robot is written within 2.5 s, and firmware and saved settings stay unch
   assert.ok(savedEeprom.some((byte) => byte !== 0xff), 'settings are saved');
   await writeRobotAlone(page);
   await waitForMessage(page, /^written and verified in [\d.]+ s$/);
-  const seconds = Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-said'))[1]);
+  const seconds = Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-message'))[1]);
   assert.ok(seconds > 0.5 && seconds < 2.5, `${seconds} s`);
   await waitForText(page, '#where', /^on a board on USB, robot paper [0-9a-f]{8}$/);
   await assertFlash(page, SECTION_START, await makeSection('robot'));
@@ -52,11 +52,11 @@ test('a robot is written within 2.5 s, and firmware and saved settings stay unch
 test('a board walks with an edited gait after it was written', async () => {
   const page = await openWithBoard('robot', 8000);
   await unfold(page, '#gait-editor');
-  await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-way').textContent));
+  await page.waitForFunction(() => /mm$/.test(document.querySelector('#gait-distance').textContent));
   await page.locator('#gait-name').fill('stride');
   await page.waitForFunction(() => document.querySelector('#gait-table').textContent.startsWith('[gait.stride]'));
   await page.locator('#gait-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride has a button in Drive\.$/, '#gait-said');
+  await waitForMessage(page, /^written and verified in [\d.]+ s\. The board has restarted; stride has a button in Drive\.$/, '#gait-message');
   await page.clock.runFor(3000);
   assert.equal(await readText(page, '#doing'), 'stand', 'a board does not walk by itself');
   await page.evaluate(() => (window.pulseWidthsUs = {}));
@@ -73,7 +73,7 @@ test('one button writes an edited text to the board', async () => {
   const toml = (await page.locator('#robot-text').inputValue()).replace('name = "paper"', 'name = "mine"').replace('period = 1.25', 'period = 1.5');
   await page.locator('#robot-text').fill(toml);
   await page.locator('#robot-write').click();
-  await waitForMessage(page, /^written and verified in [\d.]+ s$/, '#robot-said');
+  await waitForMessage(page, /^written and verified in [\d.]+ s$/, '#robot-message');
   await waitForText(page, '#where', /^on a board on USB, robot mine [0-9a-f]{8}$/);
 });
 
@@ -81,7 +81,7 @@ test('without a board, Write it to the board asks for a connection', async () =>
   const page = await openStanding();
   await unfold(page, '#robot-editor');
   await page.locator('#robot-write').click();
-  await page.locator('#robot-said', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
+  await page.locator('#robot-message', { hasText: 'No board is connected: press Connect a board…' }).waitFor();
 });
 
 test('a robot whose format the firmware does not read is refused, and the firmware keeps running', async () => {
@@ -127,7 +127,7 @@ test('the page does not disturb a write right after the banner', async () => {
   assert.match(await readText(page, '#where'), /^on a board on USB, robot paper /);
   await page.locator('#flash-write').click();
   await page.clock.runFor(4000);
-  assert.match(await readText(page, '#flash-said'), /^(read|writ|verify)ing/);
+  assert.match(await readText(page, '#flash-message'), /^(read|writ|verify)ing/);
   assert.equal(await page.locator('#problems').innerText(), '');
 });
 
@@ -194,7 +194,7 @@ test('flash pages that already have the right bytes are not written', async () =
     await waitForMessage(page, /^reading/);
     await waitForMessage(page, /^written and verified in [\d.]+ s$/);
     await page.clock.runFor(3000);
-    return Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-said'))[1]);
+    return Number(/in ([\d.]+) s/.exec(await readText(page, '#flash-message'))[1]);
   };
   const unchangedSeconds = await measureWrite();
   await page.evaluate(() => window.attachedBoard.flash.fill(0x12, 0, 0x7e00));
@@ -231,4 +231,4 @@ test('an image that would overwrite a Nano\'s boot loader is written only after 
   assert.equal(dialogMessages.length, 2);
 });
 
-test('the browser reported no error or warning', () => assert.deepEqual(complaints, []));
+test('the browser reported no error or warning', () => assert.deepEqual(browserErrors, []));

@@ -6,9 +6,7 @@
 //! it is the only access to the constant. On any other machine a [`Flash`] is an ordinary reference, so the same code
 //! runs there, even with tables made at run time.
 //!
-//! A read never fails: an index past the end reads the last element, so the program needs no code for a panic. (The
-//! crate avr-progmem also keeps constants in flash, but it needs a nightly compiler on the host, too, and panics if an
-//! index is out of bounds.)
+//! A read never fails: an index past the end reads the last element, so the program needs no code for a panic.
 
 use core::marker::PhantomData;
 #[cfg(target_arch = "avr")]
@@ -116,6 +114,12 @@ impl<'a, T, const N: usize> Flash<'a, [T; N]> {
 }
 
 impl<'a, T> Flash<'a, [T]> {
+    /// A slice without elements.
+    pub const EMPTY: Self = Self {
+        address: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
+        marker: PhantomData,
+    };
+
     /// The number of elements.
     #[inline]
     pub const fn len(self) -> usize {
@@ -128,8 +132,7 @@ impl<'a, T> Flash<'a, [T]> {
         self.len() == 0
     }
 
-    /// The element at `index`, still in flash; past the end, the last one; `None` for an
-    /// empty slice.
+    /// The element at `index`, still in flash; past the end, the last one; `None` if the slice is empty.
     #[inline]
     pub const fn get(self, index: usize) -> Option<Flash<'a, T>> {
         if self.is_empty() {
@@ -144,14 +147,6 @@ impl<'a, T> Flash<'a, [T]> {
         // SAFETY: `index` is less than the length of the slice at `self.address`.
         Some(unsafe { Flash::new(self.address.as_ptr().cast::<T>().add(index)) })
     }
-}
-
-impl<'a, T> Flash<'a, [T]> {
-    /// A slice without elements.
-    pub const EMPTY: Self = Self {
-        address: NonNull::slice_from_raw_parts(NonNull::dangling(), 0),
-        marker: PhantomData,
-    };
 
     /// The `length` elements from index `start` on; `None` if there are fewer.
     #[inline]
@@ -241,7 +236,7 @@ const _: () = assert!(cfg!(target_endian = "little"));
 ///     pub struct Point {
 ///         /// To the right, mm.
 ///         pub x: i16,
-///         /// Ahead, mm.
+///         /// Forward, mm.
 ///         pub y: i16,
 ///     }
 /// }

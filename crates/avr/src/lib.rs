@@ -5,9 +5,9 @@
 //! multiplier. (For the product of two 16-bit factors, the compiler calls a 32-bit library routine.) This crate offers
 //! both features as safe functions, which are plain Rust on any other machine.
 //!
-//! Do not use this crate on an AVR with more than 64 KiB of flash: its addresses have 16 bits. `avr-progmem` also keeps
-//! tables in flash and has a richer interface; it panics if an index is out of bounds, and needs a nightly compiler on
-//! other machines, too.
+//! Do not use this crate on an AVR with more than 64 KiB of flash: its addresses are 16 bits long. `avr-progmem` also
+//! keeps tables in flash and has a richer interface; it panics if an index is out of bounds, and needs a nightly
+//! compiler on other machines, too.
 
 #![no_std]
 #![allow(unsafe_code)] // Reading flash (flash.rs) and multiplying (multiply.rs) need it.

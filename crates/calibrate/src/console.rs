@@ -42,7 +42,7 @@ impl<C: Console> Console for &mut C {
     }
 }
 
-/// The error of a reply that is not `ok`.
+/// The error for a reply that is not `ok`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BadReply {
     /// The robot refused a line.
@@ -55,7 +55,7 @@ pub enum BadReply {
     },
     /// The answer has an unknown format.
     #[error("the answer to `{line}` has an unknown format: `{answer}`")]
-    Unclear {
+    UnknownFormat {
         /// The line that was sent.
         line: String,
         /// The answer that was received.
@@ -63,7 +63,7 @@ pub enum BadReply {
     },
 }
 
-/// The error of a command that the robot did not confirm.
+/// The error for a command that the robot did not confirm.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ConsoleError<E> {
     /// The reply is not `ok`.
@@ -97,7 +97,7 @@ pub async fn send_command<C: Console>(
     }
     if !reply.answer.starts_with("ok ") {
         let answer = reply.answer;
-        return Err(BadReply::Unclear { line, answer }.into());
+        return Err(BadReply::UnknownFormat { line, answer }.into());
     }
     Ok(reply)
 }

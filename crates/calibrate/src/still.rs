@@ -8,7 +8,7 @@ use crate::console::{BadReply, Console, ConsoleError, send_command};
 
 /// Interval between two `status` commands.
 const STATUS_INTERVAL: Duration = Duration::from_millis(50);
-/// Largest number of `status` commands: a wait ends after five seconds, plus the time that the answers take.
+/// Largest number of `status` commands: a wait ends after five seconds plus the time that the answers take.
 const MAX_STATUS_COUNT: u32 = 100;
 
 /// Waits until the robot stands still or the time limit has passed, and returns its pose, degrees.
@@ -21,7 +21,7 @@ pub(crate) async fn wait_until_still<C: Console>(
     // The first frame that reported the current pose, and this pose.
     let mut still_since: Option<(u64, [f64; 4])> = None;
     for _ in 1..MAX_STATUS_COUNT {
-        let (frames, pose) = ask_pose(console).await?;
+        let (frames, pose) = read_pose(console).await?;
         match still_since {
             // After a reset, the frame count starts at 0 again.
             Some((first_frame, first_pose)) if first_pose == pose && frames >= first_frame => {
@@ -36,17 +36,17 @@ pub(crate) async fn wait_until_still<C: Console>(
             .await
             .map_err(ConsoleError::Link)?;
     }
-    Ok(ask_pose(console).await?.1)
+    Ok(read_pose(console).await?.1)
 }
 
-/// Asks for the robot's status; returns the number of frames since the reset, and the pose, degrees.
-async fn ask_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
+/// Reads the number of frames since the reset, and the pose, degrees, from the robot's status.
+async fn read_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), ConsoleError<C::Error>> {
     let reply = send_command(console, "status").await?;
     let status = Status::parse(&reply.answer);
     let state = status.and_then(|status| Some((status.frames, status.pose?)));
     state.ok_or_else(|| {
         let (line, answer) = ("status".to_owned(), reply.answer);
-        BadReply::Unclear { line, answer }.into()
+        BadReply::UnknownFormat { line, answer }.into()
     })
 }
 

@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use lizard_calibrate::{
-    Console, ConsoleError, Guide, Reply, SCALE_TURNS_DEG, SendError, read_settings, send_settings,
+    Console, ConsoleError, Reply, SCALE_TURNS_DEG, SendError, Session, read_settings, send_settings,
 };
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::edit::without_gait;
@@ -62,9 +62,9 @@ fn read_factory_settings() -> Calibration {
     DirectConsole::power_on(PAPER).read_calibration()
 }
 
-/// Starts a guide for a new robot.
-fn begin_guide(robot_toml: &str) -> Guide<DirectConsole> {
-    block_on(Guide::begin(DirectConsole::power_on(robot_toml))).expect("the robot answers")
+/// Starts a session with a new robot.
+fn begin_session(robot_toml: &str) -> Session<DirectConsole> {
+    block_on(Session::begin(DirectConsole::power_on(robot_toml))).expect("the robot answers")
 }
 
 #[test]
@@ -117,12 +117,12 @@ fn a_setting_that_conflicts_with_the_current_settings_is_sent_again_after_the_ot
 
 #[test]
 fn replace_restores_the_old_settings_if_the_robot_refuses_the_new_settings() {
-    let mut guide = begin_guide(PAPER);
-    block_on(guide.change_trim(2, 1.5)).expect("the robot accepts the settings");
+    let mut session = begin_session(PAPER);
+    block_on(session.change_trim(2, 1.5)).expect("the robot accepts the settings");
     let mut calibration = read_factory_settings();
     calibration.servos[0].trim = 4.0;
     calibration.servos[1].limit = [40.0, 43.0];
-    let error = block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
+    let error = block_on(session.replace(&calibration)).expect_err("the travel is too narrow");
     assert!(matches!(error, SendError::Refused(_)), "{error:?}");
     let message = error.to_string();
     assert!(
@@ -132,33 +132,33 @@ fn replace_restores_the_old_settings_if_the_robot_refuses_the_new_settings() {
     let mut expected = read_factory_settings();
     expected.servos[2].trim = 1.5;
     assert!(
-        guide
+        session
             .console()
             .read_calibration()
             .is_equivalent_to(&expected)
     );
-    assert!(guide.calibration().is_equivalent_to(&expected));
+    assert!(session.calibration().is_equivalent_to(&expected));
 }
 
 #[test]
 fn set_scale_restores_the_old_scale_if_the_robot_refuses_the_trim() {
-    let mut guide = begin_guide(PAPER);
-    block_on(guide.change_trim(0, 19.0)).expect("the robot accepts the settings");
+    let mut session = begin_session(PAPER);
+    block_on(session.change_trim(0, 19.0)).expect("the robot accepts the settings");
     // The horn stays on its tooth, so half the scale needs twice the trim, which exceeds the largest trim.
-    let refusal = block_on(guide.set_scale(0, 5.0)).expect_err("the trim is too large");
+    let refusal = block_on(session.set_scale(0, 5.0)).expect_err("the trim is too large");
     let message = refusal.to_string();
     assert!(message.starts_with("the robot refuses `trim 1 38.00`"));
-    let robot_settings = guide.console().read_calibration().servos[0];
+    let robot_settings = session.console().read_calibration().servos[0];
     assert_eq!((robot_settings.scale, robot_settings.trim), (10.0, 19.0));
-    assert_eq!(guide.calibration().servos[0], robot_settings);
+    assert_eq!(session.calibration().servos[0], robot_settings);
 }
 
 #[test]
 fn the_scale_is_measured_by_the_largest_turn_that_the_robot_accepts() {
-    let mut guide = begin_guide(PAPER);
+    let mut session = begin_session(PAPER);
     let commanded_deg =
-        block_on(guide.turn_servo(0, &SCALE_TURNS_DEG)).expect("the robot accepts a turn");
-    let pose = guide.console().0.status_value("pose");
+        block_on(session.turn_servo(0, &SCALE_TURNS_DEG)).expect("the robot accepts a turn");
+    let pose = session.console().0.status_value("pose");
     let a1: f64 = pose
         .split(',')
         .next()
@@ -170,22 +170,22 @@ fn the_scale_is_measured_by_the_largest_turn_that_the_robot_accepts() {
     );
     assert!(commanded_deg.abs() >= 20.0, "a turn of {commanded_deg} deg");
     // A servo that turns 10 % too far needs a scale that is smaller by a factor of 1.1.
-    let scale = block_on(guide.set_scale_from_turn(0, commanded_deg, commanded_deg * 1.1))
+    let scale = block_on(session.set_scale_from_turn(0, commanded_deg, commanded_deg * 1.1))
         .expect("the robot accepts the settings");
     assert_eq!(scale, 9.09);
-    assert_eq!(guide.console().read_calibration().servos[0].scale, 9.09);
+    assert_eq!(session.console().read_calibration().servos[0].scale, 9.09);
 }
 
 #[test]
 fn angles_are_rounded_as_on_the_console_and_the_first_refusal_is_returned() {
-    let mut guide = begin_guide(PAPER);
+    let mut session = begin_session(PAPER);
     let angle =
-        block_on(guide.move_servo(0, 140.004 - 360.0)).expect("the robot accepts the settings");
+        block_on(session.move_servo(0, 140.004 - 360.0)).expect("the robot accepts the pose");
     assert_eq!(angle, 140.0);
-    block_on(guide.set_limit(0, [-300.0, 580.0])).expect("the robot accepts the settings");
-    assert_eq!(guide.calibration().servos[0].limit, [60.0, 220.0]);
+    block_on(session.set_limit(0, [-300.0, 580.0])).expect("the robot accepts the settings");
+    assert_eq!(session.calibration().servos[0].limit, [60.0, 220.0]);
     let refusal =
-        block_on(guide.turn_servo(0, &[170.0, 180.0])).expect_err("the angles are out of reach");
+        block_on(session.turn_servo(0, &[170.0, 180.0])).expect_err("the angles are out of reach");
     assert!(refusal.to_string().contains("`pose 308.59 "), "{refusal}");
 }
 
@@ -211,10 +211,10 @@ fn start_walk_starts_walk_or_the_first_other_gait() {
         let robot_toml = removed_gaits
             .iter()
             .fold(PAPER.to_owned(), |text, name| without_gait(&text, name));
-        let mut guide = begin_guide(&robot_toml);
-        let gait = block_on(guide.start_walk()).expect("the robot accepts the settings");
+        let mut session = begin_session(&robot_toml);
+        let gait = block_on(session.start_walk()).expect("the robot accepts the gait");
         assert_eq!(gait.as_deref(), expected);
-        let gait = guide.console().0.status_value("gait");
+        let gait = session.console().0.status_value("gait");
         assert_eq!(gait, expected.unwrap_or("stand"));
     }
 }
@@ -284,33 +284,33 @@ impl Console for LossyConsole {
     }
 }
 
-/// Starts a guide for the paper's robot, which has received `first_lines`, over a lossy connection.
-fn begin_lossy_guide(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Guide<LossyConsole> {
+/// Starts a session with the paper's robot, which has received `first_lines`, over a lossy connection.
+fn begin_lossy_session(first_lines: &[&str], losses: Vec<(usize, Loss)>) -> Session<LossyConsole> {
     let connection = LossyConsole::connect(first_lines, losses);
-    block_on(Guide::begin(connection)).expect("the robot answers")
+    block_on(Session::begin(connection)).expect("the robot answers")
 }
 
 /// Performs a calibration that changes settings of every kind and saves twice.
-async fn calibrate<C: Console>(guide: &mut Guide<C>) -> Result<(), ConsoleError<C::Error>> {
-    guide.change_trim(3, 2.0).await?;
-    guide.reverse_sign(3).await?;
-    guide.save().await?;
-    guide.set_scale(3, 11.0).await?;
-    guide.set_limit(0, [60.0, 220.0]).await?;
-    guide.save().await?;
-    guide.change_trim(1, -0.5).await
+async fn calibrate<C: Console>(session: &mut Session<C>) -> Result<(), ConsoleError<C::Error>> {
+    session.change_trim(3, 2.0).await?;
+    session.reverse_sign(3).await?;
+    session.save().await?;
+    session.set_scale(3, 11.0).await?;
+    session.set_limit(0, [60.0, 220.0]).await?;
+    session.save().await?;
+    session.change_trim(1, -0.5).await
 }
 
-/// Performs the calibration with one loss; returns the guide, and true if the calibration has failed.
-fn calibrate_with_loss(loss: (usize, Loss)) -> (Guide<LossyConsole>, bool) {
-    let mut guide = begin_lossy_guide(&[], vec![loss]);
-    let result = block_on(calibrate(&mut guide));
-    (guide, result.is_err())
+/// Performs the calibration with one loss; returns the session, and true if the calibration has failed.
+fn calibrate_with_loss(loss: (usize, Loss)) -> (Session<LossyConsole>, bool) {
+    let mut session = begin_lossy_session(&[], vec![loss]);
+    let result = block_on(calibrate(&mut session));
+    (session, result.is_err())
 }
 
 /// Makes the robot load its saved settings or, without any, its factory settings, and returns them.
-fn load_stored_settings(guide: &mut Guide<LossyConsole>) -> Calibration {
-    let robot = &mut guide.console().robot;
+fn load_stored_settings(session: &mut Session<LossyConsole>) -> Calibration {
+    let robot = &mut session.console().robot;
     if !robot.0.send_line("load").starts_with("ok") {
         robot.0.expect_accepted("factory");
     }
@@ -318,38 +318,38 @@ fn load_stored_settings(guide: &mut Guide<LossyConsole>) -> Calibration {
 }
 
 #[test]
-fn after_the_loss_of_any_line_or_answer_guide_and_robot_agree_on_the_settings() {
-    // Line 0 reads the settings; without its answer, the guide cannot start.
+fn session_and_robot_agree_on_the_settings_after_the_loss_of_any_line_or_answer() {
+    // Line 0 reads the settings; without its answer, the session cannot start.
     let mut loss_count = 0;
     for index in 1.. {
         for loss in [Loss::Line, Loss::Answer] {
-            let (mut guide, has_failed) = calibrate_with_loss((index, loss));
+            let (mut session, has_failed) = calibrate_with_loss((index, loss));
             if !has_failed {
                 assert!(loss_count > 30, "{loss_count} losses");
                 return;
             }
             loss_count += 1;
-            let is_query = guide.console().lines[index] == "status";
+            let is_query = session.console().lines[index] == "status";
             let context = format!("line {index}, lost: {loss:?}");
-            assert!(is_query || guide.has_unsaved_changes(), "{context}");
+            assert!(is_query || session.has_unsaved_changes(), "{context}");
             // A cancelled calibration restores the stored settings, so a reset changes nothing.
-            block_on(guide.restore()).expect("the robot answers");
-            let active = guide.console().robot.read_calibration();
-            assert!(active.is_equivalent_to(guide.calibration()), "{context}");
-            assert!(!guide.has_unsaved_changes(), "{context}");
-            let stored = load_stored_settings(&mut guide);
+            block_on(session.restore()).expect("the robot answers");
+            let active = session.console().robot.read_calibration();
+            assert!(active.is_equivalent_to(session.calibration()), "{context}");
+            assert!(!session.has_unsaved_changes(), "{context}");
+            let stored = load_stored_settings(&mut session);
             assert!(
                 stored.is_equivalent_to(&active),
                 "{context}: stored {stored:?}, active {active:?}"
             );
 
-            // A save stores the settings that the guide shows.
-            let (mut guide, _) = calibrate_with_loss((index, loss));
-            block_on(guide.save()).expect("the robot answers");
-            let shown = guide.calibration().clone();
+            // A save stores the settings that the session shows.
+            let (mut session, _) = calibrate_with_loss((index, loss));
+            block_on(session.save()).expect("the robot answers");
+            let shown = session.calibration().clone();
             for actual in [
-                guide.console().robot.read_calibration(),
-                load_stored_settings(&mut guide),
+                session.console().robot.read_calibration(),
+                load_stored_settings(&mut session),
             ] {
                 assert!(shown.is_equivalent_to(&actual), "{context}: {actual:?}");
             }
@@ -360,9 +360,9 @@ fn after_the_loss_of_any_line_or_answer_guide_and_robot_agree_on_the_settings() 
 #[test]
 fn move_servo_does_not_return_to_neutral_between_two_angles() {
     let mut connection = LossyConsole::connect(&[], Vec::new());
-    let mut guide = block_on(Guide::begin(&mut connection)).expect("the robot answers");
+    let mut session = block_on(Session::begin(&mut connection)).expect("the robot answers");
     for degrees in [140.0, 141.0] {
-        block_on(guide.move_servo(0, degrees)).expect("the robot accepts the settings");
+        block_on(session.move_servo(0, degrees)).expect("the robot accepts the pose");
     }
     let stand_lines = connection.lines.iter().filter(|line| *line == "stand");
     assert_eq!(stand_lines.count(), 1);
@@ -372,12 +372,12 @@ fn move_servo_does_not_return_to_neutral_between_two_angles() {
 fn restore_returns_to_settings_that_were_unsaved_at_the_start_even_after_a_lost_save() {
     // If only the answer was lost, the robot has saved the new trim.
     for (loss, trim) in [(Loss::Line, 2.0), (Loss::Answer, 3.0)] {
-        let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], vec![(2, loss)]);
-        block_on(guide.change_trim(0, 1.0)).expect("the robot accepts the settings");
-        block_on(guide.save()).expect_err("the exchange is lost");
+        let mut session = begin_lossy_session(&["trim 1 5", "save", "trim 1 2"], vec![(2, loss)]);
+        block_on(session.change_trim(0, 1.0)).expect("the robot accepts the settings");
+        block_on(session.save()).expect_err("the exchange is lost");
         for _ in 0..2 {
-            block_on(guide.restore()).expect("the robot answers");
-            let active = guide.console().robot.read_calibration();
+            block_on(session.restore()).expect("the robot answers");
+            let active = session.console().robot.read_calibration();
             assert_eq!(active.servos[0].trim, trim);
         }
     }
@@ -385,28 +385,34 @@ fn restore_returns_to_settings_that_were_unsaved_at_the_start_even_after_a_lost_
 
 #[test]
 fn restore_does_not_return_to_settings_saved_before_the_start_after_a_lost_save() {
-    let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], vec![(2, Loss::Line)]);
-    block_on(guide.change_trim(0, 1.0)).expect("the robot accepts the settings");
-    block_on(guide.save()).expect_err("the exchange is lost");
-    block_on(guide.change_trim(0, -1.0)).expect("the robot accepts the settings");
-    block_on(guide.restore()).expect("the robot answers");
-    assert_eq!(guide.console().robot.read_calibration().servos[0].trim, 2.0);
+    let mut session = begin_lossy_session(&["trim 1 5", "save", "trim 1 2"], vec![(2, Loss::Line)]);
+    block_on(session.change_trim(0, 1.0)).expect("the robot accepts the settings");
+    block_on(session.save()).expect_err("the exchange is lost");
+    block_on(session.change_trim(0, -1.0)).expect("the robot accepts the settings");
+    block_on(session.restore()).expect("the robot answers");
+    assert_eq!(
+        session.console().robot.read_calibration().servos[0].trim,
+        2.0
+    );
 }
 
 #[test]
-fn the_guide_reads_the_settings_again_after_a_lost_answer() {
-    let mut guide = begin_lossy_guide(&[], vec![(1, Loss::Answer)]);
-    block_on(guide.set_scale(0, 11.0)).expect_err("the exchange is lost");
+fn the_session_reads_the_settings_again_after_a_lost_answer() {
+    let mut session = begin_lossy_session(&[], vec![(1, Loss::Answer)]);
+    block_on(session.set_scale(0, 11.0)).expect_err("the exchange is lost");
     let scale =
-        block_on(guide.set_scale_from_turn(0, 30.0, 30.0)).expect("the robot accepts the settings");
+        block_on(session.set_scale_from_turn(0, 30.0, 30.0)).expect("the robot accepts the scale");
     assert_eq!(scale, 11.0);
 
-    let mut guide = begin_lossy_guide(&[], vec![(1, Loss::Answer)]);
-    block_on(guide.change_trim(0, 1.5)).expect_err("the exchange is lost");
+    let mut session = begin_lossy_session(&[], vec![(1, Loss::Answer)]);
+    block_on(session.change_trim(0, 1.5)).expect_err("the exchange is lost");
     let mut calibration = read_factory_settings();
     calibration.servos[1].limit = [40.0, 43.0];
-    block_on(guide.replace(&calibration)).expect_err("the travel is too narrow");
-    assert_eq!(guide.console().robot.read_calibration().servos[0].trim, 1.5);
+    block_on(session.replace(&calibration)).expect_err("the travel is too narrow");
+    assert_eq!(
+        session.console().robot.read_calibration().servos[0].trim,
+        1.5
+    );
 }
 
 /// A connection that answers `ok` to each trim of A2, but does not send it to the robot.
@@ -433,13 +439,13 @@ impl Console for TrimIgnoringConsole {
 #[test]
 fn replace_fails_if_the_robot_reports_different_settings() {
     let connection = TrimIgnoringConsole(DirectConsole::power_on(PAPER));
-    let mut guide = block_on(Guide::begin(connection)).expect("the robot answers");
+    let mut session = block_on(Session::begin(connection)).expect("the robot answers");
     let mut calibration = read_factory_settings();
     calibration.servos[0].trim = 1.0;
     calibration.servos[1].trim = 1.0;
-    let error = block_on(guide.replace(&calibration)).expect_err("a trim differs");
+    let error = block_on(session.replace(&calibration)).expect_err("a trim differs");
     assert_eq!(error, SendError::Differs);
-    let active = guide.console().0.read_calibration();
+    let active = session.console().0.read_calibration();
     assert!(
         active.is_equivalent_to(&read_factory_settings()),
         "{active:?}"
@@ -447,33 +453,38 @@ fn replace_fails_if_the_robot_reports_different_settings() {
 }
 
 /// Performs the action with the given number, and ignores a failure, as a person may do.
-async fn perform_action(guide: &mut Guide<LossyConsole>, action: usize, servo: usize, amount: f64) {
+async fn perform_action(
+    session: &mut Session<LossyConsole>,
+    action: usize,
+    servo: usize,
+    amount: f64,
+) {
     let neutral_deg = [138.59, 41.41, 318.59, 221.41][servo];
     let _ = match action {
-        0 => guide.change_trim(servo, amount).await,
-        1 => guide.reverse_sign(servo).await,
-        2 => guide.set_scale(servo, 10.0 + amount / 4.0).await,
+        0 => session.change_trim(servo, amount).await,
+        1 => session.reverse_sign(servo).await,
+        2 => session.set_scale(servo, 10.0 + amount / 4.0).await,
         3 => {
-            let commanded_deg = guide
+            let commanded_deg = session
                 .turn_servo(servo, &SCALE_TURNS_DEG)
                 .await
                 .unwrap_or(30.0);
-            guide
+            session
                 .set_scale_from_turn(servo, commanded_deg, commanded_deg + amount)
                 .await
                 .map(drop)
         }
         4 => {
-            guide
+            session
                 .set_limit(servo, [neutral_deg - 80.0 + amount, neutral_deg + 85.0])
                 .await
         }
-        5 | 6 => guide.save().await,
-        7 => guide.restore().await.map(drop),
+        5 | 6 => session.save().await,
+        7 => session.restore().await.map(drop),
         _ => {
             let mut calibration = read_factory_settings();
             calibration.servos[servo].trim = amount.round();
-            let _ = guide.replace(&calibration).await;
+            let _ = session.replace(&calibration).await;
             Ok(())
         }
     };
@@ -488,18 +499,18 @@ proptest! {
         losses in vec((1..150_usize, prop_oneof![Just(Loss::Line), Just(Loss::Answer)]), 0..12),
         ends_with_save in any::<bool>(),
     ) {
-        let mut guide = begin_lossy_guide(&["trim 1 5", "save", "trim 1 2"], losses);
+        let mut session = begin_lossy_session(&["trim 1 5", "save", "trim 1 2"], losses);
         for (action, servo, amount) in actions {
-            block_on(perform_action(&mut guide, action, servo, amount));
+            block_on(perform_action(&mut session, action, servo, amount));
         }
-        guide.console().losses.clear();
+        session.console().losses.clear();
         match ends_with_save {
-            true => block_on(guide.save()).expect("the robot answers"),
-            false => block_on(guide.restore()).map(drop).expect("the robot answers"),
+            true => block_on(session.save()).expect("the robot answers"),
+            false => block_on(session.restore()).map(drop).expect("the robot answers"),
         }
-        prop_assert!(!guide.has_unsaved_changes());
-        let shown = guide.calibration().clone();
-        let LossyConsole { robot, saved, .. } = guide.console();
+        prop_assert!(!session.has_unsaved_changes());
+        let shown = session.calibration().clone();
+        let LossyConsole { robot, saved, .. } = session.console();
         let active = robot.read_calibration();
         prop_assert!(active.is_equivalent_to(&shown), "{active:?}, shown {shown:?}");
         prop_assert!(active.is_equivalent_to(saved), "{active:?}, saved {saved:?}");

@@ -1,7 +1,7 @@
 //! The drive of a leg by its servo, through a strut: `[leg.drive]` in robot.toml.
 //!
 //! A rigid strut is a bar with two holes: the leg moves exactly with its servo. A strut with a slot and a spring
-//! moves the leg exactly with its servo until the load exceeds the spring's pull; then the strut yields in one
+//! moves the leg exactly with its servo until the load exceeds the spring's tension; then the strut yields in one
 //! direction. With either strut, pins and gears have play, within which nothing drives the leg.
 
 use crate::lag_energy::{LagEnergy, Resistance};
@@ -42,7 +42,7 @@ impl Drive {
         self.kind != DriveKind::Rigid || self.play > 0.0
     }
 
-    /// The slotted strut; `None` for a rigid one.
+    /// The slotted strut; `None` if the strut is rigid.
     pub fn strut(&self) -> Option<&Strut> {
         match &self.kind {
             DriveKind::Strut(strut) => Some(strut),
@@ -60,11 +60,8 @@ impl Drive {
 
     /// Clamps a lag (deg) to the leg's stops with its servo at `sweep` (deg).
     pub(crate) fn clamp_lag(&self, leg: usize, sweep: f64, lag: f64) -> f64 {
-        let stops = self
-            .lag_energy(leg, sweep, 1.0, 1.0)
-            .stops()
-            .map(f64::to_degrees);
-        lag.clamp(stops[0], stops[1])
+        let [min, max] = self.lag_energy(leg, sweep, 1.0, 1.0).stops();
+        lag.clamp(min.to_degrees(), max.to_degrees())
     }
 
     /// Returns the energy of a leg's lag with its servo at `sweep` (deg). The unit of force is `force_unit` newtons;
@@ -76,15 +73,15 @@ impl Drive {
         force_unit: f64,
         max_pad_torque: f64,
     ) -> LagEnergy {
-        let [lower, upper] = match &self.kind {
+        let [lower_resistance, upper_resistance] = match &self.kind {
             DriveKind::Rigid => [Resistance::Stop; 2],
             DriveKind::Strut(strut) => strut.resistances(leg, sweep, force_unit),
         };
         LagEnergy {
             play: self.play.to_radians(),
             stop_torque: 1.25 * max_pad_torque,
-            lower_resistance: lower,
-            upper_resistance: upper,
+            lower_resistance,
+            upper_resistance,
             motor: None,
         }
     }

@@ -6,7 +6,7 @@ use crate::legs::{FRONT_SIGN, LEFT_SIGN};
 /// Standard gravity, m/s^2.
 pub const GRAVITY: f64 = 9.80665;
 
-/// The geometry of the feet.
+/// The positions of the hips, and the length and the mounting of the legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feet {
     /// Distance from the chassis centre forward to the front hips and back to the hind hips, mm.

@@ -1,4 +1,4 @@
-//! The displacement of least frictional work in a small step: a small convex problem.
+//! The displacement with the smallest frictional work in a small step: a small convex problem.
 //!
 //! The cost of a pad is its load times the length of its slide; the friction ratio multiplies backward components. A
 //! leg on a spring may lag behind its servo at the cost of the spring's energy; a rigid leg does not lag. A sum of
@@ -6,13 +6,14 @@
 //! smoothed to `sqrt(length^2 + eps^2)`, and Newton's method minimises the sum. In stages, eps falls from the size of
 //! the slides to a hundred-millionth of it. The result costs at most eps per pad more than the true minimum; the tests
 //! check this bound against the dual problem. If the minimum is not unique (two pads against two), the smoothing
-//! selects the symmetric solution; [`crate::Ground::predict`] detects the displacements that depend on this selection.
+//! selects the symmetric solution; [`crate::GroundContact::predict`] detects the displacements that depend on this
+//! selection.
 
 use crate::lag_energy::LagEnergy;
 use crate::linear::solve_symmetric;
 use crate::motor_step::Expansion;
 
-/// Position or slide of a pad: forward, left.
+/// A position or a slide of a pad: (forward, left), mm.
 pub type Point = [f64; 2];
 
 /// A small displacement of the body: forward and left in mm, counter-clockwise in rad.
@@ -29,8 +30,8 @@ const MAX_NEWTON_STEPS: usize = 40;
 /// Largest net force that counts as balanced, relative to the friction of one pad.
 const MAX_IMBALANCE: f64 = 1e-9;
 
-/// Smallest reduction of the cost by a Newton step that floating point can resolve, relative to a
-/// pad's friction times the size of the slides.
+/// Smallest reduction of the cost by a Newton step that floating point can resolve, relative to a pad's friction times
+/// the size of the slides.
 const MIN_REDUCTION: f64 = 1e-23;
 
 /// Largest distance that counts as zero, mm.
@@ -119,14 +120,14 @@ struct Units {
 }
 
 impl Pads {
-    /// Finds the displacement of body and legs with the least cost.
+    /// Finds the displacement of body and legs with the smallest cost.
     pub fn minimise_cost(&self) -> Displacement {
         self.minimise_cost_from(None)
     }
 
-    /// Finds the displacement of body and legs with the least cost, starting from a guess.
+    /// Finds the displacement of body and legs with the smallest cost, starting from a guess.
     pub fn minimise_cost_from(&self, guess: Option<&Displacement>) -> Displacement {
-        let slide_size = max_abs_component(&self.swings).max(self.max_free_distance());
+        let slide_size = max_abs_component(&self.swings).max(self.max_unswept_distance());
         if slide_size < MAX_ZERO_DISTANCE {
             return self.build_displacement([0.0; 3], [0.0; 4]);
         }
@@ -183,7 +184,7 @@ impl Pads {
                 if predicted_reduction < MIN_REDUCTION * slide_size {
                     break;
                 }
-                let point_at = |fraction: f64| {
+                let unknowns_at = |fraction: f64| {
                     let x: [f64; 3] = std::array::from_fn(|i| x[i] - fraction * dx[i]);
                     let z: [f64; 4] = std::array::from_fn(|i| z[i] - fraction * dz[i]);
                     (x, z)
@@ -195,7 +196,7 @@ impl Pads {
                     fractions
                         .take_while(|&fraction| fraction > 1e-9)
                         .map(|fraction| {
-                            let (x, z) = point_at(fraction);
+                            let (x, z) = unknowns_at(fraction);
                             (fraction, x, z, expand_at(x, z))
                         });
                 let accepted = candidates.find(|(fraction, _, _, candidate)| {
@@ -223,13 +224,13 @@ impl Pads {
         }
     }
 
-    /// Largest distance that a pad may move in a step without servo sweeps, mm: a motor may turn its leg, or a spring
-    /// may pull its leg back. A spring can overcome its pad's friction only if pads or springs have changed.
-    fn max_free_distance(&self) -> f64 {
+    /// Largest distance that a pad may move in a step in which no servo sweeps, mm: a motor may turn its leg, or a
+    /// spring may pull its leg back. A spring can overcome its pad's friction only if pads or springs have changed.
+    fn max_unswept_distance(&self) -> f64 {
         let Some(compliance) = &self.compliance else {
             return 0.0;
         };
-        let compute_free_distance = |i: usize| {
+        let compute_unswept_distance = |i: usize| {
             if let Some(motor) = &compliance.lag_energies[i].motor {
                 let [x, y] = compliance.sweep_derivatives[i];
                 return x.hypot(y) * motor.unloaded_lag().abs();
@@ -241,7 +242,7 @@ impl Pads {
                 false => 0.0,
             }
         };
-        (0..4).map(compute_free_distance).fold(0.0, f64::max)
+        (0..4).map(compute_unswept_distance).fold(0.0, f64::max)
     }
 
     /// Slide of each pad over the floor, mm.
@@ -260,7 +261,7 @@ impl Pads {
         })
     }
 
-    /// Weights of a slide's components, forward and left: a backward slide costs `friction_ratio` times as much.
+    /// Weights of a slide's components, forward and left: a backward component costs `friction_ratio` times as much.
     pub fn slide_weights(&self, slide: Point) -> Point {
         let is_back = slide[0] < 0.0;
         [if is_back { self.friction_ratio } else { 1.0 }, 1.0]
@@ -326,15 +327,14 @@ impl Pads {
             let lag_row = [-bx * lag_unit, -by * lag_unit];
             let Expansion {
                 energy,
-                torque: lag_torque,
-                stiffness: lag_stiffness,
+                torque,
+                stiffness,
             } = compliance.lag_energies[i]
                 .expand(displacement.lags[i], eps / units.slide_size * lag_unit);
             cost += energy;
             let leg = LagDerivatives {
-                slope: first_derivative(lag_row) + lag_torque * lag_unit,
-                curvature: second_derivative(lag_row, lag_row)
-                    + lag_stiffness * lag_unit * lag_unit,
+                slope: first_derivative(lag_row) + torque * lag_unit,
+                curvature: second_derivative(lag_row, lag_row) + stiffness * lag_unit * lag_unit,
                 mixed: derivatives.map(|twist_row| second_derivative(twist_row, lag_row)),
             };
             for (i, mixed) in leg.mixed.into_iter().enumerate() {

@@ -31,7 +31,7 @@ pub(crate) enum Resistance {
     Strut {
         /// Geometry of the strut.
         triangle: StrutTriangle,
-        /// Tension of the spring without a lag.
+        /// Tension of the spring if the leg does not lag.
         preload: f64,
         /// Rate of the spring, per mm.
         rate: f64,
@@ -48,11 +48,11 @@ pub(crate) struct StrutTriangle {
     base: f64,
     /// Length of the leg's arm, mm.
     arm: f64,
-    /// Angle between base and arm without a lag, rad; a lag adds to it.
+    /// Angle between base and arm if the leg does not lag, rad; a lag adds to it.
     angle: f64,
     /// Sine and cosine of the magnitude of `angle`.
     sin_cos: (f64, f64),
-    /// Length of the strut without a lag, mm.
+    /// Length of the strut if the leg does not lag, mm.
     unlagged_length: f64,
 }
 
@@ -91,8 +91,8 @@ impl StrutTriangle {
         }
     }
 
-    /// Lever arm of the strut's pull without a lag: the derivative of the strut's length with respect to the lag,
-    /// mm/rad; negative if a positive lag shortens the strut.
+    /// Lever arm of the strut's pull if the leg does not lag: the derivative of the strut's length with respect to the
+    /// lag, mm/rad; negative if a positive lag shortens the strut.
     pub fn lever_arm(&self) -> f64 {
         let (sin, _) = self.sin_cos;
         (self.base * self.arm * sin / self.unlagged_length).copysign(self.angle)
@@ -277,7 +277,7 @@ impl LagEnergy {
             + self.lower_resistance.spring_torque(-lag - self.play)
     }
 
-    /// The least and the greatest lag that the stops allow, rad.
+    /// The smallest and the largest lag that the stops allow, rad.
     pub fn stops(&self) -> [f64; 2] {
         [
             -self.play - self.lower_resistance.max_excess_lag(),

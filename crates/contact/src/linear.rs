@@ -1,7 +1,7 @@
-//! The solution of three linear equations.
+//! The solution of a system of three linear equations.
 
-/// Solves `a x = b` for a symmetric, positive semidefinite 3x3 matrix by Gaussian elimination with partial
-/// pivoting. If the matrix is singular, a tiny addition to the diagonal selects one of the solutions.
+/// Solves `a x = b` for a symmetric, positive semidefinite 3x3 matrix by Gaussian elimination with partial pivoting. If
+/// the matrix is singular, a tiny addition to the diagonal selects one of the solutions.
 pub(crate) fn solve_symmetric(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3] {
     let max_diagonal = (0..3).fold(0.0f64, |max, i| max.max(a[i][i]));
     for (i, row) in a.iter_mut().enumerate() {
@@ -16,8 +16,8 @@ pub(crate) fn solve_symmetric(mut a: [[f64; 3]; 3], mut b: [f64; 3]) -> [f64; 3]
         for row in column + 1..3 {
             let factor = a[row][column] / a[column][column];
             let pivot_row = a[column];
-            for (cell, pivot_cell) in a[row].iter_mut().zip(pivot_row) {
-                *cell -= factor * pivot_cell;
+            for (entry, pivot_entry) in a[row].iter_mut().zip(pivot_row) {
+                *entry -= factor * pivot_entry;
             }
             b[row] -= factor * b[column];
         }

@@ -60,7 +60,7 @@ pub struct Motors {
 /// Upper bound of the time step, s.
 const MAX_TIME_STEP: f64 = 0.0025;
 /// Phase by which the free vibration of a servo advances in a time step, rad.
-const RADIANS_PER_STEP: f64 = 0.25;
+const PHASE_PER_STEP: f64 = 0.25;
 
 impl Motors {
     /// Computes the time step of the motors' simulation, s. A light rotor with a high gain vibrates fast, and a long
@@ -71,7 +71,7 @@ impl Motors {
         let rotors = motors.filter(|motor| motor.rotor_time_constant > 0.0);
         let max_steps = rotors.map(|motor| {
             let response_time = motor.full_torque_error / motor.no_load_speed;
-            RADIANS_PER_STEP * (response_time * motor.rotor_time_constant).sqrt()
+            PHASE_PER_STEP * (response_time * motor.rotor_time_constant).sqrt()
         });
         max_steps.fold(MAX_TIME_STEP, f64::min)
     }
@@ -96,7 +96,7 @@ mod tests {
     use crate::assert_near;
     use crate::drive::{Drive, DriveKind};
     use crate::feet::{Body, PAPER_FEET};
-    use crate::ground::Ground;
+    use crate::ground_contact::GroundContact;
     use crate::stance::Stance;
     use crate::walker::Walker;
 
@@ -115,9 +115,9 @@ mod tests {
         shaft_distance: 135.0,
     };
 
-    /// A robot of `mass` (g) on a floor. The feet of a light robot hardly load its servos.
-    fn ground_with(mass: f64, friction_coefficient: f64) -> Ground {
-        Ground {
+    /// Creates the contact of a robot of `mass` (g). The feet of a light robot hardly load its servos.
+    fn ground_with(mass: f64, friction_coefficient: f64) -> GroundContact {
+        GroundContact {
             feet: PAPER_FEET,
             body: Body {
                 mass,
@@ -138,7 +138,7 @@ mod tests {
     }
 
     /// Turns all servos from 0 towards `target` (deg) for this number of seconds.
-    fn turn_servos(ground: Ground, motors: &Motors, target: f64, seconds: f64) -> Walker {
+    fn turn_servos(ground: GroundContact, motors: &Motors, target: f64, seconds: f64) -> Walker {
         let mut walker = Walker::new(ground, [0.0; 4]);
         walker.drive([Some(target); 4], seconds, motors);
         walker
@@ -168,13 +168,13 @@ mod tests {
         };
         let mut walker = Walker::new(heavy_ground, [0.0; 4]);
         let targets = [8e3, 8e3, -8e3, -8e3].map(Some);
-        let mut drive_and_measure_angle = || {
+        let mut drive_and_compute_mean_angle = || {
             walker.drive(targets, 0.02, &motors_with(quick_motor, JOINTS));
             walker.servo_sweeps().map(f64::abs).iter().sum::<f64>() / 4.0
         };
         // Rotors and legs accelerate in the first 20 ms, which therefore do not count.
-        let start_angle = drive_and_measure_angle();
-        let mean_rate = (drive_and_measure_angle() - start_angle) / 0.02;
+        let start_angle = drive_and_compute_mean_angle();
+        let mean_rate = (drive_and_compute_mean_angle() - start_angle) / 0.02;
         let pad_torque = heavy_ground.mean_pad_friction() * heavy_ground.feet.reach;
         let expected_rate = SG90.no_load_speed * (1.0 - pad_torque / SG90.stall_torque);
         assert_near(mean_rate / expected_rate, 1.0, 0.1);
@@ -188,7 +188,7 @@ mod tests {
             ice.feet.positions(walker.leg_sweeps())[0][0] - ice.feet.positions([0.0; 4])[0][0];
         assert!(leg_travel_mm > 15.0, "the legs moved {leg_travel_mm} mm");
         let mass_fraction = 4.0 * ice.body.leg_mass() / ice.body.mass;
-        let body_travel_mm = walker.place().travel().forward;
+        let body_travel_mm = walker.body_pose().travel().forward;
         assert_near(body_travel_mm, -mass_fraction * leg_travel_mm, 0.02);
     }
 
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_turning_servo_pulls_its_leg_once_the_play_is_taken_up() {
-        let ground_with_play = Ground {
+        let ground_with_play = GroundContact {
             drive: Drive {
                 kind: DriveKind::Rigid,
                 play: 1.0,

@@ -1,6 +1,6 @@
-//! A servo's motor in a short time step, as a convex energy: a function of the servo's lag at the end of the step. The
-//! energy's slope is the sum of all torques: of the motor, its damping, its rotor's inertia, and friction. The contact
-//! problem of `friction.rs` can therefore treat a servo like a spring.
+//! A servo's motor in a short time step, as a convex energy, which is a function of the servo's lag at the end of the
+//! step. The energy's slope is the sum of the torques of the motor, its damping, its rotor's inertia, and friction. The
+//! contact problem of `friction.rs` can therefore treat a servo like a spring.
 
 use crate::motor::Motor;
 
@@ -87,7 +87,7 @@ impl MotorStep {
         }
     }
 
-    /// Energy at a lag (rad), its slope and its curvature, with the kink of dry friction smoothed over `eps` rad.
+    /// Energy, torque and stiffness at a lag (rad), with the kink of dry friction smoothed over `eps` rad.
     pub fn expand(&self, lag: f64, eps: f64) -> Expansion {
         let error = self.target_lead + lag;
         let excess_error = (error.abs() - self.half_dead_band).max(0.0);
@@ -106,19 +106,19 @@ impl MotorStep {
             ),
         };
         let deviation = lag - self.coasting_lag;
-        let turn_angle = lag - self.standstill_lag;
-        let smoothed_turn = (turn_angle * turn_angle + eps * eps).sqrt();
-        let (direction, curvature) = match smoothed_turn > 0.0 {
+        let angle = lag - self.standstill_lag;
+        let smoothed_angle = (angle * angle + eps * eps).sqrt();
+        let (direction, curvature) = match smoothed_angle > 0.0 {
             true => (
-                turn_angle / smoothed_turn,
-                eps * eps / (smoothed_turn * smoothed_turn * smoothed_turn),
+                angle / smoothed_angle,
+                eps * eps / (smoothed_angle * smoothed_angle * smoothed_angle),
             ),
             false => (0.0, 0.0),
         };
         Expansion {
             energy: energy
                 + self.inertial_stiffness * deviation * deviation / 2.0
-                + self.pin_torque * smoothed_turn
+                + self.pin_torque * smoothed_angle
                 + self.slider_torque * lag,
             torque: torque.copysign(error)
                 + self.inertial_stiffness * deviation
@@ -151,7 +151,7 @@ impl MotorStep {
         );
         let guess = self.unloaded_lag().max(kinks[0]).min(kinks[1]);
         let mut lag = guess.max(low).min(high);
-        let mut longest_step = max_deviation;
+        let mut last_step_length = max_deviation;
         for _ in 0..MAX_ITERATIONS {
             let Expansion {
                 torque, stiffness, ..
@@ -169,14 +169,14 @@ impl MotorStep {
             }
             // Newton's steps shrink unless a kink lies before the solution; then it or bisection gives the next lag.
             let is_between = |lag: &f64| low < *lag && *lag < high;
-            let next = match is_between(&newton_lag) && step_length <= longest_step {
+            let next = match is_between(&newton_lag) && step_length <= last_step_length {
                 true => newton_lag,
                 false => {
                     let kink = kinks.into_iter().find(is_between);
                     kink.unwrap_or(f64::midpoint(low, high))
                 }
             };
-            longest_step = (next - lag).abs();
+            last_step_length = (next - lag).abs();
             lag = next;
         }
         lag

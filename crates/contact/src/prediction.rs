@@ -5,18 +5,18 @@
 //! such differences, so it does not predict the components of a displacement that depend on ties.
 
 use crate::friction::Twist;
-use crate::ground::Ground;
+use crate::ground_contact::GroundContact;
 use crate::travel::{Prediction, Travel};
 use crate::walker::Walker;
 
 /// Relative change of a load or of the friction ratio in the test for ties. No printed pad and no floor is more even.
 const UNEVENNESS: f64 = 0.01;
-/// Largest difference between walks on uneven and on even pads at which a component counts as decided, as a fraction
-/// of the path's length or of the sum of all turns.
+/// Largest difference between walks on uneven and on even pads at which a component counts as determined, as a
+/// fraction of the path's length or of the sum of all turns.
 const RELATIVE_TOLERANCE: f64 = 0.05;
-/// Difference up to which a distance forward or to the left is always decided, mm.
+/// Difference up to which a distance forward or to the left is always determined, mm.
 const MIN_LENGTH_TOLERANCE: f64 = 1.0;
-/// Difference up to which a turn is always decided, rad.
+/// Difference up to which a turn is always determined, rad.
 const MIN_TURN_TOLERANCE: f64 = 0.5 * std::f64::consts::PI / 180.0;
 
 /// A walk on slightly uneven pads, compared with the walk on even pads.
@@ -29,7 +29,7 @@ struct UnevenWalk {
 
 impl UnevenWalk {
     /// Creates six walks: four with a larger load on one pad, and two with a larger or smaller friction ratio.
-    fn create_variants(ground: &Ground, sweeps: [f64; 4]) -> [Self; 6] {
+    fn create_variants(ground: &GroundContact, sweeps: [f64; 4]) -> [Self; 6] {
         let walk_with = |load_factors, ratio_factor| Self {
             walker: Walker::with_unevenness(*ground, sweeps, load_factors, ratio_factor),
             total_differences: [0.0; 3],
@@ -60,15 +60,15 @@ impl UnevenWalk {
     }
 }
 
-impl Ground {
+impl GroundContact {
     /// Predicts the displacement for a series of sweeps (deg, foot forward positive, servo order), as far as it does
     /// not depend on ties.
     ///
     /// Six walkers follow the same sweeps on uneven pads: one percent changes either the load of one pad or the
     /// backward friction of all pads. In a tie the body then follows one pair of feet or the other. A component is
-    /// decided if its difference from the walk on even pads is within a tolerance. For a distance, the tolerance is the
-    /// larger of 1 mm and a twentieth of the path's length; for the turn, the larger of 0.5 deg and a twentieth of the
-    /// sum of all turns.
+    /// determined if its difference from the walk on even pads is within a tolerance. For a distance, the tolerance is
+    /// the larger of 1 mm and a twentieth of the path's length; for the turn, the larger of 0.5 deg and a twentieth of
+    /// the sum of all turns.
     ///
     /// For the distance forward and the turn, the sum of the differences of all steps must also be within the
     /// tolerance. Otherwise ties could cancel: a body that either pair of feet drags to and fro ends at its start, but
@@ -95,18 +95,17 @@ impl Ground {
         }
         let length_tolerance = MIN_LENGTH_TOLERANCE.max(RELATIVE_TOLERANCE * path_length);
         let turn_tolerance = MIN_TURN_TOLERANCE.max(RELATIVE_TOLERANCE * total_turn);
-        let place = even_walker.place();
+        let pose = even_walker.body_pose();
         let deviation = |walk: &UnevenWalk| {
-            let uneven_place = walk.walker.place();
+            let uneven_pose = walk.walker.body_pose();
             [
-                uneven_place.forward - place.forward,
-                uneven_place.left - place.left,
+                (uneven_pose.forward - pose.forward).abs(),
+                (uneven_pose.left - pose.left).abs(),
             ]
-            .map(f64::abs)
         };
         let holds_for_all_walks =
             |condition: &dyn Fn(&UnevenWalk) -> bool| uneven_walks.iter().all(condition);
-        let is_decided = [
+        let is_determined = [
             holds_for_all_walks(&|walk| {
                 walk.total_differences[0] <= length_tolerance
                     && deviation(walk)[0] <= length_tolerance
@@ -114,11 +113,11 @@ impl Ground {
             holds_for_all_walks(&|walk| deviation(walk)[1] <= length_tolerance),
             holds_for_all_walks(&|walk| walk.total_differences[2] <= turn_tolerance),
         ];
-        let travel = place.travel();
+        let travel = pose.travel();
         Prediction {
-            forward: is_decided[0].then_some(travel.forward),
-            left: is_decided[1].then_some(travel.left),
-            turn: is_decided[2].then_some(travel.turn),
+            forward: is_determined[0].then_some(travel.forward),
+            left: is_determined[1].then_some(travel.left),
+            turn: is_determined[2].then_some(travel.turn),
         }
     }
 
@@ -130,7 +129,7 @@ impl Ground {
         for next_sweeps in sweeps {
             walker.move_to(next_sweeps);
         }
-        walker.place().travel()
+        walker.body_pose().travel()
     }
 }
 
@@ -140,11 +139,11 @@ mod tests {
     use crate::assert_near;
     use crate::drive::Drive;
     use crate::feet::{Body, PAPER_FEET};
-    use crate::ground::DEFAULT_FRICTION;
+    use crate::ground_contact::DEFAULT_FRICTION;
     use crate::stance::Stance;
     use std::f64::consts::PI;
 
-    const GROUND: Ground = Ground {
+    const GROUND: GroundContact = GroundContact {
         feet: PAPER_FEET,
         friction_ratio: 1.0,
         body: Body::DEFAULT,
@@ -178,14 +177,14 @@ mod tests {
     const DIAGONAL_STARTS: [f64; 4] = [0.0, 0.5, 0.0, 0.5];
 
     #[test]
-    fn with_three_feet_against_one_the_displacement_is_decided() {
+    fn with_three_feet_against_one_the_displacement_is_determined() {
         let prediction = GROUND.predict(build_cycle(ONE_BY_ONE_STARTS, stroke_wave(0.75)));
         let is_forward = prediction.forward > Some(25.0);
-        assert!(prediction.is_decided() && is_forward, "{prediction:?}");
+        assert!(prediction.is_determined() && is_forward, "{prediction:?}");
     }
 
     #[test]
-    fn if_the_legs_stand_still_or_swing_together_the_displacement_is_decided() {
+    fn if_the_legs_stand_still_or_swing_together_the_displacement_is_determined() {
         const NO_DISPLACEMENT: Prediction = Prediction {
             forward: Some(0.0),
             left: Some(0.0),
@@ -194,13 +193,13 @@ mod tests {
         assert_eq!(GROUND.predict([[0.0; 4]; 10]), NO_DISPLACEMENT);
         assert_eq!(GROUND.predict([]), NO_DISPLACEMENT);
         let prediction = GROUND.predict([[20.0; 4], [-20.0; 4]]);
-        assert!(prediction.is_decided());
-        let forward = prediction.forward.expect("the distance forward is decided");
+        assert!(prediction.is_determined());
+        let forward = prediction.forward.expect("the distance is determined");
         assert_near(forward, 90.0 * 20f64.to_radians().sin(), 1e-3);
     }
 
     #[test]
-    fn with_two_feet_against_two_the_distance_forward_is_undecided() {
+    fn with_two_feet_against_two_the_distance_forward_is_undetermined() {
         for duty in [0.5, 0.75] {
             let prediction = GROUND.predict(build_cycle(DIAGONAL_STARTS, stroke_wave(duty)));
             assert_eq!(prediction.forward, None);
@@ -215,10 +214,10 @@ mod tests {
     }
 
     #[test]
-    fn a_tie_within_the_tolerance_leaves_the_displacement_decided() {
+    fn a_tie_within_the_tolerance_leaves_the_displacement_determined() {
         let shrink_sweeps = |sweeps: [f64; 4]| sweeps.map(|sweep| sweep / 500.0);
         let cycle = build_cycle(DIAGONAL_STARTS, sine_wave).into_iter();
         let prediction = GROUND.predict(cycle.map(shrink_sweeps));
-        assert!(prediction.is_decided(), "{prediction:?}");
+        assert!(prediction.is_determined(), "{prediction:?}");
     }
 }

@@ -20,7 +20,7 @@ pub struct Stance {
     /// Excess length of the front left foot over the other three, mm; negative if it is too short. An excess of the
     /// hind right foot has the same effect, an excess of another foot the opposite effect.
     pub twist: f64,
-    /// Uncertainty of `twist` after levelling, +/- mm. Only predictions for random robots use it.
+    /// Uncertainty of `twist` after levelling, +/- mm. Only predictions for random robots use this value.
     pub twist_error: f64,
 }
 

@@ -25,12 +25,12 @@ pub struct Prediction {
 
 impl Prediction {
     /// True if friction determines all three components.
-    pub fn is_decided(&self) -> bool {
+    pub fn is_determined(&self) -> bool {
         self.forward.is_some() && self.left.is_some() && self.turn.is_some()
     }
 
-    /// Returns the components of `travel` that this prediction decides.
-    pub fn keep_decided(&self, travel: Travel) -> Self {
+    /// Returns the components of `travel` that this prediction determines.
+    pub fn keep_determined(&self, travel: Travel) -> Self {
         Self {
             forward: self.forward.and(Some(travel.forward)),
             left: self.left.and(Some(travel.left)),

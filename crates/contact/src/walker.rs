@@ -1,15 +1,15 @@
 //! The simulation of a robot on its floor, step by step.
 //!
 //! The body's displacement in a step depends on earlier steps, because they leave each leg with a lag behind its servo.
-//! A [`Walker`] therefore keeps the state of a walk: the servos' sweeps, the lags and the place on the floor.
+//! A [`Walker`] therefore keeps the state of a walk: the servos' sweeps, the lags and the pose on the floor.
 
+use crate::body_pose::BodyPose;
 use crate::feet::{Body, Feet};
 use crate::friction::{Compliance, Displacement, Inertia, Pads, Point, Twist};
-use crate::ground::Ground;
+use crate::ground_contact::GroundContact;
 use crate::lag_energy::LagEnergy;
 use crate::motor::Motors;
 use crate::motor_step::{MotorStep, ServoState};
-use crate::place::Place;
 
 /// Largest sweep in one step, deg. A larger sweep is divided into equal steps.
 const MAX_STEP_SWEEP: f64 = 0.5;
@@ -26,10 +26,12 @@ const KINK_WIDTH: f64 = 1e-12;
 /// A robot that walks on a floor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Walker {
-    /// The robot and its floor.
-    ground: Ground,
-    /// Factors of the pads' loads, and the factor of the ratio of backward to forward friction.
-    unevenness: ([f64; 4], f64),
+    /// The contact of the robot with its floor.
+    ground: GroundContact,
+    /// Factors of the pads' loads.
+    load_factors: [f64; 4],
+    /// Factor of the ratio of backward to forward friction.
+    ratio_factor: f64,
     /// Sweeps of the servos, deg.
     servo_sweeps: [f64; 4],
     /// Rates of the servos while motors turn them, deg/s.
@@ -40,8 +42,8 @@ pub struct Walker {
     body_velocity: Twist,
     /// Velocities of the pads over the floor while motors drive them, mm/s.
     pad_velocities: [Point; 4],
-    /// Place of the body on the floor.
-    place: Place,
+    /// Pose of the body on the floor.
+    body_pose: BodyPose,
 }
 
 /// The slides and the loads of the feet in a motion from one pose to the next.
@@ -71,47 +73,48 @@ impl Slip {
 
 impl Walker {
     /// Creates a walker without lags, with its servos at these sweeps (deg, foot forward positive, servo order).
-    pub fn new(ground: Ground, sweeps: [f64; 4]) -> Self {
+    pub fn new(ground: GroundContact, sweeps: [f64; 4]) -> Self {
         Self::with_unevenness(ground, sweeps, [1.0; 4], 1.0)
     }
 
     /// Creates a walker without lags, with its servos at these sweeps (deg), and with factors of the pads' loads and of
     /// the ratio of backward to forward friction.
     pub fn with_unevenness(
-        ground: Ground,
+        ground: GroundContact,
         sweeps: [f64; 4],
         load_factors: [f64; 4],
         ratio_factor: f64,
     ) -> Self {
         Self {
             ground,
-            unevenness: (load_factors, ratio_factor),
+            load_factors,
+            ratio_factor,
             servo_sweeps: sweeps,
             servo_rates: [0.0; 4],
             body_velocity: [0.0; 3],
             pad_velocities: [[0.0; 2]; 4],
             lags: [0.0; 4],
-            place: Place::START,
+            body_pose: BodyPose::START,
         }
     }
 
-    /// Place of the body on the floor.
-    pub fn place(&self) -> Place {
-        self.place
+    /// Pose of the body on the floor.
+    pub fn body_pose(&self) -> BodyPose {
+        self.body_pose
     }
 
-    /// Moves the robot to another place on the floor.
-    pub fn set_place(&mut self, place: Place) {
-        self.place = place;
+    /// Moves the robot to another pose on the floor.
+    pub fn set_body_pose(&mut self, body_pose: BodyPose) {
+        self.body_pose = body_pose;
     }
 
-    /// The robot and its floor.
-    pub fn ground(&self) -> &Ground {
+    /// The contact of the robot with its floor.
+    pub fn ground(&self) -> &GroundContact {
         &self.ground
     }
 
     /// Changes the robot or its floor. A leg that lags more than its new drive allows moves to the stop.
-    pub fn set_ground(&mut self, ground: Ground) {
+    pub fn set_ground(&mut self, ground: GroundContact) {
         self.ground = ground;
         let (drive, servo_sweeps) = (&self.ground.drive, self.servo_sweeps);
         self.lags = std::array::from_fn(|i| drive.clamp_lag(i, servo_sweeps[i], self.lags[i]));
@@ -132,8 +135,8 @@ impl Walker {
         self.servo_sweeps
     }
 
-    /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. The friction of its gears
-    /// holds a servo without a target.
+    /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. A servo without a target is
+    /// held by the friction of its gears.
     pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
         let mut slip = Slip::NONE;
         let step_count = (seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE)
@@ -141,7 +144,7 @@ impl Walker {
             .max(1.0);
         for _ in 0..step_count as usize {
             let (pads, displacement) = self.advance_step(targets, seconds / step_count, motors);
-            self.place = self.place.moved_by_twist(displacement.twist);
+            self.body_pose = self.body_pose.moved_by_twist(displacement.twist);
             slip.add(&pads, &displacement);
         }
         slip
@@ -247,15 +250,15 @@ impl Walker {
         let start_sweeps = self.servo_sweeps;
         (self.servo_rates, self.body_velocity) = ([0.0; 4], [0.0; 3]);
         self.pad_velocities = [[0.0; 2]; 4];
-        let turns = (0..4).map(|i| (sweeps[i] - start_sweeps[i]).abs());
-        let max_turn = turns.fold(0.0, f64::max);
-        let step_count = (max_turn / MAX_STEP_SWEEP).ceil().max(1.0) as usize;
+        let changes = (0..4).map(|i| (sweeps[i] - start_sweeps[i]).abs());
+        let max_change = changes.fold(0.0, f64::max);
+        let step_count = (max_change / MAX_STEP_SWEEP).ceil().max(1.0) as usize;
         for step in 1..=step_count {
             let fraction = step as f64 / step_count as f64;
             let next_sweeps =
                 std::array::from_fn(|i| start_sweeps[i] + fraction * (sweeps[i] - start_sweeps[i]));
             let (pads, displacement) = self.find_displacement(next_sweeps);
-            self.place = self.place.moved_by_twist(displacement.twist);
+            self.body_pose = self.body_pose.moved_by_twist(displacement.twist);
             self.servo_sweeps = next_sweeps;
             self.lags = displacement.lags.map(f64::to_degrees);
             visit(&pads, &displacement);
@@ -287,7 +290,7 @@ impl Walker {
         start_points: [Point; 4],
         servo_sweeps: [f64; 4],
         lag_estimates: [f64; 4],
-        motors: [Option<MotorStep>; 4],
+        motor_steps: [Option<MotorStep>; 4],
     ) -> Pads {
         let feet = &self.ground.feet;
         let end_sweeps: [f64; 4] =
@@ -297,8 +300,7 @@ impl Walker {
         // With the positions in the middle of the step, the reverse step is its exact inverse.
         let positions = build_points(&|i, j| (start_points[i][j] + end_points[i][j]) / 2.0);
         let previous_lags = self.lags.map(f64::to_radians);
-        let (load_factors, ratio_factor) = self.unevenness;
-        let friction_ratio = self.ground.friction_ratio * ratio_factor;
+        let friction_ratio = self.ground.friction_ratio * self.ratio_factor;
         let loads = self.ground.loads(positions);
         let drive = &self.ground.drive;
         // No pad carries more than the whole robot.
@@ -311,14 +313,14 @@ impl Walker {
                     + (lag_estimates[i] - previous_lags[i]) * derivatives[i][j]
             }),
             friction_ratio,
-            loads: std::array::from_fn(|i| loads[i] * load_factors[i]),
+            loads: std::array::from_fn(|i| loads[i] * self.load_factors[i]),
             inertia: None,
-            compliance: (drive.can_lag() || motors.iter().any(Option::is_some)).then(|| {
+            compliance: (drive.can_lag() || motor_steps.iter().any(Option::is_some)).then(|| {
                 Compliance {
                     sweep_derivatives: derivatives,
                     previous_lags,
                     lag_energies: std::array::from_fn(|i| LagEnergy {
-                        motor: motors[i],
+                        motor: motor_steps[i],
                         ..drive.lag_energy(i, servo_sweeps[i], force_unit, max_pad_torque)
                     }),
                 }

@@ -10,7 +10,7 @@
 //! ```text
 //!         Console                     Controller                             Board
 //! bytes -> Line -> Command -> Order -> Motion (Gait, PointToPointMove) -> guard -> Pulses -> timer
-//! lines <- print <- Answer <- Refusal <- Safety (supervisor's table) <- Health
+//! lines <- print <- AnswerPart <- Refusal <- Safety (supervisor's table) <- Health
 //! ```
 //!
 //! [`step::Main`], the main loop of a board, connects a [`console::Console`] with a [`control::Controller`]. Below it
@@ -30,12 +30,12 @@
 //!
 //! ```
 //! use lizard_core::numbers::calibration::Calibration;
-//! use lizard_core::console::line::{LineEnd, Line};
+//! use lizard_core::console::line::{Line, LineKind};
 //! use lizard_core::numbers::units::{Angle, CYCLES_PER_US, PulseWidth, Sweep};
 //!
 //! let mut line = Line::new();
-//! let line_end = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
-//! assert_eq!((line_end, line.text()), (Some(LineEnd::Line), &b"pose 120"[..]));
+//! let line_kind = b"Pose 120\r".iter().find_map(|byte| line.push(*byte));
+//! assert_eq!((line_kind, line.text()), (Some(LineKind::Valid), &b"pose 120"[..]));
 //!
 //! // A servo that is at 90 degrees with a pulse of 1500 us and turns 90 degrees either way, at 10 us per degree:
 //! // 57 600 cycles for a turn of 65 536 steps, or 0.879 cycles per step.
@@ -54,7 +54,7 @@
 //!
 //! 1. **Safe.** Every frame passes the guard, no two servos wake at the same time, and after a fault the robot stands
 //!    still and reports the reason.
-//! 2. **Exact.** A pulse is correct to the cycle, and a frame on the host equals the chip's frame to the bit.
+//! 2. **Exact.** A pulse is correct to the cycle, and a frame on the host equals the chip's frame bit for bit.
 //! 3. **Plain.** Each concept is a type, each choice is an enum, and each refusal has a message.
 //! 4. **Small.** Flash and RAM have the lowest priority: a type that costs a few bytes is kept while the program fits.
 //!

@@ -6,7 +6,7 @@
 //! confuses the numbers of two parts.
 
 pub mod bounds;
-mod end;
+mod five_bar;
 mod measurements;
 
 use core::mem::offset_of;
@@ -33,10 +33,11 @@ use crate::numbers::slider::{self, Slider};
 use crate::numbers::supplies::{Supplies, Thresholds};
 use crate::numbers::units::{Angle, Scale, Sine, Sweep};
 
-pub use end::{SampleCouplers, SampleFiveBar, steps_per_mm};
+pub(crate) use crate::guard::bounds::steps_per_mm;
+pub use five_bar::{SampleCouplers, SampleFiveBar};
 pub use measurements::Measurements;
 
-use end::to_steps;
+use five_bar::to_steps;
 
 /// The number of steps of an [`Angle`] in a degree.
 pub const STEPS_PER_DEGREE: f64 = 65536.0 / 360.0;
@@ -222,9 +223,9 @@ impl Sample {
         })
     }
 
-    /// Adds a routine that executes `steps` `rounds` times, or endlessly if that is 0. Each step consists of its kind,
-    /// the name of a gait or an input, and a count.
-    pub fn with_routine(self, name: &str, rounds: u16, steps: &[(u8, &str, u16)]) -> Self {
+    /// Adds a routine that executes `steps` `round_count` times, or endlessly if that is 0. Each step consists of its
+    /// kind, the name of a gait or an input, and a count.
+    pub fn with_routine(self, name: &str, round_count: u16, steps: &[(u8, &str, u16)]) -> Self {
         let steps: Vec<Step> = steps
             .iter()
             .map(|(kind, gait, count)| Step {
@@ -238,11 +239,11 @@ impl Sample {
             })
             .collect();
         self.with_changes(|content| {
-            let (first, count) = (content.steps.len() as u16, steps.len() as u16);
+            let (first_step, step_count) = (content.steps.len() as u16, steps.len() as u16);
             content.gaits.push(Gait {
                 name_start: content.names.len() as u16,
                 name_length: name.len() as u16,
-                ..Gait::routine(first, count, rounds)
+                ..Gait::routine(first_step, step_count, round_count)
             });
             content.steps.extend(steps);
             content.names.extend(name.bytes());
@@ -251,7 +252,7 @@ impl Sample {
 
     /// Computes the chassis angles of a pose, deg.
     pub fn degrees(&self, pose: &Pose) -> [f64; 4] {
-        pose.angles(&self.neutral_angles()).map(degrees)
+        pose.angles(&self.neutral_angles()).map(to_degrees)
     }
 
     /// Solves a pose in floating point; returns `None` if a linkage cannot be assembled in this pose.
@@ -284,21 +285,21 @@ fn leak_robot(content: &Content) -> Robot<'static> {
 }
 
 /// Converts an angle of the core to degrees, 0..360.
-pub fn degrees(angle: Angle) -> f64 {
+pub fn to_degrees(angle: Angle) -> f64 {
     f64::from(angle.0) / STEPS_PER_DEGREE
 }
 
 /// Converts a sine of the core to a floating-point number.
-pub fn sine(sine: Sine) -> f64 {
+pub fn to_f64(sine: Sine) -> f64 {
     f64::from(sine.0) / 32768.0
 }
 
 /// Converts a slider to the finest steps that its lengths allow. Rounds the stroke, given in mm, inwards.
-pub fn slider_in_steps(side: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
-    let total = side.base + side.front_arm + side.rear_arm + side.front_offset.abs();
-    let arms = side.front_arm + side.rear_arm + side.front_offset.abs();
+pub fn slider_in_steps(exact: &kinematics::Slider, stroke_min: f64, stroke_max: f64) -> Slider {
+    let total = exact.base + exact.front_arm + exact.rear_arm + exact.front_offset.abs();
+    let arms = exact.front_arm + exact.rear_arm + exact.front_offset.abs();
     let is_fine_enough = |scale: &Scale| {
-        total.max(side.nominal_length + stroke_max) * steps_per_mm(*scale)
+        total.max(exact.nominal_length + stroke_max) * steps_per_mm(*scale)
             < slider::MAX_LENGTH_STEPS
             && arms * steps_per_mm(*scale) < slider::MAX_ARM_STEPS
     };
@@ -310,13 +311,13 @@ pub fn slider_in_steps(side: &kinematics::Slider, stroke_min: f64, stroke_max: f
     let in_steps = |mm: f64| to_steps(mm, scale);
     Slider {
         scale,
-        offset: in_steps(side.front_offset) as i16,
-        base: in_steps(side.base) as u16,
-        front_arm: in_steps(side.front_arm) as i16,
-        rear_arm: in_steps(side.rear_arm) as i16,
-        nominal_length: in_steps(side.nominal_length) as u16,
-        stroke_min: ((side.nominal_length + stroke_min) * steps_per_mm(scale)).ceil() as u16,
-        stroke_max: ((side.nominal_length + stroke_max) * steps_per_mm(scale)).floor() as u16,
+        offset: in_steps(exact.front_offset) as i16,
+        base: in_steps(exact.base) as u16,
+        front_arm: in_steps(exact.front_arm) as i16,
+        rear_arm: in_steps(exact.rear_arm) as i16,
+        nominal_length: in_steps(exact.nominal_length) as u16,
+        stroke_min: ((exact.nominal_length + stroke_min) * steps_per_mm(scale)).ceil() as u16,
+        stroke_max: ((exact.nominal_length + stroke_max) * steps_per_mm(scale)).floor() as u16,
     }
 }
 

@@ -39,7 +39,7 @@ pub trait Board {
 
     /// Connects the servos A1 to A4, and the measured rail if any, to the pins with these Arduino numbers; 14 to 19 are
     /// A0 to A5. Called once, before the first pulses.
-    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>);
+    fn connect(&mut self, servo_pins: [u8; 4], rail_pin: Option<u8>);
 
     /// The number of ticks since the program's start, modulo 256; the interval is 20 ms.
     fn ticks(&self) -> u8;
@@ -105,7 +105,7 @@ pub struct Main {
 
 /// The result of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum StepResult {
     /// The step did a task; there may be more tasks.
     Worked,
     /// There is no task until [`Board::ticks`] differs from this number or a byte is received.
@@ -119,7 +119,7 @@ impl Default for Main {
 }
 
 impl Main {
-    /// Creates a main loop without a robot; [`Main::begin`] must follow.
+    /// Creates a main loop that has no robot; [`Main::begin`] must follow.
     ///
     /// All bits of the main loop are zero, so that a firmware's `Main` requires no initial values in flash; the linker
     /// script rejects initial values.
@@ -161,14 +161,14 @@ impl Main {
 
     /// Does the most urgent task.
     #[inline(always)]
-    pub fn step<B: Board>(&mut self, board: &mut B) -> Step {
+    pub fn step<B: Board>(&mut self, board: &mut B) -> StepResult {
         let ticks = board.ticks();
         if ticks != self.last_tick {
             self.last_tick = ticks;
             if board.is_frame_taken() {
                 board.feed_watchdog();
             } else if !self.control.motion().is_resting() {
-                return Step::Worked;
+                return StepResult::Worked;
             }
             let health = Health {
                 supply: board.read_supply(),
@@ -187,13 +187,13 @@ impl Main {
             }
         } else if self.console.has_output(&self.control) {
             if board.room() < MAX_OUTPUT_LINE_BYTES {
-                return Step::Idle(self.last_tick);
+                return StepResult::Idle(self.last_tick);
             }
             let counters = board.counters();
             let out = board.writer();
             self.console.write_line(&mut self.control, out, counters);
-        } else if self.control.waits_for_supply() {
-            return Step::Idle(self.last_tick);
+        } else if self.control.is_waiting_for_supply() {
+            return StepResult::Idle(self.last_tick);
         } else if self.control.is_memory_in_use() {
             if let Some(outcome) = self.control.advance_memory(board.memory()) {
                 self.console.finish_order(outcome);
@@ -206,9 +206,9 @@ impl Main {
                 self.store_servo_state(board);
             }
         } else {
-            return Step::Idle(self.last_tick);
+            return StepResult::Idle(self.last_tick);
         }
-        Step::Worked
+        StepResult::Worked
     }
 
     fn store_servo_state<B: Board>(&self, board: &mut B) {

@@ -18,7 +18,7 @@
 
 mod converter;
 mod eeprom;
-mod ram;
+mod retained_ram;
 mod running_robot;
 mod transmitter;
 
@@ -27,6 +27,7 @@ use std::collections::VecDeque;
 use crate::console::answer::Counters;
 use crate::control::supply::Reading;
 use crate::memory::restart::{Cause, Restart, ServoState};
+use crate::memory::retained_ram::{mark_hung, store_rate, store_servo_state};
 use crate::numbers::pose::Pulses;
 use crate::numbers::rate::BaudRate;
 use crate::numbers::units::{self, CYCLES_PER_US, PulseWidth};
@@ -34,7 +35,7 @@ use crate::step::Board;
 
 pub use converter::{Converter, compute_reading};
 pub use eeprom::Eeprom;
-pub use ram::Ram;
+pub use retained_ram::RetainedRam;
 pub use running_robot::{RunningRobot, is_answer};
 pub use transmitter::Transmitter;
 
@@ -87,7 +88,7 @@ pub struct VirtualBoard {
     /// The analogue-to-digital converter that measures the supplies.
     pub converter: Converter,
     /// The RAM that survives a reset.
-    pub ram: Ram,
+    pub ram: RetainedRam,
     /// True if a boot loader hides the cause of a reset from the program.
     pub has_boot_loader: bool,
     /// The last restart, as reported to the main loop.
@@ -128,7 +129,7 @@ impl VirtualBoard {
             transmitter: Transmitter::default(),
             memory,
             converter: Converter::default(),
-            ram: Ram::default(),
+            ram: RetainedRam::default(),
             has_boot_loader: false,
             last_restart: Restart::NONE,
             rate: BaudRate::Fastest,
@@ -142,8 +143,7 @@ impl VirtualBoard {
     #[must_use]
     pub fn after_restart(self, restart: Restart) -> Self {
         if let Some(servo_state) = &restart.servo_state_before {
-            self.ram
-                .store_servo_state(servo_state, restart.suspected_brown_outs);
+            store_servo_state(&self.ram, servo_state, restart.suspected_brown_outs);
         }
         let rate = restart.rate;
         Self {
@@ -166,7 +166,7 @@ impl VirtualBoard {
             self.ms_since_fed = self.ms_since_fed.saturating_add(1);
             if self.ms_since_fed == WATCHDOG_MS {
                 self.are_pulses_ended = true;
-                self.ram.mark_hung();
+                mark_hung(&self.ram);
             }
             if self.ms_since_fed >= 2 * WATCHDOG_MS {
                 return true;
@@ -235,14 +235,14 @@ impl VirtualBoard {
             ..Self::new(memory)
         };
         if is_power_on {
-            self.ram = Ram::default();
+            self.ram = RetainedRam::default();
             self.last_restart = Restart::NONE;
         }
         self.rate = self.last_restart.rate;
     }
 
     /// Switches the power off and on. A byte that is being written to the memory gets the value `torn_byte`, because it
-    /// may have any value after a power cut; for `None`, the write is completed.
+    /// may have any value after a power cut; with `None`, the write is completed.
     pub fn lose_power(&mut self, torn_byte: Option<u8>) {
         if let Some(byte) = torn_byte {
             self.memory.cut_power(byte);
@@ -267,8 +267,8 @@ impl VirtualBoard {
     }
 
     /// Counts this many bytes as lost.
-    pub const fn count_lost_bytes(&mut self, bytes: u16) {
-        self.lost_bytes = self.lost_bytes.saturating_add(bytes);
+    pub const fn count_lost_bytes(&mut self, byte_count: u16) {
+        self.lost_bytes = self.lost_bytes.saturating_add(byte_count);
     }
 
     /// The last frame that the main loop submitted.
@@ -314,8 +314,8 @@ impl Board for VirtualBoard {
     const WRITER_CAPACITY: u8 = u8::MAX;
     const CYCLES_PER_US: u16 = CYCLES_PER_US;
 
-    fn connect(&mut self, servos: [u8; 4], rail: Option<u8>) {
-        self.connected_pins = Some((servos, rail));
+    fn connect(&mut self, servo_pins: [u8; 4], rail_pin: Option<u8>) {
+        self.connected_pins = Some((servo_pins, rail_pin));
     }
 
     fn ticks(&self) -> u8 {
@@ -336,8 +336,7 @@ impl Board for VirtualBoard {
     }
 
     fn store_servo_state(&mut self, servo_state: &ServoState, suspected_brown_outs: u8) {
-        self.ram
-            .store_servo_state(servo_state, suspected_brown_outs);
+        store_servo_state(&self.ram, servo_state, suspected_brown_outs);
     }
 
     fn last_restart(&self) -> &Restart {
@@ -379,7 +378,7 @@ impl Board for VirtualBoard {
 
     fn set_rate(&mut self, rate: BaudRate) {
         self.rate = rate;
-        self.ram.store_rate(rate);
+        store_rate(&self.ram, rate);
     }
 
     fn counters(&self) -> Counters {

@@ -13,8 +13,8 @@ mod shared;
 #[cfg(feature = "simulator")]
 mod simulate;
 
+pub use shared::escape::readable_lines;
 pub use shared::failure::Failure;
-pub use shared::plain::readable_lines;
 pub use shared::pose_args::PoseArgs;
 pub use shared::robot_file::RobotFile;
 

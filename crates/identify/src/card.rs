@@ -1,17 +1,17 @@
-//! The mounting error of the tag card on the robot's deck.
+//! The pose of the tag card on the robot's deck.
 //!
 //! With a rotated card, part of the forward movement looks like drift. A card away from the robot's centre moves on an
 //! arc when the robot turns. Both effects would look like an error of the centre of mass or of a foot.
 
-use lizard_robot::{Place, Travel};
+use lizard_robot::{BodyPose, Travel};
 
 /// The card's position and direction on the robot, relative to the chassis centre and the forward direction.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Card {
+pub struct CardPose {
     /// Rotation from the robot's forward direction, deg, counter-clockwise.
     pub turn: f64,
-    /// Distance of the card's centre ahead of the chassis centre, mm.
-    pub ahead: f64,
+    /// Distance of the card's centre in front of the chassis centre, mm.
+    pub forward: f64,
     /// Distance of the card's centre to the left of the chassis centre, mm.
     pub left: f64,
 }
@@ -19,33 +19,37 @@ pub struct Card {
 /// Number of card parameters.
 pub(crate) const PARAMETER_COUNT: usize = 3;
 
-impl Card {
-    /// Standard deviations of the mounting errors of hand-glued cards: turn (deg), ahead (mm) and left (mm).
+impl CardPose {
+    /// Standard deviations of the mounting errors of hand-glued cards: turn (deg), forward (mm) and left (mm).
     pub(crate) const PRIOR_ERRORS: [f64; PARAMETER_COUNT] = [2.0, 2.0, 2.0];
 
     /// Converts the robot's movement to the card's movement, in the card's frame at the start.
     pub(crate) fn convert_travel(&self, robot_travel: Travel) -> Travel {
-        let to_card_place = |body: Place| {
-            let [forward, left] = body.to_floor([self.ahead, self.left]);
+        let to_card_pose = |body: BodyPose| {
+            let [forward, left] = body.to_floor([self.forward, self.left]);
             let heading = body.heading + self.turn.to_radians();
-            Place {
+            BodyPose {
                 forward,
                 left,
                 heading,
             }
         };
-        let end = Place {
+        let end = BodyPose {
             forward: robot_travel.forward,
             left: robot_travel.left,
             heading: robot_travel.turn.to_radians(),
         };
-        to_card_place(end).travel_from(to_card_place(Place::START))
+        to_card_pose(end).travel_from(to_card_pose(BodyPose::START))
     }
 }
 
-impl From<[f64; PARAMETER_COUNT]> for Card {
-    fn from([turn, ahead, left]: [f64; PARAMETER_COUNT]) -> Self {
-        Self { turn, ahead, left }
+impl From<[f64; PARAMETER_COUNT]> for CardPose {
+    fn from([turn, forward, left]: [f64; PARAMETER_COUNT]) -> Self {
+        Self {
+            turn,
+            forward,
+            left,
+        }
     }
 }
 
@@ -59,7 +63,7 @@ mod tests {
         expected_travel: [f64; 3],
     ) {
         let [forward, left, turn] = robot_travel;
-        let travel = Card::from(card).convert_travel(Travel {
+        let travel = CardPose::from(card).convert_travel(Travel {
             forward,
             left,
             turn,
@@ -89,8 +93,8 @@ mod tests {
     }
 
     #[test]
-    fn a_card_ahead_of_the_chassis_centre_moves_around_it() {
-        // A quarter turn about the chassis centre leads from 10 mm ahead to 10 mm to the left.
+    fn a_card_in_front_of_the_chassis_centre_moves_around_it() {
+        // A quarter turn about the chassis centre leads from 10 mm in front of it to 10 mm to its left.
         assert_card_travel([0.0, 10.0, 0.0], [0.0, 0.0, 90.0], [-10.0, 10.0, 90.0]);
     }
 }

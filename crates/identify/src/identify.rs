@@ -17,7 +17,7 @@ use crate::problem::{Problem, Solution, UNKNOWN_COUNT, Values, split_unknowns};
 
 /// Indices in [`KEYS`] of the keys with the strongest nonlinearity near the file's value.
 const NONLINEAR_KEYS: [usize; 3] = [PLAY_INDEX, TWIST_INDEX, FRICTION_RATIO_INDEX];
-/// Smallest distance from the file's value, in standard errors, at which a key changes.
+/// Smallest distance from the file's value at which a key changes, standard errors.
 const MIN_DISTANCE_ERRORS: f64 = 2.0;
 /// Lower bound for the rise of the sum of squares when a key is shifted by [`MIN_DISTANCE_ERRORS`] standard errors. A
 /// smaller rise may be due to the model's roughness. The bound limits the enlargement of an error to a factor of four.
@@ -92,7 +92,7 @@ pub(crate) fn solve(
     if problem.value_count() == 0 {
         return Err(IdentifyError::NothingDetermined);
     }
-    let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
+    let card_unknowns: Vec<usize> = (KEY_COUNT..UNKNOWN_COUNT).collect();
     let Fit {
         solution: full_fit,
         degrees_of_freedom,
@@ -106,7 +106,7 @@ pub(crate) fn solve(
     };
     let errors = compute_standard_errors(&problem, &full_fit).map(|error| error_factor * error);
     let (last_fit, verdicts) = choose_keys(&problem, &full_fit, &errors)?;
-    let card_only_solution = problem.fit(&all_unknowns[KEY_COUNT..], &problem.start_unknowns());
+    let card_only_solution = problem.fit(&card_unknowns, &problem.start_unknowns());
     let card_only_fit = card_only_solution.ok_or(IdentifyError::NoFit)?;
     let residuals = problem
         .compute_residuals(&last_fit.unknowns)
@@ -164,7 +164,7 @@ pub(crate) fn solve(
 struct Fit {
     solution: Solution,
     degrees_of_freedom: f64,
-    /// Sum of squares that 1 % of correct models exceed; 0 without degrees of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 if there are no degrees of freedom.
     chi_square_limit: f64,
     /// True if the model explains the measurements.
     is_explained: bool,
@@ -181,9 +181,9 @@ fn fit_all(problem: &Problem) -> Result<Fit, IdentifyError> {
     let all_unknowns: Vec<usize> = (0..UNKNOWN_COUNT).collect();
     let start = problem.start_unknowns();
     let other_starts = NONLINEAR_KEYS.iter().flat_map(|&key| {
-        [1.0, -1.0].map(|side| {
+        [1.0, -1.0].map(|sign| {
             let mut guess = start;
-            guess[key] = (start[key] + side * problem.prior_errors[key]).max(KEYS[key].min_value);
+            guess[key] = (start[key] + sign * problem.prior_errors[key]).max(KEYS[key].min_value);
             guess
         })
     });
@@ -229,12 +229,12 @@ fn compute_standard_errors(problem: &Problem, full_fit: &Solution) -> [f64; UNKN
         if i >= KEY_COUNT || error > MAX_ERROR_FRACTION * problem.prior_errors[i] {
             return error;
         }
-        let compute_rise = |side: f64| {
-            let shift = |j: usize| {
+        let compute_rise = |sign: f64| {
+            let shifted = |j: usize| {
                 full_fit.unknowns[j]
-                    + side * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
+                    + sign * MIN_DISTANCE_ERRORS * full_fit.covariance[(j, i)] / error
             };
-            problem.compute_cost(&std::array::from_fn(shift)) - min_cost
+            problem.compute_cost(&std::array::from_fn(shifted)) - min_cost
         };
         let rise = compute_rise(1.0).min(compute_rise(-1.0)).max(MIN_RISE);
         error * (MIN_DISTANCE_ERRORS / rise.sqrt()).max(1.0)

@@ -1,6 +1,6 @@
 //! The robot.toml keys that measured movements can determine.
 
-use lizard_robot::{Ground, plausible_range};
+use lizard_robot::{GroundContact, plausible_range};
 
 /// A number in robot.toml that affects the gaits' movements.
 #[derive(Debug)]
@@ -21,7 +21,7 @@ pub struct Key {
     /// Smallest possible value.
     pub(crate) min_value: f64,
     /// Returns the number's field in a robot's ground.
-    field: fn(&mut Ground) -> &mut f64,
+    field: fn(&mut GroundContact) -> &mut f64,
 }
 
 /// Number of keys.
@@ -119,19 +119,19 @@ impl Key {
     }
 
     /// Reads the key's value from a robot's ground.
-    pub fn read_value(&self, ground: &Ground) -> f64 {
+    pub fn read_value(&self, ground: &GroundContact) -> f64 {
         *(self.field)(&mut { *ground })
     }
 
-    pub(crate) fn write_value(&self, ground: &mut Ground, value: f64) {
+    pub(crate) fn write_value(&self, ground: &mut GroundContact, value: f64) {
         *(self.field)(ground) = value;
     }
 
     /// Standard deviation of the value before any measurement: half the width of the plausible range.
     pub fn prior_error(&self) -> f64 {
-        let [low, high] =
+        let [min, max] =
             plausible_range(self.assumption_name).expect("a test checks that each key has a range");
-        (high - low) / 2.0
+        (max - min) / 2.0
     }
 }
 

@@ -4,7 +4,7 @@
 //! that is too long, the centre of mass, the mounting of the legs. A video shows the robot's movement in a gait cycle.
 //! Each key changes the gaits in different proportions, so several gaits together determine the keys. [`identify`]
 //! estimates the keys in [`KEYS`] by weighted least squares, together with the position of the tag card on the deck
-//! ([`Card`]), since a misplaced card would otherwise look like drift.
+//! ([`CardPose`]), since a misplaced card would otherwise look like drift.
 //!
 //! A key that the movements do not determine keeps its value. A key whose standard error stays above half of its prior
 //! standard deviation counts as undetermined ([`Verdict::Undetermined`]). A key that would change by less than two
@@ -29,9 +29,9 @@ mod key;
 mod movement;
 mod outcome;
 mod problem;
-mod text;
+mod robot_toml;
 
-pub use card::Card;
+pub use card::CardPose;
 pub use error::IdentifyError;
 pub use identify::{Executor, identify};
 pub use key::{KEYS, Key};

@@ -1,6 +1,6 @@
 //! The result of an identification.
 
-use crate::card::Card;
+use crate::card::CardPose;
 use crate::key::Key;
 use crate::movement::MeasuredMovement;
 
@@ -10,9 +10,9 @@ pub struct Identification {
     /// The keys in the order of [`crate::KEYS`].
     pub keys: Vec<KeyResult>,
     /// Estimated position and direction of the card.
-    pub card: Card,
+    pub card: CardPose,
     /// Standard errors of the card's parameters.
-    pub card_error: Card,
+    pub card_error: CardPose,
     /// Pairs of keys whose errors are correlated by more than 0.8, with the correlation.
     pub correlated_pairs: Vec<(&'static Key, &'static Key, f64)>,
     /// Agreement of the model with the measured movements.
@@ -59,7 +59,7 @@ pub struct GoodnessOfFit {
     pub chi_squares: [f64; 3],
     /// Number of measured values minus the effective number of parameters in the fit of all keys.
     pub degrees_of_freedom: f64,
-    /// Sum of squares that 1 % of correct models exceed; 0 without degrees of freedom.
+    /// Sum of squares that 1 % of correct models exceed; 0 if there are no degrees of freedom.
     pub chi_square_limit: f64,
     /// True if the model explains the measurements: with all keys free, the sum of squares is at most
     /// `chi_square_limit`, or there are no degrees of freedom.

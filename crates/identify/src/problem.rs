@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use lizard_robot::Travel;
 use nalgebra::{DMatrix, DVector};
 
-use crate::card::{self, Card};
+use crate::card::{self, CardPose};
 use crate::key::{KEY_COUNT, KEYS, PLAY_INDEX};
 use crate::movement::MeasuredMovement;
 
@@ -71,7 +71,7 @@ impl<'a> Problem<'a> {
         predict: &'a dyn Fn(&Values) -> Vec<Travel>,
     ) -> Self {
         let keys = KEYS.iter().map(|key| key.prior_error());
-        let mut prior_errors = keys.chain(Card::PRIOR_ERRORS);
+        let mut prior_errors = keys.chain(CardPose::PRIOR_ERRORS);
         Self {
             movements,
             file_values,
@@ -320,7 +320,7 @@ fn raise_to_min_values(values: Values) -> Values {
 }
 
 /// Splits the unknowns into the values of the keys and the card.
-pub(crate) fn split_unknowns(unknowns: &[f64; UNKNOWN_COUNT]) -> (Values, Card) {
+pub(crate) fn split_unknowns(unknowns: &[f64; UNKNOWN_COUNT]) -> (Values, CardPose) {
     let card: [f64; card::PARAMETER_COUNT] = std::array::from_fn(|i| unknowns[KEY_COUNT + i]);
     (std::array::from_fn(|i| unknowns[i]), card.into())
 }

@@ -5,7 +5,7 @@ use std::thread;
 
 use fastrand::Rng;
 use lizard_identify::{Identification, KEYS, KeyResult, MeasuredMovement, Verdict, identify};
-use lizard_robot::{CheckedGait, Ground, Robot, Travel};
+use lizard_robot::{CheckedGait, GroundContact, Robot, Travel};
 
 /// Standard error of a mean of about eight cycles, mm and deg.
 const MEAN_ERROR: f64 = 0.03;
@@ -14,8 +14,8 @@ const GAIT_COUNT: usize = 8;
 /// Size of each key's change, in the order of `KEYS`. A robot gets up to three of these changes, up or down.
 const CHANGE_SIZES: [f64; 7] = [2.0, 0.5, 6.0, -5.0, 0.5, 0.15, 0.08];
 
-fn change_key(ground: &mut Ground, key: usize, change: f64) {
-    let value = match key {
+fn change_key(ground: &mut GroundContact, key_index: usize, change: f64) {
+    let value = match key_index {
         0 => &mut ground.feet.mount_angle,
         1 => &mut ground.drive.play,
         2 => &mut ground.body.centre_of_mass[0],
@@ -38,7 +38,7 @@ fn run_sequentially(count: usize, simulate: &(dyn Fn(usize) -> Travel + Sync)) -
 }
 
 /// Simulates a robot's fastest gaits on a changed ground, with the random errors of a video.
-fn record_movements(robot: &Robot, ground: &Ground, rng: &mut Rng) -> Vec<MeasuredMovement> {
+fn record_movements(robot: &Robot, ground: &GroundContact, rng: &mut Rng) -> Vec<MeasuredMovement> {
     let compute_speed = |gait: &CheckedGait| {
         let prediction = robot.predict(gait);
         let [forward, turn] =
@@ -85,13 +85,14 @@ impl Trial {
         let mut ground = *robot.ground();
         let mut changes = [0.0; 7];
         for _ in 0..3 {
-            let key = rng.usize(..CHANGE_SIZES.len());
+            let key_index = rng.usize(..CHANGE_SIZES.len());
             // Play cannot become negative.
-            let sign = if key == 1 || rng.bool() { 1.0 } else { -1.0 };
-            changes[key] = sign * CHANGE_SIZES[key];
+            let is_increase = key_index == 1 || rng.bool();
+            let sign = if is_increase { 1.0 } else { -1.0 };
+            changes[key_index] = sign * CHANGE_SIZES[key_index];
         }
-        for (key, change) in changes.into_iter().enumerate() {
-            change_key(&mut ground, key, change);
+        for (key_index, change) in changes.into_iter().enumerate() {
+            change_key(&mut ground, key_index, change);
         }
         let movements = record_movements(&robot, &ground, &mut rng);
         Self {

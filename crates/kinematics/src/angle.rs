@@ -7,9 +7,8 @@
 //! functions of a mathematics library. They use only IEEE additions, multiplications, divisions and comparisons, never
 //! fused, and give the same bits on every host.
 //!
-//! The polynomials come from `src/angle/polynomials.rs`, which computes them with a precision of 256
-//! bits. Their approximation errors are at most 2.1e-17 of the result, a fifth of the rounding error
-//! of an f64.
+//! The polynomials come from `src/angle/polynomials.rs`, which computes them with a precision of 256 bits. Their
+//! approximation errors are at most 2.1e-17 of the result, a fifth of an f64's rounding error.
 
 use core::f64::consts::PI;
 
@@ -49,7 +48,7 @@ const ATAN: [f64; 11] = [
 ];
 
 /// tan 22.5 degrees.
-const TAN_HALF_EIGHTH: f64 = 0.41421356237309503;
+const TAN_22_5_DEGREES: f64 = 0.41421356237309503;
 
 /// 1.5 * 2^52. Adding this constant rounds a number to an integer, whose last bits are those of the
 /// sum; subtracting the constant again gives the integer.
@@ -70,8 +69,8 @@ fn evaluate_polynomial<const N: usize>(coefficients: &[f64; N], x: f64) -> f64 {
     sum
 }
 
-/// Returns `if_ones` if the mask is all ones, `if_zero` if it is zero, without a branch: on random
-/// input, half of a branch's predictions would be wrong.
+/// Returns `if_ones` if the mask is all ones, `if_zero` if it is zero, without a branch: on random input, half of a
+/// branch's predictions would be wrong.
 #[inline(always)]
 fn select(mask: u64, if_ones: f64, if_zero: f64) -> f64 {
     f64::from_bits(if_zero.to_bits() ^ ((if_ones.to_bits() ^ if_zero.to_bits()) & mask))
@@ -86,8 +85,8 @@ fn to_mask(condition: bool) -> u64 {
 /// The sign bit of an f64.
 const SIGN_BIT: u64 = 1 << 63;
 
-/// Sine and cosine of an angle in degrees, each within 1.5 units in the last
-/// place of the exact value. NaN if the angle is infinite.
+/// Sine and cosine of an angle in degrees, each within 1.5 units in the last place of the exact value. NaN if the angle
+/// is infinite.
 ///
 /// ```
 /// let (sin, cos) = lizard_kinematics::sin_cos(30.0);
@@ -143,8 +142,7 @@ fn reduce_huge_angles(degrees: &mut [f64]) {
     }
 }
 
-/// The angle of a vector in (-180, 180] degrees, within 2 units in the last
-/// place; 0 for the zero vector.
+/// The angle of a vector in (-180, 180] degrees, within 2 units in the last place; 0 for the zero vector.
 ///
 /// ```
 /// assert_eq!(lizard_kinematics::atan2(1.0, -1.0), 135.0);
@@ -155,9 +153,8 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
     let steep_mask = to_mask(ay > ax);
     let (long, short) = (select(steep_mask, ay, ax), select(steep_mask, ax, ay));
-    // Within the first 45 degrees, the polynomial is evaluated relative to 0 or to 45 degrees,
-    // whichever is nearer.
-    let diagonal_mask = to_mask(short > TAN_HALF_EIGHTH * long);
+    // Within the first 45 degrees, the polynomial is evaluated relative to 0 or to 45 degrees, whichever is nearer.
+    let diagonal_mask = to_mask(short > TAN_22_5_DEGREES * long);
     let numerator = select(diagonal_mask, short - long, short);
     let denominator = select(diagonal_mask, short + long, long);
     let zero_mask = to_mask(denominator == 0.0);
@@ -207,8 +204,7 @@ mod tests {
 
         #[test]
         fn sines_and_cosines_agree_with_libm(degrees in -45.0..45.0f64) {
-            // Within 45 degrees the only error of libm's argument is the rounding of its conversion to
-            // radians.
+            // Within 45 degrees the only error of libm's argument is the rounding of its conversion to radians.
             let (sin, cos) = sin_cos(degrees);
             let (expected_sin, expected_cos) = libm::sincos(degrees.to_radians());
             prop_assert!((sin - expected_sin).abs() <= 3.0 * f64::EPSILON * expected_sin.abs(), "{sin}, expected {expected_sin}");
@@ -285,7 +281,7 @@ mod tests {
         for (polynomial, coefficients) in polynomials::POLYNOMIALS.iter().zip(tables) {
             let name = polynomial.name;
             assert_eq!(polynomial.compute_coefficients(), coefficients, "{name}");
-            let error = polynomial.compute_max_error(coefficients);
+            let error = polynomial.compute_max_relative_error(coefficients);
             assert!(error < 2.1e-17, "{name}: the error is {error:e}");
         }
     }
@@ -303,10 +299,10 @@ mod tests {
             (-1e308, -1e308 % 360.0),
         ] {
             // Exactly one of these three angles, which are a turn apart, is in range.
-            let turns = [expected - 360.0, expected, expected + 360.0];
-            let expected = turns
+            let candidates = [expected - 360.0, expected, expected + 360.0];
+            let expected = candidates
                 .into_iter()
-                .find(|degrees_in_turn| *degrees_in_turn > -180.0 && *degrees_in_turn <= 180.0);
+                .find(|candidate| *candidate > -180.0 && *candidate <= 180.0);
             assert_eq!(Some(wrap(degrees)), expected, "{degrees}");
             assert_eq!(sin_cos(degrees), sin_cos(wrap(degrees)), "{degrees}");
         }

@@ -135,7 +135,7 @@ impl Lizard {
     /// The residuals of the eight loop equations for any values of the joints, mm; zero at a
     /// solution. The active angles are in degrees and in servo order.
     pub fn residuals(&self, active: [f64; 4], passive: &PassiveJoints) -> [f64; 8] {
-        let (shafts, cis) = (self.shafts(), Vector::direction);
+        let (shafts, cis) = (self.shafts(), Vector::from_angle);
         let couplers = [
             [passive.theta2, passive.theta3],
             [passive.theta6, passive.theta7],

@@ -30,8 +30,8 @@ pub struct Derivative<T> {
     pub acceleration: T,
 }
 
-/// The rates and accelerations of the passive joints and of the end points, chassis frame. The legs are left
-/// out, because they turn with their servos.
+/// The rates and accelerations of the passive joints and of the end points, chassis frame. The legs are omitted,
+/// because they turn with their servos.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derivatives {
     /// Head, left coupler; degrees.
@@ -153,14 +153,14 @@ fn solve_loop_derivatives(
         right_coupler: Spin::new(w3, e3),
         point: Derivative {
             rate: r1.rotated_left() * w1 + r2.rotated_left() * w2,
-            acceleration: end_acceleration(r1, crank_left) + r2.rotated_left() * e2
+            acceleration: tip_acceleration(r1, crank_left) + r2.rotated_left() * e2
                 - r2 * (w2 * w2),
         },
     }
 }
 
-/// The acceleration of a link's moving end relative to the other end.
-fn end_acceleration(link: Vector, spin: Spin) -> Vector {
+/// The acceleration of a link's tip relative to its other end.
+fn tip_acceleration(link: Vector, spin: Spin) -> Vector {
     link.rotated_left() * spin.acceleration - link * (spin.rate * spin.rate)
 }
 
@@ -172,7 +172,7 @@ fn compute_slider_derivatives(
 ) -> (Spin, Derivative<f64>) {
     let slider_direction = pose.span * (1.0 / pose.d);
     let v = front.rotated_left() * front_spin.rate - rear.rotated_left() * rear_spin.rate;
-    let a = end_acceleration(front, front_spin) - end_acceleration(rear, rear_spin);
+    let a = tip_acceleration(front, front_spin) - tip_acceleration(rear, rear_spin);
     let (travel_rate, turn_rate) = (v.dot(slider_direction), slider_direction.cross(v) / pose.d);
     (
         Spin::new(
@@ -285,8 +285,8 @@ mod tests {
             prop_assume!(solution.left.d > 20.0 && solution.right.d > 20.0);
             let (rates, accelerations) = passive_derivatives(&solution, &motion);
             let max_magnitude = |values: &[f64; 12]| values.iter().fold(1.0_f64, |max, v| max.max(v.abs()));
-            let (largest_rate, largest_acceleration) = (max_magnitude(&rates), max_magnitude(&accelerations));
-            let step = MAX_STEP.min(MAX_STEP_CHANGE / largest_rate);
+            let (max_rate, max_acceleration) = (max_magnitude(&rates), max_magnitude(&accelerations));
+            let step = MAX_STEP.min(MAX_STEP_CHANGE / max_rate);
             // The errors of the five-point formulas are of fourth order in the step.
             let values_at = |steps: f64| solve_after(&robot, pose, &motion, steps * step).map(|s| passive_values(&s));
             let start_values = passive_values(&solution);
@@ -300,9 +300,9 @@ mod tests {
                 let [a, b, d, e] = [a[i], b[i], d[i], e[i]].map(difference_from_start);
                 let rate = (a - 8.0 * b + 8.0 * d - e) / (12.0 * step);
                 let acceleration = (16.0 * (b + d) - a - e) / (12.0 * step * step);
-                prop_assert!((rate - rates[i]).abs() < 1e-6 * largest_rate, "quantity {i}: rate {rate}, expected {}", rates[i]);
+                prop_assert!((rate - rates[i]).abs() < 1e-6 * max_rate, "quantity {i}: rate {rate}, expected {}", rates[i]);
                 prop_assert!(
-                    (acceleration - accelerations[i]).abs() < 1e-6 * largest_acceleration.max(100.0),
+                    (acceleration - accelerations[i]).abs() < 1e-6 * max_acceleration.max(100.0),
                     "quantity {i}: acceleration {acceleration}, expected {}", accelerations[i]
                 );
             }

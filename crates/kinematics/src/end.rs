@@ -59,7 +59,7 @@ impl End {
     pub fn mirror<T: Real>(self, vector: Vector<T>) -> Vector<T> {
         match self {
             Self::Head => vector,
-            Self::Tail => vector.mirrored(),
+            Self::Tail => vector.mirrored_in_x_axis(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! The faults that leave a mechanism without a position, and their messages for the user.
+//! The faults that leave a mechanism without a position, and the messages about them.
 
 use core::fmt;
 
@@ -56,8 +56,7 @@ pub enum Fault {
         /// Largest distance from the shaft that crank and coupler can reach.
         max_reach: f64,
     },
-    /// A point lies on a shaft whose crank and coupler are equally long, so every crank
-    /// angle is a solution.
+    /// A point lies on a shaft whose crank and coupler are equally long, so every crank angle is a solution.
     OnShaft,
     /// The arm tips of a slider coincide, so the slider has no direction.
     Collapsed,

@@ -172,7 +172,7 @@ impl FiveBar {
         theta_left: f64,
         theta_right: f64,
     ) -> Result<FiveBarPose, Fault> {
-        let [left, right] = [theta_left, theta_right].map(Vector::direction);
+        let [left, right] = [theta_left, theta_right].map(Vector::from_angle);
         self.close(mode, left, right)
     }
 

@@ -45,8 +45,7 @@ impl LegPose {
         wrap(self.theta)
     }
 
-    /// theta_lg12: the coupler's angle relative to the ground link, degrees; always 0 in a
-    /// parallelogram.
+    /// theta_lg12: the coupler's angle relative to the ground link, degrees; always 0 in a parallelogram.
     pub const fn coupler_angle(&self) -> f64 {
         0.0
     }
@@ -65,8 +64,7 @@ impl Leg {
     }
 }
 
-/// The signed margin of a leg whose crank has this direction (length one) in the frame of the
-/// leg's end.
+/// The signed margin of a leg whose crank has this direction (length one) in the frame of the leg's end.
 #[inline(always)]
 pub(crate) fn margin<T: Real>(crank: Vector<T>) -> T {
     crank.y

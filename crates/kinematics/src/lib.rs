@@ -1,11 +1,10 @@
 //! Closed-form kinematics of a robotic lizard: all joints from four servo angles, and servo angles from a point.
 //!
-//! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the tail. On
-//! each side two arms and a prismatic joint form a loop (RRPRR). Each leg is a parallelogram.
-//! Four servos drive the whole mechanism. The position of a five-bar follows from the
-//! intersection of two circles, that of a slider from its arm tips, so both have closed forms.
-//! This crate uses geometric forms, which stay accurate where the paper's half-angle formulas
-//! divide zero by zero.
+//! The body is a planar mechanism. Two five-bars (RRRRR) carry the head and the tail. On each side two arms and a
+//! prismatic joint form a loop (RRPRR). Each leg is a parallelogram. Four servos drive the whole mechanism. The
+//! position of a five-bar follows from the intersection of two circles, that of a slider from its arm tips, so both
+//! have closed forms. This crate uses geometric forms, which stay accurate where the paper's half-angle formulas divide
+//! zero by zero.
 //!
 //! # When not to use it
 //! - For mechanisms with other loops: it solves only five-bars, sliders between two arms, and
@@ -76,13 +75,13 @@
 extern crate self as lizard_kinematics;
 
 mod angle;
-mod conditioning;
 mod conditions;
 mod constraints;
 mod derivatives;
 mod end;
 mod fault;
 mod five_bar;
+mod jacobian;
 mod leg;
 mod limits;
 mod links;
@@ -104,12 +103,12 @@ mod reference;
 mod readme {}
 
 pub use angle::{atan2, sin_cos, sin_cos_all, wrap};
-pub use conditioning::Jacobian;
 pub use constraints::{BlockDeterminants, PassiveJoints};
 pub use derivatives::{Derivative, Derivatives, ServoMotion};
 pub use end::End;
 pub use fault::{Fault, InfeasiblePose, Mechanism};
 pub use five_bar::{AssemblyMode, Elbow, FiveBar, FiveBarPose, InverseSolution, WorkingMode};
+pub use jacobian::Jacobian;
 pub use leg::{Leg, LegPose};
 pub use limits::{Limits, Violation};
 pub use links::Links;

@@ -68,9 +68,9 @@ impl fmt::Display for Violation {
 }
 
 impl Limits {
-    /// Returns the violation of a condition's limit by a value (a sine or mm); `None` if the value is
-    /// safe. A value at its limit is safe, but a distance of 0 mm between crank tips counts as crossed.
-    pub fn find_violation(&self, check: Check, value: f64) -> Option<Violation> {
+    /// Returns the violation of a condition's limit by a value (a sine or mm); `None` if the value is safe. A value at
+    /// its limit is safe, but a distance of 0 mm between crank tips counts as crossed.
+    pub fn violation(&self, check: Check, value: f64) -> Option<Violation> {
         let limit_if_below = |limit: f64| (value < limit).then_some(limit);
         let limit = match check {
             Check::Type2Head | Check::Type2Tail => limit_if_below(self.type2),
@@ -100,7 +100,7 @@ impl Limits {
         let limits = *self;
         solution
             .conditions()
-            .filter_map(move |(check, value)| limits.find_violation(check, value))
+            .filter_map(move |(check, value)| limits.violation(check, value))
     }
 
     /// All limits that the five-bar of one end violates, regardless of the rest of the robot.
@@ -112,7 +112,7 @@ impl Limits {
         let limits = *self;
         pose.conditions(end)
             .into_iter()
-            .filter_map(move |(check, value)| limits.find_violation(check, value))
+            .filter_map(move |(check, value)| limits.violation(check, value))
     }
 
     /// True if a solved pose violates no limit.

@@ -26,23 +26,23 @@ pub struct Links {
     pub l9: f64,
     /// Chassis on the left, between A4 and A1, mm.
     pub l10: f64,
-    /// Left rear arm, mm.
+    /// Left rear slider arm, mm.
     pub l11: f64,
     /// Left slider, rear half, mm.
     pub l12: f64,
     /// Left slider, front half, mm.
     pub l13: f64,
-    /// Left front arm, mm.
+    /// Left front slider arm, mm.
     pub l14: f64,
     /// Chassis on the right, between A3 and A2; equal to l10, mm.
     pub l15: f64,
-    /// Right rear arm, mm.
+    /// Right rear slider arm, mm.
     pub l16: f64,
     /// Right slider, rear half, mm.
     pub l17: f64,
     /// Right slider, front half, mm.
     pub l18: f64,
-    /// Right front arm, mm.
+    /// Right front slider arm, mm.
     pub l19: f64,
 }
 

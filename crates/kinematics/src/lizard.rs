@@ -15,13 +15,13 @@ use crate::vector::Vector;
 /// A pose of the robot: four servo angles in degrees, chassis frame, declared in servo order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Angle of A1, front left. All four may be any finite angle.
+    /// Angle of A1, left front. All four may be any finite angle.
     pub theta1: f64,
-    /// Angle of A2, front right.
+    /// Angle of A2, right front.
     pub theta4: f64,
-    /// Angle of A3, rear right.
+    /// Angle of A3, right hind.
     pub theta8: f64,
-    /// Angle of A4, rear left.
+    /// Angle of A4, left hind.
     pub theta5: f64,
 }
 
@@ -263,9 +263,8 @@ impl Lizard {
         }
     }
 
-    /// The five-bar of an end at four crank directions in servo order (length one, chassis frame),
-    /// of which only the end's own two are used. It is meaningless if the loop does not close: see
-    /// [`FiveBar::closes`].
+    /// The five-bar of an end at four crank directions in servo order (length one, chassis frame), of which only the
+    /// end's own two are used. It is meaningless if the loop does not close: see [`FiveBar::closes`].
     #[inline(always)]
     pub fn end_pose_unchecked<T: Real>(&self, end: End, cranks: [Vector<T>; 4]) -> FiveBarPose<T> {
         let [left, right] = end.pick(cranks);
@@ -294,9 +293,8 @@ impl Lizard {
         self.solve(pose).map(|solution| solution.margins)
     }
 
-    /// The angles of an end's two servos ((-180, 180] degrees, chassis frame) that put its end
-    /// point at `point` (mm, the end's own frame) with both elbows outward. In servo order: A1, A2
-    /// for the head; A3, A4 for the tail.
+    /// The angles of an end's two servos ((-180, 180] degrees, chassis frame) that put its end point at `point` (mm,
+    /// the end's own frame) with both elbows outward. In servo order: A1, A2 for the head; A3, A4 for the tail.
     ///
     /// # Errors
     /// Fails as [`FiveBar::inverse`] does.

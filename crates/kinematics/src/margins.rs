@@ -29,12 +29,10 @@ pub enum Check {
     StrokeLeft,
     /// Travel of the right slider, mm.
     StrokeRight,
-    /// Distance to the right, mm, from the tip of A1's crank to the tip of A2's: K2 in the
-    /// paper. At 0 or below the cranks are crossed, which is possible only if the robot was
-    /// assembled so.
+    /// Distance to the right, mm, from the tip of A1's crank to the tip of A2's: K2 in the paper. At 0 or below the
+    /// cranks are crossed, which is possible only if the robot was assembled so.
     UncrossedHead,
-    /// Distance to the right, mm, from the tip of A4's crank to the tip of A3's. At 0 or
-    /// below the cranks are crossed.
+    /// Distance to the right, mm, from the tip of A4's crank to the tip of A3's. At 0 or below the cranks are crossed.
     UncrossedTail,
 }
 
@@ -47,8 +45,7 @@ impl Check {
     pub const LEG: [Self; 4] = [Self::LegLf, Self::LegRf, Self::LegRh, Self::LegLh];
     /// The slider travels of both sides, in the order of [`Side::ALL`](crate::Side::ALL).
     pub const STROKE: [Self; 2] = [Self::StrokeLeft, Self::StrokeRight];
-    /// The conditions that the crank tips are not crossed, in the order of
-    /// [`End::ALL`](crate::End::ALL).
+    /// The conditions that the crank tips are not crossed, in the order of [`End::ALL`](crate::End::ALL).
     pub const UNCROSSED: [Self; 2] = [Self::UncrossedHead, Self::UncrossedTail];
 
     /// The condition's name in JSON and in messages, such as `type2_head`.
@@ -78,9 +75,8 @@ impl fmt::Display for Check {
     }
 }
 
-/// The ten margins of a pose. Each is the sine of an angle between two links, -1 to 1: 0 at a
-/// singularity or a change point, positive on the side on which the robot is built. [`Check`]
-/// documents each of them.
+/// The ten margins of a pose. Each is the sine of an angle between two links, -1 to 1: 0 at a singularity or a change
+/// point, positive on the side on which the robot is built. [`Check`] documents each of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Margins {
     /// Type-2 margins of head and tail: [`Check::TYPE2`].
@@ -103,8 +99,8 @@ impl Margins {
     /// The smallest margin with its condition; the first one if several are equal.
     pub fn min(&self) -> (Check, f64) {
         self.iter()
-            .fold((Check::Type2Head, self.type2[0]), |smallest, next| {
-                if next.1 < smallest.1 { next } else { smallest }
+            .fold((Check::Type2Head, self.type2[0]), |min, next| {
+                if next.1 < min.1 { next } else { min }
             })
     }
 }

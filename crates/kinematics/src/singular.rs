@@ -43,11 +43,10 @@ impl FiveBar {
         theta_left: f64,
     ) -> impl Iterator<Item = SingularPose> + use<> {
         let five_bar = *self;
-        let left = Vector::direction(theta_left);
+        let left = Vector::from_angle(theta_left);
         let tip = five_bar.left_shaft() + left * five_bar.left_crank_length;
         let (l2, l3) = (five_bar.left_coupler_length, five_bar.right_coupler_length);
-        // Type 2: the distance between the crank tips is the sum or the difference of the
-        // couplers.
+        // Type 2: the distance between the crank tips is the sum or the difference of the couplers.
         let couplers = [l2 + l3, (l2 - l3).abs()]
             .into_iter()
             .filter(|reach| *reach > 0.0)
@@ -168,8 +167,7 @@ mod tests {
                         ) else {
                             continue;
                         };
-                        // If the crank tips nearly coincide, the end point moves fast and signs change
-                        // abruptly.
+                        // If the crank tips nearly coincide, the end point moves fast and signs change abruptly.
                         let gap = five_bar.forward(left, a).unwrap().gap.length();
                         if value_a * value_b >= 0.0 || gap < 1.0 {
                             continue;
@@ -232,10 +230,9 @@ mod tests {
 
     #[test]
     fn no_path_with_sufficient_margins_leads_to_crossed_cranks() {
-        // A flood fill divides the poses of a half-degree grid in which every margin, including those
-        // of the legs, is at least 0.3, into connected regions. No region contains both crossed and
-        // uncrossed cranks. The grid covers the cranks' range between the legs' change points at 0 and
-        // 180 degrees.
+        // A flood fill divides the poses of a half-degree grid in which every margin, including those of the legs, is
+        // at least 0.3, into connected regions. No region contains both crossed and uncrossed cranks. The grid covers
+        // the cranks' range between the legs' change points at 0 and 180 degrees.
         const CELLS_PER_SIDE: usize = 360;
         let is_uncrossed_at = |left: usize, right: usize| {
             let (left, right) = (left as f64 / 2.0 + 0.25, right as f64 / 2.0 + 0.25);

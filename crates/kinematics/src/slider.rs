@@ -4,9 +4,8 @@
 //! the line from the rear tip to the front one, with length d = l12 + l13 + s and direction phi.
 //! Its only singularity is d = 0; in practice its stroke limits it.
 //!
-//! The paper takes theta10 + theta11 = 0 for the two halves of the slider. With counter-clockwise
-//! angles the halves have opposite directions, theta11 = theta10 + 180, and the unknowns are
-//! phi = theta10 and s.
+//! The paper takes theta10 + theta11 = 0 for the two halves of the slider. With counter-clockwise angles the halves
+//! have opposite directions, theta11 = theta10 + 180, and the unknowns are phi = theta10 and s.
 
 use crate::fault::Fault;
 use crate::real::{Lanes, Real};
@@ -46,8 +45,7 @@ pub struct SliderPose<T = f64> {
 }
 
 impl SliderPose {
-    /// phi: direction of the slider from rear to front, (-180, 180] degrees; theta10 on the left,
-    /// theta14 on the right.
+    /// phi: direction of the slider from rear to front, (-180, 180] degrees; theta10 on the left, theta14 on the right.
     pub fn phi(&self) -> f64 {
         self.span.angle()
     }
@@ -59,19 +57,17 @@ impl SliderPose {
 }
 
 impl Slider {
-    /// The pose with arms at two angles in degrees (theta9 and theta12 on the left, theta13 and
-    /// theta16 on the right).
+    /// The pose with arms at two angles in degrees (theta9 and theta12 on the left, theta13 and theta16 on the right).
     ///
     /// # Errors
     /// Returns [`Fault::Collapsed`] if the arm tips coincide, [`Fault::NotFinite`] if the input is not finite or
     /// overflows.
     pub fn forward(&self, theta_rear: f64, theta_front: f64) -> Result<SliderPose, Fault> {
-        let [rear, front] = [theta_rear, theta_front].map(Vector::direction);
+        let [rear, front] = [theta_rear, theta_front].map(Vector::from_angle);
         self.close(rear, front)
     }
 
-    /// The pose with arms along two unit vectors; like [`Slider::forward`], but without computing sines
-    /// and cosines.
+    /// The pose with arms along two unit vectors; like [`Slider::forward`], but without computing sines and cosines.
     ///
     /// # Errors
     /// Fails as [`Slider::forward`] does.

@@ -25,7 +25,7 @@ impl<T> Vector<T> {
 impl Vector {
     /// The unit vector at an angle in degrees.
     #[inline]
-    pub fn direction(degrees: f64) -> Self {
+    pub fn from_angle(degrees: f64) -> Self {
         let (sin, cos) = sin_cos(degrees);
         Self::new(cos, sin)
     }
@@ -82,11 +82,11 @@ impl<T: Real> Vector<T> {
 
     /// The mirror image in the x axis, whose angle has the opposite sign.
     #[inline(always)]
-    pub fn mirrored(self) -> Self {
+    pub fn mirrored_in_x_axis(self) -> Self {
         Self::new(self.x, -self.y)
     }
 
-    /// The vector multiplied by a factor.
+    /// The vector multiplied by a factor of its own number type; [`Mul`] multiplies by an f64.
     #[inline(always)]
     pub fn scaled(self, factor: T) -> Self {
         Self::new(self.x * factor, self.y * factor)
@@ -94,7 +94,7 @@ impl<T: Real> Vector<T> {
 
     /// Converts a constant vector to this type of number.
     #[inline(always)]
-    pub(crate) fn constant(vector: Vector) -> Self {
+    pub fn constant(vector: Vector) -> Self {
         Self::new(T::constant(vector.x), T::constant(vector.y))
     }
 }

@@ -4,7 +4,7 @@ use lizard_parts::Assembly;
 use lizard_robot::Robot;
 
 /// Computes the height of the board's top above the floor from the robot's parts, mm.
-pub fn board_height(robot: &Robot) -> f64 {
+pub fn compute_board_height(robot: &Robot) -> f64 {
     let assembly = Assembly::new(robot);
     let board = assembly.body("board").into_iter();
     let top_heights = board.flat_map(|body| &body.prisms).map(|prism| prism.z[1]);

@@ -3,15 +3,15 @@
 use lizard_video::Mean;
 use serde::Serialize;
 
-/// Largest difference from the prediction that counts as agreement, standard errors.
-pub const MAX_AGREEING_DIFFERENCE: f64 = 2.0;
-/// The names and units of a movement's components.
-pub const COMPONENT_NAMES: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
+/// Largest difference of a component from its prediction that counts as agreement, standard errors.
+pub const AGREEMENT_LIMIT: f64 = 2.0;
+/// The labels of a movement's components: names and units.
+pub const COMPONENT_LABELS: [&str; 3] = ["ahead, mm", "left, mm", "turn, deg"];
 
 /// A measured component of a movement and its prediction.
 #[derive(Debug, Serialize)]
 pub struct Component {
-    /// The mean, mm or deg.
+    /// Mean over the cycles, mm or deg.
     pub mean: f64,
     /// Standard deviation of single cycles, mm or deg.
     #[serde(rename = "sd")]
@@ -21,17 +21,17 @@ pub struct Component {
     pub standard_error: f64,
     /// The prediction; `None` if it is undetermined because two feet pull against the other two.
     pub predicted: Option<f64>,
-    /// The mean minus the prediction, in standard errors; `None` without a prediction.
+    /// The mean minus the prediction, in standard errors; `None` if there is no prediction.
     #[serde(rename = "differs")]
     difference: Option<f64>,
-    /// True if the difference is at most [`MAX_AGREEING_DIFFERENCE`]; `None` without a prediction.
+    /// True if the difference is at most [`AGREEMENT_LIMIT`]; `None` if there is no prediction.
     pub(crate) agrees: Option<bool>,
 }
 
 /// Describes a difference, given in standard errors: `agrees`, or its size and direction.
 pub fn format_verdict(difference: f64) -> String {
     match difference.abs() {
-        size if size <= MAX_AGREEING_DIFFERENCE => "agrees".to_owned(),
+        size if size <= AGREEMENT_LIMIT => "agrees".to_owned(),
         size if difference > 0.0 => format!("{size:.1} errors more"),
         size => format!("{size:.1} errors less"),
     }
@@ -48,22 +48,22 @@ impl Component {
             standard_error: mean.standard_error,
             predicted,
             difference,
-            agrees: difference.map(|difference| difference.abs() <= MAX_AGREEING_DIFFERENCE),
+            agrees: difference.map(|difference| difference.abs() <= AGREEMENT_LIMIT),
         }
     }
 
-    /// Describes the difference from the prediction: `agrees`, its size and direction, or `-` without a prediction.
+    /// Describes the difference from the prediction: `agrees`, its size and direction, or `-` if nothing is predicted.
     pub fn format_verdict(&self) -> String {
         self.difference.map_or("-".to_owned(), format_verdict)
     }
 
     /// Formats the component as a line of a table.
-    pub(crate) fn format_line(&self, name: &str) -> String {
+    pub(crate) fn format_line(&self, label: &str) -> String {
         let predicted = self
             .predicted
             .map_or("-".to_owned(), |value| format!("{value:+.2}"));
         format!(
-            "{name:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {}\n",
+            "{label:<12}{:>+9.2}{:>8.2}{:>8.2}{predicted:>11}   {}\n",
             self.mean,
             self.standard_deviation,
             self.standard_error,

@@ -12,7 +12,7 @@ use crate::predicted_gait::predict_gait;
 /// Smallest speed of a gait that is considered if the user names none, mm/s at the nominal pace.
 const MIN_SPEED: f64 = 3.0;
 
-/// A gait and its predicted path.
+/// A gait that a walk may show, and its predicted path.
 #[derive(Debug)]
 pub(crate) struct Candidate<'a> {
     pub gait: &'a CheckedGait,
@@ -157,36 +157,28 @@ impl<'a> Gaits<'a> {
 
     /// Recognises the gait of a walk and returns its index; fails with a message if the walk matches no gait, or two.
     fn recognise_gait(&self, walk: Walk) -> Result<usize, String> {
+        const ADVICE: &str = "; name the gait of each walk";
         let name_at = |index: usize| self.all_candidates()[index].name();
-        let (reason, needs_names) = match self.match_gait(walk) {
+        let message = match self.match_gait(walk) {
             GaitMatch::Unique(index) => return Ok(index),
-            GaitMatch::Ambiguous { best, second_best } => (
-                format!(
-                    "the path resembles {} and, nearly as much, {}",
-                    name_at(best),
-                    name_at(second_best)
-                ),
-                true,
+            GaitMatch::Ambiguous { best, second_best } => format!(
+                "the path resembles {} and, nearly as much, {}{ADVICE}",
+                name_at(best),
+                name_at(second_best)
             ),
-            GaitMatch::NoMatch(VideoError::GaitMismatch { .. }) => (
-                "the path resembles no gait in robot.toml at this pace".to_owned(),
-                true,
-            ),
-            GaitMatch::NoMatch(error) => (error.to_string(), false),
+            GaitMatch::NoMatch(VideoError::GaitMismatch { .. }) => {
+                format!("the path resembles no gait in robot.toml at this pace{ADVICE}")
+            }
+            GaitMatch::NoMatch(error) => error.to_string(),
         };
-        let advice = match needs_names {
-            true => "; name the gait of each walk",
-            false => "",
-        };
-        Err(format!("{}: {reason}{advice}", walk.format_label()))
+        Err(format!("{}: {message}", walk.format_label()))
     }
 
     /// Finds the gait in robot.toml that a walk shows.
     fn match_gait(&self, walk: Walk) -> GaitMatch {
-        let predicted_gaits = predicted_gaits(self.all_candidates());
         walk.video
             .analysis
-            .match_gait(&predicted_gaits, walk.interval)
+            .match_gait(&predicted_gaits(self.all_candidates()), walk.interval)
     }
 
     /// Finds the name of the gait that a walk clearly matches; `None` if it matches no gait, or two.

@@ -2,27 +2,27 @@
 //!
 //! A video shows how far the robot moves in a cycle, but this distance means little without a prediction.
 //! [`predict_gait`] computes the path that a gait should take. [`Report`] compares the recorded path with it, as a
-//! table or as JSON, and [`NamedVideo::format_path_csv`] formats the recorded path as CSV. [`Paper::draw_tag_sheet`]
-//! draws the sheet of tags that a video must show, and [`board_height`] computes the height of the card on the robot's
-//! deck. The crate reads no file and prints nothing.
+//! table or as JSON, and [`NamedVideo::format_path_csv`] formats the recorded path as CSV.
+//! [`PaperSize::draw_tag_sheet`] draws the sheet of tags that a video must show, and [`compute_board_height`] computes
+//! the height of the card on the robot's deck. The crate reads no file and prints nothing.
 //!
 //! # When not to use it
 //! For a path without a prediction, `lizard_video` is enough.
 
 mod board;
 mod component;
-mod engine;
 mod gaits;
+mod mujoco;
 mod named_video;
 mod predicted_gait;
-mod range;
+mod prediction_range;
 mod report;
 mod sheet;
 
-pub use board::board_height;
-pub use component::{COMPONENT_NAMES, Component, MAX_AGREEING_DIFFERENCE, format_verdict};
+pub use board::compute_board_height;
+pub use component::{AGREEMENT_LIMIT, COMPONENT_LABELS, Component, format_verdict};
 pub use gaits::{Gaits, MeasuredWalk};
 pub use named_video::NamedVideo;
 pub use predicted_gait::predict_gait;
 pub use report::{GaitReport, PhasePoint, Report};
-pub use sheet::Paper;
+pub use sheet::PaperSize;

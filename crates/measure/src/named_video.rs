@@ -40,14 +40,14 @@ impl NamedVideo {
     pub fn format_path_csv(&self) -> String {
         let mut text = "seconds,forward,left,heading\n".to_owned();
         for point in &self.analysis.path {
-            let place = point.place;
+            let pose = point.pose;
             let _ = writeln!(
                 text,
                 "{:.4},{:.3},{:.3},{:.3}",
                 point.seconds,
-                place.forward,
-                place.left,
-                place.heading.to_degrees()
+                pose.forward,
+                pose.left,
+                pose.heading.to_degrees()
             );
         }
         text

@@ -1,6 +1,6 @@
 //! The predicted path of a gait.
 
-use lizard_robot::{CheckedGait, FRAMES_PER_SECOND, Place, Robot};
+use lizard_robot::{BodyPose, CheckedGait, FRAMES_PER_SECOND, Robot};
 use lizard_twin::{ServoModel, Twin};
 use lizard_video::Gait;
 
@@ -11,18 +11,18 @@ pub fn predict_gait(robot: &Robot, gait: &CheckedGait, pace: f64) -> Gait {
     let frames_per_cycle = (period * FRAMES_PER_SECOND).round().max(1.0) as usize;
     let mut twin = Twin::new(robot, ServoModel::for_robot(robot));
     let mut path = Vec::with_capacity(frames_per_cycle + 1);
-    let mut start_place = Place::START;
+    let mut start_pose = BodyPose::START;
     for frame in 0..=2 * frames_per_cycle {
         let seconds = frame as f64 / FRAMES_PER_SECOND * pace;
         let phase = (gait.phase_at(seconds) * 65536.0).round() as i64;
         let angles = gait.table_angles(phase.rem_euclid(65536) as u16);
-        let place = twin.simulate_angles(angles).place;
+        let pose = twin.simulate_angles(angles).body_pose;
         if frame == frames_per_cycle {
-            start_place = place;
+            start_pose = pose;
         }
         if frame >= frames_per_cycle {
-            let travel = place.travel_from(start_place);
-            path.push(Place {
+            let travel = pose.travel_from(start_pose);
+            path.push(BodyPose {
                 forward: travel.forward,
                 left: travel.left,
                 heading: travel.turn.to_radians(),

@@ -2,20 +2,20 @@
 
 use std::fmt::Write as _;
 
-use lizard_robot::{Place, Prediction, Robot, Travel, UNDECIDED_NOTE};
+use lizard_robot::{BodyPose, Robot, Travel, UNDETERMINED_NOTE};
 use lizard_video::{CyclePoint, MeasuredGait, Setup};
 use serde::Serialize;
 
-use crate::component::{COMPONENT_NAMES, Component};
-use crate::engine::find_mujoco_movement;
+use crate::component::{COMPONENT_LABELS, Component};
 use crate::gaits::{Candidate, Gaits, MeasuredWalk};
+use crate::mujoco::find_mujoco_movement;
 use crate::named_video::NamedVideo;
-use crate::range::PredictionRange;
+use crate::prediction_range::PredictionRange;
 
 /// Largest deviation of a path from its prediction that counts as agreement, standard errors. The limit is larger than
 /// for a single value, because it applies to the largest of 72 deviations. If all deviations are random, the largest
 /// one exceeds the limit in one video out of 30.
-const MAX_AGREEING_DEVIATION: f64 = 3.5;
+const PATH_AGREEMENT_LIMIT: f64 = 3.5;
 
 /// The result of a measurement. `lizard measure --json` prints its fields.
 #[derive(Debug, Serialize)]
@@ -30,7 +30,7 @@ pub struct Report<'a> {
 struct VideoReport<'a> {
     #[serde(rename = "video")]
     name: &'a str,
-    /// Number of frames in which the robot's place is known.
+    /// Number of frames in which the robot's pose is known.
     #[serde(rename = "frames")]
     frame_count: usize,
     camera: CameraReport,
@@ -68,18 +68,18 @@ pub struct GaitReport<'a> {
     /// The mean path within a cycle, with the predicted path.
     #[serde(rename = "within")]
     pub mean_path: Vec<PhasePoint>,
-    /// The mean path's largest deviation from the predicted path; null if no component of the movement is predicted.
+    /// The mean path's largest deviation from the predicted path; `None` if no component of the movement is predicted.
     #[serde(rename = "farthest")]
     largest_deviation: Option<LargestDeviation>,
     /// Movement per cycle according to MuJoCo with ideal servos: mm forward, mm to the left, deg.
     #[serde(skip_serializing_if = "Option::is_none")]
     mujoco: Option<[f64; 3]>,
-    /// Range of the prediction while one assumption at a time is changed.
+    /// Range of the prediction when one assumption at a time is changed.
     #[serde(rename = "range", skip_serializing_if = "Option::is_none")]
     prediction_range: Option<PredictionRange>,
     /// The predicted path of a cycle, at equal time steps.
     #[serde(skip)]
-    pub predicted_path: &'a [Place],
+    pub predicted_path: &'a [BodyPose],
 }
 
 /// A walk between two rests.
@@ -115,7 +115,7 @@ pub struct PhasePoint {
 struct LargestDeviation {
     /// Phase of the cycle, 0 to 1.
     phase: f64,
-    /// The component of the movement, one of [`COMPONENT_NAMES`].
+    /// The component of the movement, one of [`COMPONENT_LABELS`].
     #[serde(rename = "part")]
     component: &'static str,
     /// Measured minus predicted, mm or deg.
@@ -123,7 +123,7 @@ struct LargestDeviation {
     /// Measured minus predicted, in standard errors.
     #[serde(rename = "differs")]
     standardised_difference: f64,
-    /// True if the standardised difference is at most [`MAX_AGREEING_DEVIATION`].
+    /// True if the standardised difference is at most [`PATH_AGREEMENT_LIMIT`].
     agrees: bool,
 }
 
@@ -171,10 +171,10 @@ impl LargestDeviation {
             predicted_deviations.max_by(|a, b| a.2.abs().total_cmp(&b.2.abs()))?;
         Some(Self {
             phase: point.phase,
-            component: COMPONENT_NAMES[axis],
+            component: COMPONENT_LABELS[axis],
             difference: point.measured[axis].value - point.predicted[axis],
             standardised_difference,
-            agrees: standardised_difference.abs() <= MAX_AGREEING_DEVIATION,
+            agrees: standardised_difference.abs() <= PATH_AGREEMENT_LIMIT,
         })
     }
 
@@ -200,23 +200,19 @@ impl<'a> GaitReport<'a> {
         candidate: &'a Candidate,
         walks: &[&MeasuredWalk<'a>],
     ) -> Self {
-        let results: Vec<MeasuredGait> = walks
+        let measured_gaits: Vec<MeasuredGait> = walks
             .iter()
             .map(|walk| walk.measured_gait.clone())
             .collect();
-        let measured_gait = MeasuredGait::combine(&results, &candidate.predicted_gait);
+        let measured_gait = MeasuredGait::combine(&measured_gaits, &candidate.predicted_gait);
         let travel = candidate
             .predicted_gait
             .path
             .last()
-            .map(|place| place.travel());
+            .map(|pose| pose.travel());
         let prediction = robot.predict(candidate.gait);
-        let Prediction {
-            forward,
-            left,
-            turn,
-        } = travel.map_or(prediction, |travel| prediction.keep_decided(travel));
-        let predicted_values = [forward, left, turn];
+        let prediction = travel.map_or(prediction, |travel| prediction.keep_determined(travel));
+        let predicted_values = [prediction.forward, prediction.left, prediction.turn];
         let means = [
             measured_gait.forward,
             measured_gait.left,
@@ -301,8 +297,8 @@ impl<'a> GaitReport<'a> {
             let _ = writeln!(text, "{video}, {start_s:.1} to {end_s:.1} s{match_text}");
         }
         text += "per cycle    measured      sd   error  predicted\n";
-        for (name, component) in COMPONENT_NAMES.iter().zip(self.components()) {
-            text += &component.format_line(name);
+        for (label, component) in COMPONENT_LABELS.iter().zip(self.components()) {
+            text += &component.format_line(label);
         }
         if let Some(range) = &self.prediction_range {
             text += &range.format_line();
@@ -414,7 +410,7 @@ impl<'a> Report<'a> {
         }
         let mut components = self.gaits.iter().flat_map(GaitReport::components);
         if components.any(|component| component.predicted.is_none()) {
-            let _ = write!(text, "\n{UNDECIDED_NOTE}");
+            let _ = write!(text, "\n{UNDETERMINED_NOTE}");
         }
         text
     }

@@ -1,8 +1,8 @@
 //! Draws the sheet of tags as a PDF page: pieces, tags, ruler and instructions.
 
 use lizard_video::sheet::{
-    CARD_MARGIN, CARD_SIZE, DECK_TAG_EDGE, DECK_TAG_ID, FORWARD_WORD, Point, RULER_LENGTH,
-    SQUARES_PER_SIDE, STRIP_COUNT, STRIP_SIZE, TAGS_PER_STRIP, centre_on_strip, is_white, tag_edge,
+    CARD_MARGIN, CARD_SIZE, CELLS_PER_SIDE, DECK_TAG_EDGE, DECK_TAG_ID, FORWARD_WORD, Point,
+    RULER_LENGTH, STRIP_COUNT, STRIP_SIZE, TAGS_PER_STRIP, centre_on_strip, is_white, tag_edge,
 };
 use pdf_writer::{Content, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
@@ -34,9 +34,9 @@ const INSTRUCTIONS: [&str; 9] = [
     "    the robot moves, and record five to ten cycles of one gait.",
 ];
 
-/// A paper size, in landscape.
+/// A paper size in landscape format.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Paper {
+pub enum PaperSize {
     /// 297 x 210 mm.
     #[default]
     A4,
@@ -44,7 +44,7 @@ pub enum Paper {
     Letter,
 }
 
-impl Paper {
+impl PaperSize {
     /// Returns the width and the height, mm.
     fn size(self) -> Point {
         match self {
@@ -84,9 +84,9 @@ fn to_points(mm: f64) -> f32 {
 }
 
 /// Draws the whole page.
-fn draw_page(paper: Paper) -> Content {
+fn draw_page(paper_size: PaperSize) -> Content {
     let mut content = Content::new();
-    let [width, height] = paper.size();
+    let [width, height] = paper_size.size();
     let left = (width - STRIP_SIZE[0]) / 2.0;
     let used_height = STRIP_COUNT as f64 * STRIP_SIZE[1] + CARD_SIZE[1];
     let mut top = f64::midpoint(height, used_height);
@@ -158,29 +158,25 @@ fn draw_card(content: &mut Content, [x, y]: Point) {
     write_text(content, FORWARD_WORD, [centre_x + 6.0, arrow_base + 2.0]);
 }
 
-/// Draws a tag around its centre: one black square with white squares on it. If each black square were drawn
-/// separately, printers and viewers might leave a seam between adjacent squares.
+/// Draws a tag around its centre: one black square with the white cells on it. If each black cell were drawn
+/// separately, printers and viewers might leave a seam between adjacent cells.
 fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
-    let square_edge = tag_edge(id) / SQUARES_PER_SIDE as f64;
+    let cell_edge = tag_edge(id) / CELLS_PER_SIDE as f64;
     let half_edge = tag_edge(id) / 2.0;
     fill_rectangle(content, [x - half_edge, y - half_edge], [tag_edge(id); 2]);
     content.set_fill_gray(1.0);
-    for row in 0..SQUARES_PER_SIDE {
+    for row in 0..CELLS_PER_SIDE {
         let mut column = 0;
-        while column < SQUARES_PER_SIDE {
-            let white_squares =
-                (column..SQUARES_PER_SIDE).take_while(|&index| is_white(id, row, index));
-            let run_length = white_squares.count();
+        while column < CELLS_PER_SIDE {
+            let white_cells =
+                (column..CELLS_PER_SIDE).take_while(|&index| is_white(id, row, index));
+            let run_length = white_cells.count();
             if run_length > 0 {
                 let corner = [
-                    x - half_edge + column as f64 * square_edge,
-                    y + half_edge - (row + 1) as f64 * square_edge,
+                    x - half_edge + column as f64 * cell_edge,
+                    y + half_edge - (row + 1) as f64 * cell_edge,
                 ];
-                fill_rectangle(
-                    content,
-                    corner,
-                    [run_length as f64 * square_edge, square_edge],
-                );
+                fill_rectangle(content, corner, [run_length as f64 * cell_edge, cell_edge]);
             }
             column += run_length.max(1);
         }
@@ -190,13 +186,8 @@ fn draw_tag(content: &mut Content, id: usize, [x, y]: Point) {
 
 /// Fills a rectangle with its lower left corner at a point, mm.
 fn fill_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Point) {
-    content.rect(
-        to_points(x),
-        to_points(y),
-        to_points(width),
-        to_points(height),
-    );
-    content.fill_nonzero();
+    let [x, y, width, height] = [x, y, width, height].map(to_points);
+    content.rect(x, y, width, height).fill_nonzero();
 }
 
 /// Draws the cut lines around a piece with its lower left corner at a point, mm.
@@ -204,13 +195,8 @@ fn draw_cut_rectangle(content: &mut Content, [x, y]: Point, [width, height]: Poi
     content
         .set_line_width(to_points(CUT_THICKNESS_MM))
         .set_stroke_gray(CUT_GREY);
-    content.rect(
-        to_points(x),
-        to_points(y),
-        to_points(width),
-        to_points(height),
-    );
-    content.stroke();
+    let [x, y, width, height] = [x, y, width, height].map(to_points);
+    content.rect(x, y, width, height).stroke();
 }
 
 /// Writes a line of text that starts at a point, mm.

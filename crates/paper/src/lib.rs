@@ -1,9 +1,9 @@
 //! Computations on the paper *Optimal Kinematic Design of a Robotic Lizard using Four-Bar and Five-Bar Mechanisms*.
 //!
 //! Many of the paper's equations are wrong as printed, and its design does not have the conditioning that the paper
-//! claims. [`errata`] evaluates every printed equation and its correction at random poses, and compares them with the
+//! claims. [`errata`] evaluates every printed equation and its correction at random poses, and compares both with the
 //! geometric solution. [`design`] repeats the dimensional synthesis, and searches for better proportions. [`mobility`]
-//! counts the degrees of freedom of the body and of the legs, and measures them with the rank of the constraints.
+//! computes the degrees of freedom of the body and of the legs, by Gruebler's count and by the rank of the constraints.
 //!
 //! The crate reads no files, stores nothing and prints nothing. [`errata`] and [`design`] use all cores.
 //!

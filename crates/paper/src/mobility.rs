@@ -1,12 +1,12 @@
-//! Degrees of freedom of the body and of the legs, counted and measured.
+//! Degrees of freedom of the body and of the legs, by Gruebler's count and by the rank of the constraints.
 //!
 //! Gruebler's count assumes that no two joints impose the same constraint. The rank of the constraint Jacobian at a
 //! pose does not need this assumption. Every moving link has three columns in the Jacobian: vx and vy of its point at
 //! the origin, and omega. Every joint has two rows. The degrees of freedom are the number of columns minus the rank.
 //!
-//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. Therefore the
-//! rank is computed again with the driven cranks locked, which adds a row for each crank. A link that can still move is
-//! loose.
+//! At a type-2 singularity the number of freedoms is the same, but the servos do not control one of them. The rank is
+//! therefore computed again with the driven cranks locked, which adds a row for each crank. A link that can still move
+//! is loose.
 
 use lizard_kinematics::{Lizard, Side, Solution, Vector};
 use nalgebra::{DMatrix, DVector, SVD};
@@ -16,7 +16,7 @@ use serde::Serialize;
 /// if its angles are typed with seven digits.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Largest speed of a link that counts as standing still, relative to the fastest link's speed.
+/// Largest speed at which a link counts as standing still, relative to the fastest link's speed.
 const MAX_STILL_SPEED: f64 = 1e-3;
 
 /// The unit of length, mm, which makes lengths comparable with angles in radians.
@@ -30,8 +30,8 @@ struct Mechanism {
     joints: Vec<Joint>,
     /// The numbers of the links that a servo drives.
     driven_links: Vec<usize>,
-    /// Groups of links, each with a message for the case that one of its links moves while the driven links are locked.
-    parts: &'static [(&'static [usize], &'static str)],
+    /// Groups of links, each with the message if one of its links moves while the driven links are locked.
+    link_groups: &'static [(&'static [usize], &'static str)],
 }
 
 /// A joint between two links.
@@ -54,30 +54,36 @@ pub struct Mobility {
     /// `body`, or the leg and its servo.
     pub mechanism: &'static str,
     /// Number of links, including the fixed link.
-    pub links: usize,
+    #[serde(rename = "links")]
+    pub link_count: usize,
     /// Number of joints.
-    pub joints: usize,
-    /// Gruebler's count 3 (N - 1 - j) + sum f, for N links and j joints with f freedoms each.
+    #[serde(rename = "joints")]
+    pub joint_count: usize,
+    /// Gruebler's count 3 (N - 1) - 2 j, for N links and j joints with one freedom each.
     pub gruebler: i64,
     /// Rows of the constraint Jacobian.
-    pub constraints: usize,
+    #[serde(rename = "constraints")]
+    pub constraint_count: usize,
     /// Columns of the constraint Jacobian.
-    pub velocities: usize,
+    #[serde(rename = "velocities")]
+    pub velocity_count: usize,
     /// Rank of the constraint Jacobian.
     pub rank: usize,
     /// Columns minus rank.
     pub freedoms: usize,
     /// Degrees of freedom with the driven cranks locked; 0 if no link can move.
     pub locked_freedoms: usize,
-    /// Messages for the parts that move while the cranks are locked.
-    pub loose: Vec<&'static str>,
+    /// Messages about the links that move while the cranks are locked.
+    #[serde(rename = "loose")]
+    pub loose_messages: Vec<&'static str>,
     /// Smallest singular value divided by the largest, for the Jacobian with the driven cranks locked; it approaches
     /// 0 at a singularity.
-    pub conditioning: f64,
+    #[serde(rename = "conditioning")]
+    pub inverse_condition_number: f64,
 }
 
-/// Measures the degrees of freedom of the body and of each leg at a pose.
-pub fn measure(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
+/// Computes the degrees of freedom of the body and of each leg at a pose.
+pub fn compute_mobilities(lizard: &Lizard, solution: &Solution) -> Vec<Mobility> {
     let leg_names = ["leg LF (A1)", "leg RF (A2)", "leg RH (A3)", "leg LH (A4)"];
     let body = build_body(lizard, solution);
     let legs = (0..4).map(|i| build_leg(lizard, solution, i, leg_names[i]));
@@ -127,7 +133,7 @@ fn build_body(lizard: &Lizard, solution: &Solution) -> Mechanism {
         link_count: 13,
         joints,
         driven_links: CRANK_LINKS.to_vec(),
-        parts: &[
+        link_groups: &[
             (&[5, 6], "the head's end point is loose (type 2)"),
             (&[7, 8], "the tail's end point is loose (type 2)"),
             (&[9, 10], "the left slider is loose"),
@@ -156,7 +162,7 @@ fn build_leg(lizard: &Lizard, solution: &Solution, servo: usize, name: &'static 
         link_count: 4,
         joints: joints.into(),
         driven_links: vec![1],
-        parts: &[(
+        link_groups: &[(
             &[2, 3],
             "coupler and follower may go either way (change point)",
         )],
@@ -169,22 +175,22 @@ pub fn count_body_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
 }
 
 /// Counts the left front leg's degrees of freedom at a pose from the rank of the constraints.
-pub fn count_leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
+pub fn count_left_front_leg_freedoms(lizard: &Lizard, solution: &Solution) -> usize {
     count_freedoms(&build_leg(lizard, solution, 0, "leg"))
 }
 
-/// Counts a mechanism's degrees of freedom with unlocked servos from the rank of the constraints.
+/// Counts a mechanism's degrees of freedom if no crank is locked, from the rank of the constraints.
 fn count_freedoms(mechanism: &Mechanism) -> usize {
     let free_jacobian = build_constraint_jacobian(mechanism, &[]);
     free_jacobian.ncols() - compute_rank(&free_jacobian.singular_values())
 }
 
 impl Mobility {
-    /// Counts and measures one mechanism.
+    /// Computes the mobility of a mechanism.
     fn compute(mechanism: &Mechanism) -> Self {
-        let joints = mechanism.joints.len();
+        let joint_count = mechanism.joints.len();
         let free_jacobian = build_constraint_jacobian(mechanism, &[]);
-        let (constraints, velocities) = free_jacobian.shape();
+        let (constraint_count, velocity_count) = free_jacobian.shape();
         let rank = compute_rank(&free_jacobian.singular_values());
         let locked_svd = SVD::new(
             build_constraint_jacobian(mechanism, &mechanism.driven_links),
@@ -192,16 +198,17 @@ impl Mobility {
             true,
         );
         let singular_values = &locked_svd.singular_values;
-        let zero_limit = RANK_TOLERANCE * singular_values.max();
-        let mut loose_parts = Vec::new();
+        let zero_threshold = RANK_TOLERANCE * singular_values.max();
+        let mut loose_messages = Vec::new();
         if let Some(directions) = &locked_svd.v_t {
             for (value, direction) in singular_values.iter().zip(directions.row_iter()) {
-                if *value <= zero_limit {
+                if *value <= zero_threshold {
                     let speeds: Vec<f64> = (0..mechanism.link_count - 1)
                         .map(|link| direction.columns(3 * link, 3).norm())
                         .collect();
                     let max_speed = speeds.iter().copied().fold(0.0, f64::max);
-                    loose_parts.extend(mechanism.parts.iter().filter_map(|(links, message)| {
+                    let link_groups = mechanism.link_groups.iter();
+                    loose_messages.extend(link_groups.filter_map(|(links, message)| {
                         let is_moving =
                             |link: &usize| speeds[link - 1] > MAX_STILL_SPEED * max_speed;
                         links.iter().any(is_moving).then_some(*message)
@@ -209,30 +216,30 @@ impl Mobility {
                 }
             }
         }
-        loose_parts.sort_unstable();
-        loose_parts.dedup();
+        loose_messages.sort_unstable();
+        loose_messages.dedup();
         Self {
             mechanism: mechanism.name,
-            links: mechanism.link_count,
-            joints,
-            gruebler: 3 * (mechanism.link_count as i64 - 1 - joints as i64) + joints as i64,
-            constraints,
-            velocities,
+            link_count: mechanism.link_count,
+            joint_count,
+            gruebler: 3 * (mechanism.link_count as i64 - 1) - 2 * joint_count as i64,
+            constraint_count,
+            velocity_count,
             rank,
-            freedoms: velocities - rank,
-            locked_freedoms: velocities - compute_rank(singular_values),
-            loose: loose_parts,
-            conditioning: singular_values.min() / singular_values.max(),
+            freedoms: velocity_count - rank,
+            locked_freedoms: velocity_count - compute_rank(singular_values),
+            loose_messages,
+            inverse_condition_number: singular_values.min() / singular_values.max(),
         }
     }
 }
 
-/// Counts the singular values that are not zero.
+/// Computes a matrix's rank: the number of singular values that are not zero.
 fn compute_rank(singular_values: &DVector<f64>) -> usize {
-    let zero_limit = RANK_TOLERANCE * singular_values.max();
+    let zero_threshold = RANK_TOLERANCE * singular_values.max();
     singular_values
         .iter()
-        .filter(|value| **value > zero_limit)
+        .filter(|value| **value > zero_threshold)
         .count()
 }
 

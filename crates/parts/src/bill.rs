@@ -1,6 +1,6 @@
 //! A robot's bill of materials: parts to print, items to buy, mass and centre of mass.
 
-mod loose;
+mod unmodelled;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -16,9 +16,9 @@ use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::fitting::{BATTERY_EXAMPLES, Example, Fitting};
 use crate::layers::outline::Outline;
 use crate::part::{Part, compute_volume};
-use crate::price::Price;
+use crate::price::PriceClass;
 use crate::spring_effect::SpringEffect;
-use loose::{INPUT_ITEMS, LOOSE_ITEMS, RADIO_ITEMS, Row};
+use unmodelled::{INPUT_ITEMS, RADIO_ITEMS, Row, UNPLACED_ITEMS};
 
 /// Density of a printed part, g/mm^3: PLA of 1.24 g/cm^3 with three perimeters and one third infill. The total mass is
 /// within 10 % of PrusaSlicer's estimate.
@@ -66,7 +66,7 @@ pub struct Item {
     pub grams: f64,
     /// Price class of the row; `None` for printed parts.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub price: Option<Price>,
+    pub price: Option<PriceClass>,
     /// Hours to print one piece; `None` for bought items.
     #[serde(
         serialize_with = "decimals::optional::<100, _>",
@@ -77,12 +77,10 @@ pub struct Item {
 
 impl Item {
     fn printed(part: &Part) -> Self {
-        let density = if part.is_flexible {
-            PAD_DENSITY
-        } else {
-            PRINTED_DENSITY
+        let grams = match part.is_flexible {
+            true => PAD_DENSITY * part.volume(),
+            false => PRINTED_DENSITY * part.volume(),
         };
-        let grams = density * part.volume();
         Self {
             hours: Some(HOURS_PER_PIECE + HOURS_PER_GRAM * grams),
             price: None,
@@ -92,7 +90,7 @@ impl Item {
         }
     }
 
-    fn bought(count: usize, name: String, grams: f64, price: Price) -> Self {
+    fn bought(count: usize, name: String, grams: f64, price: PriceClass) -> Self {
         Self {
             count,
             name,
@@ -107,8 +105,8 @@ impl Item {
         self.count as f64 * self.grams
     }
 
-    /// A row for an item that is not modelled as a body of the robot.
-    fn loose((count, name, grams, price): Row) -> Self {
+    /// Creates a row for an item that is not modelled as a body of the robot.
+    fn unmodelled((count, name, grams, price): Row) -> Self {
         Self::bought(count, name.to_owned(), grams, price)
     }
 }
@@ -135,7 +133,7 @@ pub struct Bill {
     /// Centre of mass at the bill's pose: forward, left and up from the plate's middle, mm.
     #[serde(rename = "centre", serialize_with = "decimals::each::<10, _>")]
     pub centre_of_mass: [f64; 3],
-    /// Effect of the springs on the legs; `None` for rigid struts.
+    /// Effect of the springs on the legs; `None` if the struts are rigid.
     #[serde(rename = "hold")]
     pub spring_effect: Option<SpringEffect>,
     /// Size of the space for the battery: to the right, forward, up, mm.
@@ -177,7 +175,7 @@ fn row_text_and_grams(
             (text, HORN_SCREW_GRAMS)
         }
         Kind::Lead => (String::new(), 0.0),
-        Kind::Fitting(fitting) => (fitting.format_bill_row(), fitting.facts().grams),
+        Kind::Fitting(fitting) => (fitting.format_bill_row(), fitting.spec().grams),
         Kind::Pad => (String::new(), PAD_DENSITY * compute_volume(&body.prisms)),
         Kind::Nut => (format!("lock nut M{diameter} (DIN 985)"), NUT_GRAMS),
         Kind::Standoff(length) => {
@@ -185,11 +183,9 @@ fn row_text_and_grams(
             (text, STANDOFF_GRAMS_PER_MM * length)
         }
         Kind::Spring => {
-            let (wire, outer, length) = (
-                parts.spring.wire_diameter,
-                parts.spring.outer_diameter,
-                parts.spring.free_length,
-            );
+            let spring = &parts.spring;
+            let (wire, outer) = (spring.wire_diameter, spring.outer_diameter);
+            let length = spring.free_length;
             let coil_text =
                 format!("wire {wire} mm, coil {outer} mm, {length} mm inside its hooks");
             let pull_text = spring_effect.map_or(String::new(), |effect| {
@@ -200,7 +196,7 @@ fn row_text_and_grams(
             });
             (
                 format!("tension spring, {coil_text}{pull_text}"),
-                spring_grams(&parts.spring),
+                spring_grams(spring),
             )
         }
         Kind::Board => ("Arduino UNO".to_owned(), BOARD_GRAMS),
@@ -212,19 +208,19 @@ fn row_text_and_grams(
     }
 }
 
-/// The price class of a bought body's row.
-fn price_class(kind: Kind) -> Price {
+/// Price class of a bought body's row.
+fn price_class(kind: Kind) -> PriceClass {
     match kind {
-        Kind::Fitting(fitting) => fitting.price(),
-        Kind::Servo | Kind::Board | Kind::Battery => Price::D,
-        Kind::Spring => Price::C,
-        _ => Price::B,
+        Kind::Fitting(fitting) => fitting.price_class(),
+        Kind::Servo | Kind::Board | Kind::Battery => PriceClass::D,
+        Kind::Spring => PriceClass::C,
+        _ => PriceClass::B,
     }
 }
 
 /// Mass of a strut's spring, g.
 pub(crate) fn spring_grams(coil: &Coil) -> f64 {
-    STEEL_DENSITY * coil_volume(coil)
+    STEEL_DENSITY * wire_volume(coil)
 }
 
 /// Mass of a body, g.
@@ -233,7 +229,7 @@ pub(crate) fn body_grams(body: &Body, assembly: &Assembly) -> f64 {
 }
 
 /// Volume of a spring's wire, mm^3: the active coils, and three more for the hooks.
-fn coil_volume(coil: &Coil) -> f64 {
+fn wire_volume(coil: &Coil) -> f64 {
     use std::f64::consts::PI;
     (coil.active_coil_count() + 3.0)
         * PI
@@ -244,8 +240,8 @@ fn coil_volume(coil: &Coil) -> f64 {
         / 4.0
 }
 
-/// The row for pads' strips with a grain; `None` for plain pads.
-fn strip_item(parts: &Parts) -> Option<Item> {
+/// Makes the row for the pads' strips with a grain; `None` if the pads are plain.
+fn make_strip_item(parts: &Parts) -> Option<Item> {
     /// Mass of a 30 mm long strip per mm of width, g: climbing skin of 1.2 kg/m^2.
     const STRIP_GRAMS_PER_MM: f64 = 0.036;
     let name = format!(
@@ -253,22 +249,23 @@ fn strip_item(parts: &Parts) -> Option<Item> {
          without hairs), or a strip of a brush with short, slanted bristles",
         parts.strip
     );
-    (parts.strip > 0.0).then(|| Item::bought(4, name, STRIP_GRAMS_PER_MM * parts.strip, Price::C))
+    (parts.strip > 0.0)
+        .then(|| Item::bought(4, name, STRIP_GRAMS_PER_MM * parts.strip, PriceClass::C))
 }
 
 /// Lists the rows for a robot's inputs and for the strips on its pads.
 fn list_input_items(robot: &Robot) -> Vec<Item> {
     let has_input = |name: &str| robot.inputs().named_pins().any(|(input, _)| input == name);
     let rows = INPUT_ITEMS.into_iter().filter(|(name, _)| has_input(name));
-    let rows = rows.map(|(_, row)| Item::loose(row));
-    rows.chain(strip_item(robot.parts())).collect()
+    let rows = rows.map(|(_, row)| Item::unmodelled(row));
+    rows.chain(make_strip_item(robot.parts())).collect()
 }
 
 impl Bill {
     /// Computes the bill of materials of a robot, with its centre of mass at `pose`.
     pub fn compute(assembly: &Assembly, parts: &[Part], pose: &Solution) -> Self {
         let spring_effect = SpringEffect::compute(assembly);
-        let mut bought_rows: BTreeMap<String, (usize, f64, Price)> = BTreeMap::new();
+        let mut bought_rows: BTreeMap<String, (usize, f64, PriceClass)> = BTreeMap::new();
         let (mut grams, mut moment) = (0.0, [0.0; 3]);
         for body in assembly.bodies() {
             let (text, body_mass) = row_text_and_grams(body, assembly, spring_effect.as_ref());
@@ -287,21 +284,21 @@ impl Bill {
         }
         let list_items = |is_alternative: bool| -> Vec<Item> {
             let parts = parts.iter();
-            let listed_parts = parts.filter(|part| part.instead_of.is_some() == is_alternative);
+            let listed_parts = parts.filter(|part| part.replaces.is_some() == is_alternative);
             listed_parts.map(Item::printed).collect()
         };
         let bought = bought_rows.into_iter();
         let bought =
             bought.map(|(text, (count, grams, price))| Item::bought(count, text, grams, price));
-        let loose_items = LOOSE_ITEMS.map(Item::loose);
-        grams += loose_items.iter().map(Item::total_grams).sum::<f64>();
-        let bought: Vec<_> = bought.chain(loose_items).collect();
+        let unplaced_items = UNPLACED_ITEMS.map(Item::unmodelled);
+        grams += unplaced_items.iter().map(Item::total_grams).sum::<f64>();
+        let bought: Vec<_> = bought.chain(unplaced_items).collect();
         Self {
             printed: list_items(false),
             alternatives: list_items(true),
-            euros: Price::sum(bought.iter().filter_map(|item| item.price)),
+            euros: PriceClass::sum(bought.iter().filter_map(|item| item.price)),
             bought,
-            radio: RADIO_ITEMS.map(Item::loose).into(),
+            radio: RADIO_ITEMS.map(Item::unmodelled).into(),
             inputs: list_input_items(assembly.robot()),
             grams,
             centre_of_mass: moment.map(|sum| sum / grams),
@@ -313,7 +310,7 @@ impl Bill {
     /// Explains the price classes and states their sum.
     pub fn format_prices(&self) -> String {
         let [min, max] = self.euros;
-        let explanation = Price::explanation();
+        let explanation = PriceClass::explanation();
         format!("{explanation} The sum of all rows, tools included, is {min} to {max} euros.")
     }
 
@@ -392,7 +389,7 @@ impl fmt::Display for Bill {
         writeln!(
             f,
             "Places on the robot, and products that fit there:\n\n{}",
-            format_places_table(self.battery_space)
+            format_mounting_table(self.battery_space)
         )?;
         writeln!(
             f,
@@ -440,7 +437,7 @@ pub fn format_buying_table(items: &[Item]) -> String {
 }
 
 /// Formats a Markdown table of the battery and the fittings: place, space, fastening, and examples that fit.
-pub fn format_places_table(battery: [f64; 3]) -> String {
+pub fn format_mounting_table(battery: [f64; 3]) -> String {
     let format_size = |[x, y, z]: [f64; 3]| format!("{x} x {y} x {z}");
     let join_examples = |examples: &mut dyn Iterator<Item = Example>| {
         let names: Vec<_> = examples.map(|example| example.to_string()).collect();
@@ -456,10 +453,10 @@ pub fn format_places_table(battery: [f64; 3]) -> String {
         join_examples(&mut BATTERY_EXAMPLES.into_iter().filter(fits))
     );
     for fitting in Fitting::ALL {
-        let facts = fitting.facts();
-        let (name, place, fastening) = (facts.name, facts.place, facts.fastening);
-        let space = format_size(facts.size);
-        let examples = join_examples(&mut facts.examples.into_iter());
+        let spec = fitting.spec();
+        let (name, place, fastening) = (spec.name, spec.place, spec.fastening);
+        let space = format_size(spec.size);
+        let examples = join_examples(&mut spec.examples.into_iter());
         text += &format!("| {name} | {place} | {space} | {fastening} | {examples} |\n");
     }
     text + SIZES_TEXT

@@ -1,11 +1,11 @@
-//! Reasons why a robot cannot be built, and the checks that find them.
+//! The reasons why a robot cannot be built, and the checks that find them.
 
 use lizard_kinematics::Vector;
 use serde::Serialize;
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::pads;
-use crate::bodies::sliders::{SliderLengths, find_slider_range};
+use crate::bodies::sliders::{SliderLengths, compute_slider_range};
 use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
 use crate::order::reach::BlockedScrew;
@@ -62,7 +62,7 @@ pub struct CollidingPair {
 }
 
 impl BuildError {
-    /// The parts that collide or may collide; `None` for another error.
+    /// The parts that collide or may collide; `None` if the error has another reason.
     #[must_use]
     pub fn colliding_pair(&self) -> Option<CollidingPair> {
         match self {
@@ -91,13 +91,13 @@ impl BuildError {
     }
 }
 
-/// Least gap between servos and floor, mm.
+/// Smallest gap between servos and floor, mm.
 const MIN_SERVO_FLOOR_GAP: f64 = 8.0;
 /// The shortest sleeve that guides a rod, mm.
 const MIN_SLEEVE_LENGTH: f64 = 25.0;
 
 /// The message for a crank that is too thin for its nut.
-const NUT_MESSAGE: &str =
+const THIN_CRANK_MESSAGE: &str =
     "the nut of a leg's anchor does not fit into its crank; increase parts.thickness";
 
 impl Assembly {
@@ -129,7 +129,7 @@ impl Assembly {
             ));
         }
         if !stack.crank_holds_nut(parts) {
-            return refuse(NUT_MESSAGE.to_owned());
+            return refuse(THIN_CRANK_MESSAGE.to_owned());
         }
         for (key, actual, min) in [
             ("height", parts.pad.height, pads::min_height(parts)),
@@ -148,11 +148,8 @@ impl Assembly {
                 parts.pad.width, parts.strip
             ));
         }
-        if parts
-            .pad
-            .dome_height()
-            .is_none_or(|dome| dome > parts.pad.height)
-        {
+        let is_too_high = |dome_height: f64| dome_height > parts.pad.height;
+        if parts.pad.dome_height().is_none_or(is_too_high) {
             return refuse(format!(
                 "a dome with a parts.pad.radius of {} mm does not fit parts.pad.width = {} mm and parts.pad.height = {} mm; \
                  increase the radius",
@@ -177,7 +174,7 @@ impl Assembly {
             ));
         }
         for side in lizard_kinematics::Side::ALL {
-            let range = find_slider_range(robot, side);
+            let range = compute_slider_range(robot, side);
             if SliderLengths::new(side, range).sleeve < MIN_SLEEVE_LENGTH {
                 let [shortest_mm, longest_mm] = range;
                 return refuse(format!(
@@ -188,7 +185,7 @@ impl Assembly {
         }
         for body in self.bodies() {
             if let Kind::Screw(length) | Kind::HexScrew(length) = body.kind
-                && !crate::layers::stack::is_screw_sold(length)
+                && !crate::layers::stack::is_common_screw_length(length)
             {
                 return refuse(format!(
                     "{} must be {length:.1} mm long, which is not a standard length; decrease parts.thickness or parts.plate",
@@ -210,7 +207,7 @@ impl Assembly {
         for (i, a) in bodies.iter().enumerate() {
             for b in bodies[i + 1..].iter().filter(|b| b.mount == a.mount) {
                 let [a_layers, b_layers] = [a, b].map(|body| self.layers_without_thread(body));
-                let gap_mm = compute_layer_clearance(a_layers, b_layers);
+                let gap_mm = compute_min_layer_gap(a_layers, b_layers);
                 if gap_mm < -PRESS_FIT_OVERLAP {
                     return Err(BuildError::OverlapOnMount {
                         first: a.name.clone(),
@@ -239,9 +236,9 @@ impl Assembly {
     }
 }
 
-/// Computes the least distance in plan view between layers of two bodies at a common height, mm; negative if they
+/// Computes the smallest distance in plan view between layers of two bodies at a common height, mm; negative if they
 /// overlap. A shape is clear of a layer if it lies beside the layer's shapes or inside one of the layer's holes.
-fn compute_layer_clearance(a: &[Prism], b: &[Prism]) -> f64 {
+fn compute_min_layer_gap(a: &[Prism], b: &[Prism]) -> f64 {
     let layer_gap = |shape: &Shape, holes: &[Shape], gap_beside: f64| {
         let holes = holes.iter();
         let depths = holes.map(|hole| shape.depth_in(hole, Vector::default()));

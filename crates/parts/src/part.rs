@@ -13,7 +13,7 @@ use crate::layers::placement::Placement;
 use crate::layers::roof;
 use crate::layers::shape::Shape;
 
-/// The noun in the names of spacer rings; length instead of position names their parts.
+/// The noun in the names of spacer rings. Their parts are named after their length, not their position.
 const SPACER: &str = "spacer";
 
 /// A printed part.
@@ -23,14 +23,14 @@ pub struct Part {
     pub name: String,
     /// Names of the bodies that are printed as this part.
     pub body_names: Vec<String>,
-    /// Layers as printed: from z = 0 up, with the larger face below.
+    /// Layers as printed, each a prism: from z = 0 up, with the larger face below.
     pub prisms: Vec<Prism>,
-    /// True if the part is turned over for printing.
-    pub is_turned_over: bool,
+    /// True if the part is flipped (turned over) for printing.
+    pub is_flipped: bool,
     /// True if the part is printed in a flexible filament (TPU).
     pub is_flexible: bool,
-    /// Name of the part that this part may replace; `None` for a part of the standard robot.
-    pub instead_of: Option<String>,
+    /// Name of the part that this part may replace; `None` for a part of the robot itself.
+    pub replaces: Option<String>,
     /// Engraved digits: the numbers of the part's servos, such as `13` for A1 and A3. Empty if its noun is unique.
     pub mark: String,
 }
@@ -42,9 +42,9 @@ impl Part {
             name: name.to_owned(),
             body_names: vec![name.to_owned()],
             prisms,
-            is_turned_over: false,
+            is_flipped: false,
             is_flexible: false,
-            instead_of: None,
+            replaces: None,
             mark: String::new(),
         }
     }
@@ -59,25 +59,25 @@ impl Part {
         self.name.replace(' ', "-")
     }
 
-    /// Builds the layers as printed, with the mark and with closed holes where a hole would begin in mid-air. Also
-    /// returns the number of closed holes.
+    /// Builds the layers as printed, with the mark, and with holes bridged where they would begin in mid-air. Also
+    /// returns the number of bridged holes.
     pub fn build_printed_layers(&self) -> (Vec<Prism>, usize) {
         let marked_prisms = mark::engrave_mark(&self.prisms, &self.mark);
-        roof::close_unsupported_holes(&marked_prisms.unwrap_or_else(|| self.prisms.clone()))
+        roof::bridge_unsupported_holes(&marked_prisms.unwrap_or_else(|| self.prisms.clone()))
     }
 
-    /// Finds the centres of the closed holes, which are drilled later, in the frame of the printed part, mm.
-    pub fn find_closed_holes(&self) -> Vec<Vector> {
+    /// Finds the centres of the bridged holes, which are drilled later, in the frame of the printed part, mm.
+    pub fn find_bridged_holes(&self) -> Vec<Vector> {
         roof::find_unsupported_holes(&self.prisms)
     }
 
-    /// Returns the motion from the printed part to the position of a body, in the body's frame.
-    pub fn print_to_body(&self, body: &Body) -> PrintToBody {
+    /// Computes the rigid transform from the printed part to the position of a body, in the body's frame.
+    pub fn transform_to_body(&self, body: &Body) -> PrintTransform {
         let [low, high] = body.z();
-        PrintToBody {
-            is_flipped: self.is_turned_over,
-            lift: if self.is_turned_over { high } else { low },
-            frame: print_frame(body),
+        PrintTransform {
+            is_flipped: self.is_flipped,
+            lift: if self.is_flipped { high } else { low },
+            frame: compute_print_frame(body),
         }
     }
 
@@ -87,10 +87,11 @@ impl Part {
     }
 }
 
-/// The motion from a printed part's frame to its body's frame: flip, lift, then rotation and translation in the plane.
+/// The rigid transform from a printed part's frame to its body's frame: flip, lift, then rotation and translation in
+/// the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PrintToBody {
-    /// True if the part is first turned over: (x, y, z) becomes (x, -y, -z).
+pub struct PrintTransform {
+    /// True if the part is first flipped: (x, y, z) becomes (x, -y, -z).
     pub is_flipped: bool,
     /// Lift after the flip, mm.
     pub lift: f64,
@@ -113,7 +114,7 @@ impl Assembly {
         };
         let strut_name = parts.iter().find(is_strut).map(|part| part.name.clone());
         for mut part in find_distinct_parts(self.alternatives()) {
-            part.instead_of.clone_from(&strut_name);
+            part.replaces.clone_from(&strut_name);
             parts.push(part);
         }
         let part_noun = |part: &Part| split_name(&part.body_names[0]).0.to_owned();
@@ -151,71 +152,61 @@ fn format_servo_digits(names: &[String]) -> String {
 fn find_distinct_parts(bodies: &[Body]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     for body in bodies.iter().filter(|body| body.kind.is_printed()) {
-        let (prisms, is_turned_over) = to_print_layers(body);
-        match parts
-            .iter_mut()
-            .find(|part| are_equal_layers(&part.prisms, &prisms))
-        {
+        let (prisms, is_flipped) = to_print_layers(body);
+        let has_equal_layers = |part: &&mut Part| are_equal_layers(&part.prisms, &prisms);
+        match parts.iter_mut().find(has_equal_layers) {
             Some(part) => part.body_names.push(body.name.clone()),
             None => parts.push(Part {
-                is_turned_over,
+                is_flipped,
                 is_flexible: body.kind == Kind::Pad,
                 ..Part::single(&body.name, prisms)
             }),
         }
     }
     for part in &mut parts {
-        let top_layer = part
-            .prisms
-            .last()
-            .filter(|_| part.body_names[0].contains(SPACER));
-        part.name = match top_layer {
-            Some(top) => format!("{SPACER} {:.1}", top.z[1]),
-            None => join_names(&part.body_names),
+        part.name = match part.prisms.last() {
+            Some(top) if part.body_names[0].contains(SPACER) => format!("{SPACER} {:.1}", top.z[1]),
+            _ => join_names(&part.body_names),
         };
     }
     parts
 }
 
-/// Converts a body's layers to the frame in which they are printed. The second value is true if the body is turned over
-/// for printing. The first shape is at the origin and the first bar along x, so equal parts have equal layers.
+/// Converts a body's layers to the frame in which they are printed. The second value is true if the body is flipped for
+/// printing. The first shape is at the origin and the first bar along x, so equal parts have equal layers.
 fn to_print_layers(body: &Body) -> (Vec<Prism>, bool) {
     let layer_area =
         |prism: Option<&Prism>| prism.map_or(0.0, |prism| Outline::from_prism(prism).area());
-    let is_turned_over = layer_area(body.prisms.first()) < 0.7 * layer_area(body.prisms.last());
+    let is_flipped = layer_area(body.prisms.first()) < 0.7 * layer_area(body.prisms.last());
     let [low, high] = body.z();
-    let frame = print_frame(body);
+    let frame = compute_print_frame(body);
     let to_print_frame = |shape: &Shape| {
         let points = shape.points.iter().map(|&point| frame.unmap(point));
         let shape = Shape {
             points: points.collect(),
             radius: shape.radius,
         };
-        if is_turned_over {
-            shape.mirrored()
-        } else {
-            shape
-        }
+        if is_flipped { shape.mirrored() } else { shape }
     };
     let to_print_prism = |prism: &Prism| Prism {
         filled_shapes: prism.filled_shapes.iter().map(to_print_frame).collect(),
         cut_shapes: prism.cut_shapes.iter().map(to_print_frame).collect(),
-        z: match is_turned_over {
+        z: match is_flipped {
             true => [high - prism.z[1], high - prism.z[0]],
             false => prism.z.map(|z| z - low),
         },
-        insets: match is_turned_over {
+        insets: match is_flipped {
             true => [prism.insets[1], prism.insets[0]],
             false => prism.insets,
         },
     };
     let mut prisms: Vec<Prism> = body.prisms.iter().map(to_print_prism).collect();
     prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-    (prisms, is_turned_over)
+    (prisms, is_flipped)
 }
 
-/// Returns the frame in which a body is printed.
-fn print_frame(body: &Body) -> Placement {
+/// Computes the frame in which a body is printed.
+fn compute_print_frame(body: &Body) -> Placement {
     if body.mount == Mount::Chassis {
         return Placement::CHASSIS;
     }
@@ -261,7 +252,8 @@ fn are_equal_layers(a: &[Prism], b: &[Prism]) -> bool {
         })
 }
 
-/// Joins the names of several bodies: their common noun, then their owners.
+/// Joins the names of several bodies: `link A1 A3`; only the noun if there are four; the first name if the nouns
+/// differ.
 fn join_names(names: &[String]) -> String {
     let (nouns, owners): (Vec<_>, Vec<_>) = names.iter().map(|name| split_name(name)).unzip();
     match names.len() {

@@ -10,7 +10,7 @@ pub const ESTIMATE_MONTH: &str = "November 2026";
 
 /// The price class of a row of the bill of materials: of all its pieces, or of the smallest pack sold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Price {
+pub enum PriceClass {
     /// Up to 1 euro.
     A,
     /// 1 to 3 euros.
@@ -23,11 +23,11 @@ pub enum Price {
     E,
 }
 
-impl Price {
+impl PriceClass {
     /// All classes, the cheapest first.
     pub const ALL: [Self; 5] = [Self::A, Self::B, Self::C, Self::D, Self::E];
 
-    /// Least and greatest price, euros.
+    /// Lowest and highest price, euros.
     pub fn euro_range(self) -> [u32; 2] {
         match self {
             Self::A => [0, 1],
@@ -54,7 +54,7 @@ impl Price {
         )
     }
 
-    /// Adds up classes to the least and the greatest total, euros.
+    /// Adds up classes to the lowest and the highest total, euros.
     pub fn sum(classes: impl Iterator<Item = Self>) -> [u32; 2] {
         classes.fold([0, 0], |sum, class| {
             let [min, max] = class.euro_range();
@@ -63,13 +63,13 @@ impl Price {
     }
 }
 
-impl fmt::Display for Price {
+impl fmt::Display for PriceClass {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         fmt::Debug::fmt(self, f)
     }
 }
 
-impl Serialize for Price {
+impl Serialize for PriceClass {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }

@@ -20,17 +20,17 @@ pub struct SpringEffect {
     /// Rate of the spring, N/mm.
     #[serde(rename = "rate", serialize_with = "decimals::one::<1000, _>")]
     pub spring_rate: f64,
-    /// Least and greatest lever arm of the strut's pull about the leg's pivot, over all legs and gaits, mm. The lever
+    /// Smallest and largest lever arm of the strut's pull about the leg's pivot, over all legs and gaits, mm. The lever
     /// arm varies because the pull is perpendicular to the anchor's arm at only one pose.
     #[serde(rename = "lever", serialize_with = "decimals::each::<1000, _>")]
     pub lever_arm_range: [f64; 2],
     /// Torque up to which the leg follows its servo exactly in all gaits, N mm.
     #[serde(rename = "preload", serialize_with = "decimals::one::<1000, _>")]
     pub preload_torque: f64,
-    /// Least and greatest lag of a leg at the slot's end, over all gaits, deg.
+    /// Smallest and largest lag of a leg at the slot's end, over all gaits, deg.
     #[serde(rename = "way", serialize_with = "decimals::each::<1000, _>")]
     pub lag_range: [f64; 2],
-    /// Least and greatest torque on a leg at the slot's end, over all gaits, N mm.
+    /// Smallest and largest torque on a leg at the slot's end, over all gaits, N mm.
     #[serde(rename = "end", serialize_with = "decimals::each::<1000, _>")]
     pub torque_range: [f64; 2],
     /// Torque of a pad's friction on its leg, N mm.
@@ -42,7 +42,7 @@ pub struct SpringEffect {
 }
 
 impl SpringEffect {
-    /// True if a servo can continue to turn when its leg has reached the slot's end: the greatest torque there is less
+    /// True if a servo can continue to turn when its leg has reached the slot's end: the largest torque there is less
     /// than 0.7 of the stall torque.
     pub fn lets_servo_turn(&self) -> bool {
         self.torque_range[1] < 0.7 * self.stall_torque
@@ -52,7 +52,7 @@ impl SpringEffect {
     pub fn compute(assembly: &Assembly) -> Option<Self> {
         let robot = assembly.robot();
         let strut = robot.drive().strut()?;
-        // Least and greatest lever arm, lag and torque.
+        // Smallest and largest lever arm, lag and torque.
         let mut ranges = [[f64::INFINITY, 0.0]; 3];
         for gait in robot.gaits() {
             for (_, phase) in gait.frames() {

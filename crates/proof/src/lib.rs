@@ -11,20 +11,20 @@
 //!
 //! # When not to use it
 //! For a single pose: the guard itself (`lizard-core`) and the margins (`lizard-kinematics`) decide it at once. A guard
-//! whose conditions depend on three servos or more needs another proof.
+//! with conditions that depend on three or more servos needs another proof.
 //!
 //! # Units
 //! mm and degrees, and the firmware's steps: 1/65536 turn for angles, and each robot's own step for lengths.
 
-mod end_walk;
+mod end_comparison;
+mod guard_comparison;
 mod positions;
 mod proof;
 mod rows;
-mod side_walk;
+mod side_comparison;
 mod tally;
-mod walk;
 
+pub use guard_comparison::{GuardComparison, PIECE_COUNT};
 pub use proof::Proof;
 pub use rows::PairSample;
 pub use tally::{Finding, LENGTH_BAND_STEPS, MARGIN_BAND, Tally, margin_band};
-pub use walk::{GuardComparison, PIECE_COUNT};

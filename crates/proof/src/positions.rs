@@ -38,7 +38,9 @@ impl Positions {
                 End::Head => fixed,
                 End::Tail => fixed.in_tail_frame(),
             });
-            positions.exact.push(end.mirror(Vector::direction(degrees)));
+            positions
+                .exact
+                .push(end.mirror(Vector::from_angle(degrees)));
         }
         positions
     }

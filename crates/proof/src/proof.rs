@@ -1,11 +1,11 @@
-//! The proof of a robot's guard: the findings of all its parts.
+//! The proof of a robot's guard: the findings for all parts of the robot.
 
 use lizard_robot::{CoreRobot, Robot};
 use serde::Serialize;
 
+use crate::guard_comparison::{self, GuardComparison, PIECE_COUNT};
 use crate::rows::PairSample;
 use crate::tally::{Finding, Tally};
-use crate::walk;
 
 /// The comparison of guard and geometry for one robot.
 #[derive(Clone, Debug, Serialize)]
@@ -27,24 +27,24 @@ impl Proof {
         sample: PairSample,
         report_progress: &(dyn Fn(u64) + Sync),
     ) -> Self {
-        let comparison = walk::GuardComparison::new(robot, guard, sample);
+        let comparison = GuardComparison::new(robot, guard, sample);
         let compare_piece = |index| comparison.compare_piece(index, report_progress);
-        let tallies = (0..walk::PIECE_COUNT).map(compare_piece).collect();
+        let tallies = (0..PIECE_COUNT).map(compare_piece).collect();
         Self::from_tallies(robot, guard, tallies)
     }
 
     /// Assembles the proof from the tallies of all pieces, in the order of the pieces.
     pub fn from_tallies(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Self {
         Self {
-            findings: walk::compute_findings(robot, guard, tallies),
+            findings: guard_comparison::compute_findings(robot, guard, tallies),
             hash: guard.hash(),
-            margin_band: walk::widest_margin_band(robot),
+            margin_band: guard_comparison::widest_margin_band(robot),
         }
     }
 
     /// The number of rows that [`Proof::compute`] compares.
     pub fn row_count(guard: &CoreRobot) -> u64 {
-        walk::row_count(guard)
+        guard_comparison::row_count(guard)
     }
 
     /// The number of pairs in cells of the robot's maps; the firmware accepts their poses without computing them.

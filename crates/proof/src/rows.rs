@@ -9,7 +9,7 @@ use crate::positions::Positions;
 use crate::tally::Tally;
 
 /// Number of columns that are computed at once in floating point.
-pub const LANES: usize = 8;
+pub const LANE_COUNT: usize = 8;
 
 /// Number of pieces into which the rows of each end and each side are divided.
 pub const PIECES_PER_PART: usize = 64;
@@ -18,7 +18,7 @@ pub const PIECES_PER_PART: usize = 64;
 /// differs from row to row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PairSample {
-    /// One pair in this number is compared; at least 1.
+    /// One pair out of this number is compared; at least 1.
     pub one_in: u32,
     /// Offset of the selected columns, below `one_in`.
     pub offset: u32,
@@ -60,16 +60,16 @@ pub fn tally_rows(
         .reduce(Tally::default, Tally::merge)
 }
 
-/// Calls `visit` with the columns of a row, [`LANES`] at a time, and with the number of valid columns; the last column
-/// is repeated to fill the group.
+/// Calls `visit` with the columns of a row, [`LANE_COUNT`] at a time, and with the number of valid columns. The last
+/// column is repeated to fill the group.
 pub fn for_each_group(
     mut columns: impl Iterator<Item = usize>,
-    mut visit: impl FnMut([usize; LANES], usize),
+    mut visit: impl FnMut([usize; LANE_COUNT], usize),
 ) {
     loop {
-        let mut group = [0; LANES];
+        let mut group = [0; LANE_COUNT];
         let mut valid_count = 0;
-        for column in columns.by_ref().take(LANES) {
+        for column in columns.by_ref().take(LANE_COUNT) {
             group[valid_count..].fill(column);
             valid_count += 1;
         }
@@ -82,17 +82,11 @@ pub fn for_each_group(
 
 /// Gathers the vectors of a group of columns, one for each lane.
 #[inline]
-pub fn gather_lanes(vectors: &[Vector], columns: [usize; LANES]) -> Vector<Lanes<LANES>> {
+pub fn gather_lanes(vectors: &[Vector], columns: [usize; LANE_COUNT]) -> Vector<Lanes<LANE_COUNT>> {
     Vector::new(
         Lanes(columns.map(|column| vectors[column].x)),
         Lanes(columns.map(|column| vectors[column].y)),
     )
-}
-
-/// Repeats a vector in all lanes.
-#[inline]
-pub fn splat(vector: Vector) -> Vector<Lanes<LANES>> {
-    Vector::new(Lanes([vector.x; LANES]), Lanes([vector.y; LANES]))
 }
 
 /// Converts a margin of the firmware, Q15, to a sine.

@@ -51,11 +51,11 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Raises `largest` to `value` if `value` is larger.
+    /// Raises `max` to `value` if `value` is larger.
     #[inline(always)]
-    pub fn raise(largest: &mut Option<f64>, value: f64) {
-        if largest.is_none_or(|largest| value > largest) {
-            *largest = Some(value);
+    pub fn raise(max: &mut Option<f64>, value: f64) {
+        if max.is_none_or(|max| value > max) {
+            *max = Some(value);
         }
     }
 
@@ -63,7 +63,7 @@ impl Tally {
     pub fn merge(mut self, other: Self) -> Self {
         self.pair_count += other.pair_count;
         self.certified_count += other.certified_count;
-        for (largest, value) in [
+        for (max, value) in [
             (&mut self.max_type2_error, other.max_type2_error),
             (&mut self.max_type1_error, other.max_type1_error),
             (&mut self.max_leg_error, other.max_leg_error),
@@ -72,7 +72,7 @@ impl Tally {
             (&mut self.max_length_difference, other.max_length_difference),
         ] {
             if let Some(value) = value {
-                Self::raise(largest, value);
+                Self::raise(max, value);
             }
         }
         self.wrong_count += other.wrong_count;

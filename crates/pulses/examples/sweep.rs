@@ -10,7 +10,7 @@
 
 use avr_device::atmega328p::{Peripherals, USART0};
 use panic_halt as _;
-use servo_pulses::cells::Byte;
+use servo_pulses::cells::SharedByte;
 use servo_pulses::{CYCLES_PER_US, Pin};
 
 /// The pins of eight servos on three ports. The LED is on D13, the serial port on D0 and D1.
@@ -38,10 +38,10 @@ mod servos {
 }
 
 /// The ring buffer of received bytes.
-static RING: [Byte; 16] = [const { Byte::new(0) }; 16];
+static RECEIVE_RING: [SharedByte; 16] = [const { SharedByte::new(0) }; 16];
 /// The number of received bytes, modulo 256, which the handler increments; `main` echoes bytes until it has echoed as
 /// many.
-static RECEIVED_COUNT: Byte = Byte::new(0);
+static RECEIVED_COUNT: SharedByte = SharedByte::new(0);
 
 /// Computes the width of a servo's pulse in a frame, cycles: a triangle wave from 1000 to 2000 us. The width of each
 /// servo changes by another number of cycles per frame.
@@ -85,7 +85,7 @@ fn main() -> ! {
             }
         }
         if RECEIVED_COUNT.get() != echoed_count && chip.USART0.ucsr0a.read().udre0().bit_is_set() {
-            let byte = RING[usize::from(echoed_count & 15)].get();
+            let byte = RECEIVE_RING[usize::from(echoed_count & 15)].get();
             echoed_count = echoed_count.wrapping_add(1);
             chip.USART0.udr0.write(|w| w.bits(byte));
         }
@@ -97,6 +97,6 @@ fn USART_RX() {
     // SAFETY: only this handler reads UDR0.
     let byte = unsafe { &*USART0::ptr() }.udr0.read().bits();
     let received_count = RECEIVED_COUNT.get();
-    RING[usize::from(received_count & 15)].set(byte);
+    RECEIVE_RING[usize::from(received_count & 15)].set(byte);
     RECEIVED_COUNT.set(received_count.wrapping_add(1));
 }

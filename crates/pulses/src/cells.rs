@@ -13,13 +13,13 @@ use crate::pin::Pin;
 ///
 /// Single accesses are atomic; a read followed by a write is not. A value that depends on the old one must have a
 /// single writer.
-pub struct Byte(UnsafeCell<u8>);
+pub struct SharedByte(UnsafeCell<u8>);
 
 // SAFETY: there is one core, and every access is a single load or store of one byte. No function returns a reference to
 // the value.
-unsafe impl Sync for Byte {}
+unsafe impl Sync for SharedByte {}
 
-impl Byte {
+impl SharedByte {
     /// Creates a byte with an initial value.
     #[must_use]
     pub const fn new(value: u8) -> Self {
@@ -43,19 +43,19 @@ impl Byte {
 
 /// A word of two bytes. An interrupt may occur between the accesses to the two bytes, so the program must ensure that
 /// reader and writer do not access the word at the same time.
-pub struct Word {
-    low: Byte,
-    high: Byte,
+pub struct SharedWord {
+    low: SharedByte,
+    high: SharedByte,
 }
 
-impl Word {
+impl SharedWord {
     /// Creates a word with an initial value.
     #[must_use]
     pub const fn new(value: u16) -> Self {
         let [low, high] = value.to_le_bytes();
         Self {
-            low: Byte::new(low),
-            high: Byte::new(high),
+            low: SharedByte::new(low),
+            high: SharedByte::new(high),
         }
     }
 
@@ -81,19 +81,19 @@ impl Word {
 }
 
 /// A counter of faults that interrupt handlers increment and main reads. It saturates at 65535.
-pub struct Counter(Word);
+pub struct SharedCounter(SharedWord);
 
-impl Default for Counter {
+impl Default for SharedCounter {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl Counter {
+impl SharedCounter {
     /// Creates a counter at zero.
     #[must_use]
     pub const fn new() -> Self {
-        Self(Word::new(0))
+        Self(SharedWord::new(0))
     }
 
     /// Counts a fault. Call this function only in interrupt handlers, which cannot interrupt each other.
@@ -127,13 +127,14 @@ impl Counter {
 
 /// Returns the address of the PORT register and the mask of each pin, followed by zeros up to `SIZE` entries.
 #[must_use]
-pub const fn pin_table<const SERVOS: usize, const SIZE: usize>(
-    pins: [Pin; SERVOS],
-) -> [[Byte; 2]; SIZE] {
-    let mut table = [const { [const { Byte::new(0) }; 2] }; SIZE];
+pub const fn pin_table<const SERVO_COUNT: usize, const SIZE: usize>(
+    pins: [Pin; SERVO_COUNT],
+) -> [[SharedByte; 2]; SIZE] {
+    let mut table = [const { [const { SharedByte::new(0) }; 2] }; SIZE];
     let mut slot = 0;
-    while slot < SERVOS {
-        table[slot] = [Byte::new(pins[slot].port), Byte::new(pins[slot].mask)];
+    while slot < SERVO_COUNT {
+        let Pin { port, mask } = pins[slot];
+        table[slot] = [SharedByte::new(port), SharedByte::new(mask)];
         slot += 1;
     }
     table

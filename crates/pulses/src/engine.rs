@@ -1,78 +1,78 @@
 //! The pulse engine: the interrupt handlers that open and close the slots.
 
-use crate::cells::{Byte, Counter, Word};
+use crate::cells::{SharedByte, SharedCounter, SharedWord};
 #[cfg(any(test, target_arch = "avr"))]
 use crate::timing::MIN_WIDTH_CYCLES;
 use crate::timing::{LEAD_CYCLES, max_width_cycles};
 
-/// The pulse generator for `SERVOS` servos, with references to the variables that [`engine!`](crate::engine) defines.
-/// `SIZE`, the length of the tables, is `SERVOS` rounded up to a power of two.
+/// The pulse generator for `SERVO_COUNT` servos, with references to the variables that [`engine!`](crate::engine)
+/// defines. `SIZE`, the length of the tables, is `SERVO_COUNT` rounded up to a power of two.
 #[derive(Clone, Copy)]
-pub struct Engine<'a, const SERVOS: usize, const SIZE: usize> {
+pub struct Engine<'a, const SERVO_COUNT: usize, const SIZE: usize> {
     #[doc(hidden)]
     /// The address of the PORT register and the mask of each slot's pin; zeros, no pin, until [`Engine::connect`].
-    pub pins: &'a [[Byte; 2]; SIZE],
+    pub pins: &'a [[SharedByte; 2]; SIZE],
     #[doc(hidden)]
     /// Two frames of pulse widths in cycles: one is played while main fills the other.
-    pub frames: &'a [[Word; SIZE]; 2],
+    pub frames: &'a [[SharedWord; SIZE]; 2],
     #[doc(hidden)]
     /// The index of the frame that is played. Only the handler changes the index, and only while `has_new_frame` is 1.
-    pub played_frame: &'a Byte,
+    pub played_frame: &'a SharedByte,
     #[doc(hidden)]
     /// 1 while the other frame is complete and waits to be taken over. Main sets this byte; the handler clears it when
     /// taking the frame over, and main clears it to withdraw the frame.
-    pub has_new_frame: &'a Byte,
+    pub has_new_frame: &'a SharedByte,
     #[doc(hidden)]
     /// The plan: the number of the current slot or, between slots, of the next slot. The first slot is the tick's slot,
     /// so that main can begin at once. TIMER1_COMPB writes the plan; TIMER1_COMPA removes a pulse whose rising edge is
     /// late.
-    pub slot: &'a Byte,
+    pub slot: &'a SharedByte,
     #[doc(hidden)]
     /// The plan: the address of the pin's PORT register.
-    pub port: &'a Byte,
+    pub port: &'a SharedByte,
     #[doc(hidden)]
     /// The plan: the pin's bit in its PORT register; 0 for no pulse.
-    pub mask: &'a Byte,
+    pub mask: &'a SharedByte,
     #[doc(hidden)]
-    /// The plan: the timer count at which the falling edge is due.
-    pub fall_count: &'a Word,
+    /// The plan: the timer count of the falling edge.
+    pub fall_count: &'a SharedWord,
     #[doc(hidden)]
     /// The bits of a port that may go high: all, or none after [`Engine::suppress_pulses`].
-    pub allowed_pins: &'a Byte,
+    pub allowed_pins: &'a SharedByte,
     #[doc(hidden)]
     /// The number of ticks so far, modulo 256; written only by TIMER1_COMPA.
-    pub ticks: &'a Byte,
+    pub ticks: &'a SharedByte,
     #[doc(hidden)]
     /// The number of late edges, counted in both handlers.
-    pub late_edges: &'a Counter,
+    pub late_edges: &'a SharedCounter,
 }
 
-impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
+impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> {
     /// The number of the slot without a pin.
     #[cfg(any(test, target_arch = "avr"))]
-    const TICK_SLOT: u8 = SERVOS as u8;
+    const TICK_SLOT: u8 = SERVO_COUNT as u8;
     /// The timer count at which a slot without a pulse closes, which is as late as possible, so that the tick's slot
     /// gives main the longest time.
-    const CLOSE_COUNT: u16 = max_width_cycles(SERVOS);
+    const CLOSE_COUNT: u16 = max_width_cycles(SERVO_COUNT);
     /// The value of `fall_count` in a slot without a pulse.
     #[doc(hidden)]
-    pub const NO_PULSE: u16 = Self::CLOSE_COUNT + LEAD_CYCLES as u16;
+    pub const NO_PULSE_COUNT: u16 = Self::CLOSE_COUNT + LEAD_CYCLES as u16;
 
     /// Submits the widths of the next frame, in CPU cycles of 62.5 ns and in the order of the pins, as `u16` or as a
     /// type that converts to it.
     ///
     /// The engine takes over all widths together, before the first slot opens. If a second frame is submitted before,
-    /// the first frame is never played, see [`Engine::is_taken`]. Without a new frame, the last widths repeat. A width
-    /// of 0, or a width that does not fit into a slot, results in no pulse, see
+    /// the first frame is never played, see [`Engine::is_taken`]. If no frame is submitted, the last widths repeat. A
+    /// width of 0, or a width that does not fit into a slot, results in no pulse, see
     /// [`MIN_WIDTH_CYCLES`](crate::MIN_WIDTH_CYCLES) and [`max_width_cycles`](crate::max_width_cycles).
     #[inline(always)]
-    pub fn submit<W: Into<u16>>(&self, widths: [W; SERVOS]) {
+    pub fn submit<W: Into<u16>>(&self, widths: [W; SERVO_COUNT]) {
         // Withdraws a frame that has not been played. Until the end of this function the handler does not change
         // `played_frame`, so the frame being filled cannot be played.
         self.has_new_frame.set(0);
         let frame = &self.frames[usize::from(self.played_frame.get() & 1 ^ 1)];
-        for (slot, width) in frame.iter().zip(widths) {
-            slot.set(width.into());
+        for (stored_width, width) in frame.iter().zip(widths) {
+            stored_width.set(width.into());
         }
         self.has_new_frame.set(1);
     }
@@ -134,7 +134,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
         match self.planned_pulse(slot) {
             None => {
                 self.mask.set(0);
-                self.fall_count.set(Self::NO_PULSE);
+                self.fall_count.set(Self::NO_PULSE_COUNT);
             }
             Some((servo, width)) => {
                 let [port, mask] = &self.pins[servo];
@@ -156,31 +156,31 @@ mod tests {
 
     /// The engine's variables, as `engine!` defines them.
     struct Variables<const SIZE: usize> {
-        pins: [[Byte; 2]; SIZE],
-        frames: [[Word; SIZE]; 2],
-        bytes: [Byte; 7],
-        fall_count: Word,
-        late_edges: Counter,
+        pins: [[SharedByte; 2]; SIZE],
+        frames: [[SharedWord; SIZE]; 2],
+        bytes: [SharedByte; 7],
+        fall_count: SharedWord,
+        late_edges: SharedCounter,
     }
 
     impl<const SIZE: usize> Variables<SIZE> {
-        fn for_servos<const SERVOS: usize>() -> Self {
-            let bytes = [const { Byte::new(0) }; 7];
-            bytes[0].set(SERVOS as u8); // the tick's slot
-            let mut pins = [const { [const { Byte::new(0) }; 2] }; SIZE];
-            for (servo, pin) in pins.iter_mut().enumerate().take(SERVOS) {
-                *pin = [Byte::new(0x25), Byte::new(servo as u8 + 1)];
+        fn with_servos<const SERVO_COUNT: usize>() -> Self {
+            let bytes = [const { SharedByte::new(0) }; 7];
+            bytes[0].set(SERVO_COUNT as u8); // the tick's slot
+            let mut pins = [const { [const { SharedByte::new(0) }; 2] }; SIZE];
+            for (servo, pin) in pins.iter_mut().enumerate().take(SERVO_COUNT) {
+                *pin = [SharedByte::new(0x25), SharedByte::new(servo as u8 + 1)];
             }
             Self {
                 pins,
-                frames: [const { [const { Word::new(0) }; SIZE] }; 2],
+                frames: [const { [const { SharedWord::new(0) }; SIZE] }; 2],
                 bytes,
-                fall_count: Word::new(0),
-                late_edges: Counter::new(),
+                fall_count: SharedWord::new(0),
+                late_edges: SharedCounter::new(),
             }
         }
 
-        fn engine<const SERVOS: usize>(&self) -> Engine<'_, SERVOS, SIZE> {
+        fn engine<const SERVO_COUNT: usize>(&self) -> Engine<'_, SERVO_COUNT, SIZE> {
             let [
                 slot,
                 played_frame,
@@ -207,11 +207,11 @@ mod tests {
     }
 
     /// Plans each slot of a frame. Returns the plans: slot, mask, and count of the falling edge.
-    fn plan_frame<const SERVOS: usize, const SIZE: usize>(
-        engine: &Engine<'_, SERVOS, SIZE>,
+    fn plan_frame<const SERVO_COUNT: usize, const SIZE: usize>(
+        engine: &Engine<'_, SERVO_COUNT, SIZE>,
     ) -> [(u8, u8, u16); 9] {
         let mut plans = [(0, 0, 0); 9];
-        for plan in &mut plans[..=SERVOS] {
+        for plan in &mut plans[..=SERVO_COUNT] {
             engine.plan_next_slot();
             *plan = (
                 engine.slot.get(),
@@ -222,10 +222,10 @@ mod tests {
         plans
     }
 
-    fn assert_each_servo_has_its_slot<const SERVOS: usize, const SIZE: usize>() {
-        let variables = Variables::<SIZE>::for_servos::<SERVOS>();
-        let engine = variables.engine::<SERVOS>();
-        let mut widths = [0; SERVOS];
+    fn assert_each_servo_has_its_slot<const SERVO_COUNT: usize, const SIZE: usize>() {
+        let variables = Variables::<SIZE>::with_servos::<SERVO_COUNT>();
+        let engine = variables.engine::<SERVO_COUNT>();
+        let mut widths = [0; SERVO_COUNT];
         for (servo, width) in widths.iter_mut().enumerate() {
             *width = 24_000 + servo as u16;
         }
@@ -237,15 +237,15 @@ mod tests {
         assert!(!engine.is_taken(), "the first frame waits");
         for frame in 0..3 {
             let plans = plan_frame(&engine);
-            for (servo, plan) in plans.into_iter().enumerate().take(SERVOS) {
+            for (servo, plan) in plans.into_iter().enumerate().take(SERVO_COUNT) {
                 let fall_count = 24_000 + servo as u16 + u16::from(LEAD_CYCLES);
                 let expected_plan = (servo as u8, servo as u8 + 1, fall_count);
-                assert_eq!(plan, expected_plan, "{SERVOS} servos, frame {frame}");
+                assert_eq!(plan, expected_plan, "{SERVO_COUNT} servos, frame {frame}");
             }
-            let close_count = slot_cycles(SERVOS) - 1_000 + u16::from(LEAD_CYCLES);
+            let close_count = slot_cycles(SERVO_COUNT) - 1_000 + u16::from(LEAD_CYCLES);
             assert_eq!(
-                plans[SERVOS],
-                (SERVOS as u8, 0, close_count),
+                plans[SERVO_COUNT],
+                (SERVO_COUNT as u8, 0, close_count),
                 "the tick's slot has no pulse"
             );
         }
@@ -266,7 +266,7 @@ mod tests {
 
     #[test]
     fn a_width_too_short_or_too_long_for_a_slot_results_in_no_pulse() {
-        let variables = Variables::<8>::for_servos::<6>();
+        let variables = Variables::<8>::with_servos::<6>();
         let engine = variables.engine::<6>();
         let max_cycles = max_width_cycles(6);
         engine.submit([0, 999, 1_000, max_cycles, max_cycles + 1, u16::MAX]);
@@ -276,7 +276,7 @@ mod tests {
 
     #[test]
     fn a_submitted_frame_is_played_from_its_first_slot_on() {
-        let variables = Variables::<4>::for_servos::<4>();
+        let variables = Variables::<4>::with_servos::<4>();
         let engine = variables.engine::<4>();
         engine.submit([20_000u16; 4]);
         engine.plan_next_slot();

@@ -1,11 +1,11 @@
 //! Servo pulses that are exact to the CPU cycle, and a steady clock, for any program on an ATmega328P (Arduino UNO,
 //! Nano, Pro Mini).
 //!
-//! A servo converts the width of a pulse to an angle, so every cycle of jitter makes the horn tremble. Interrupt
-//! latency varies with the current instruction and with other interrupts. Therefore each interrupt occurs early, and
-//! its handler waits. Timer1 counts the CPU cycles of each slot. The handler of each compare interrupt reads its own
-//! latency from the timer, waits for the rest of [`LEAD_CYCLES`], and only then stores to the port. Both edges wait in
-//! the same code, so every constant delay cancels and the width is exact.
+//! A servo converts the width of a pulse to an angle, so every cycle of jitter moves the horn. Interrupt latency varies
+//! with the current instruction and with other interrupts. Therefore each interrupt occurs early, and its handler
+//! waits. Timer1 counts the CPU cycles of each slot. The handler of each compare interrupt reads its own latency from
+//! the timer, waits for the rest of [`LEAD_CYCLES`], and only then stores to the port. Both edges wait in the same
+//! code, so every constant delay cancels and the width is exact.
 //!
 //! ```text
 //! slot    0         1         2         3         4         0
@@ -26,7 +26,7 @@
 //!
 //! # Use
 //!
-//! [`engine!`] makes a module of the program the owner of Timer1 and of the servos' pins:
+//! [`engine!`] makes a module of the program the owner of Timer1 and of the servo pins:
 //!
 //! ```ignore
 //! const PINS: [Pin; 4] = [pin(9), pin(10), pin(11), pin(3)];
@@ -69,7 +69,7 @@
 //! - Interrupts must never be off for 62 us (1000 cycles). If the end of a slot is missed for this reason, the slot
 //!   repeats without a pulse, and all later slots are delayed by one slot.
 //! - Only the two handlers access Timer1, because all its 16-bit registers share one TEMP byte.
-//! - All other code changes pins of the servos' ports only with single `sbi` and `cbi` instructions, which no interrupt
+//! - All other code changes pins of the servo ports only with single `sbi` and `cbi` instructions, which no interrupt
 //!   can split.
 
 #![cfg_attr(not(test), no_std)]
@@ -99,12 +99,12 @@ pub use timing::{
 /// Use this macro once in a program: a second use would define the handlers twice, which is a linker error.
 #[macro_export]
 macro_rules! engine {
-    (later: $servos:expr) => {
-        $crate::engine!(@ $servos, [const { [const { $crate::cells::Byte::new(0) }; 2] }; SIZE]);
+    (later: $servo_count:expr) => {
+        $crate::engine!(@ $servo_count, [const { [const { $crate::cells::SharedByte::new(0) }; 2] }; SIZE]);
 
         /// See `servo_pulses::Engine::connect`.
         #[inline(always)]
-        pub fn connect(pins: [$crate::Pin; SERVOS]) {
+        pub fn connect(pins: [$crate::Pin; SERVO_COUNT]) {
             ENGINE.connect(pins);
         }
 
@@ -118,27 +118,27 @@ macro_rules! engine {
             unsafe { ENGINE.start() }
         }
     };
-    (@ $servos:expr, $pins:expr) => {
-        const SERVOS: usize = $servos;
+    (@ $servo_count:expr, $pins:expr) => {
+        const SERVO_COUNT: usize = $servo_count;
         /// The length of the tables, a power of two, so that a mask keeps an index in range.
-        const SIZE: usize = SERVOS.next_power_of_two();
+        const SIZE: usize = SERVO_COUNT.next_power_of_two();
 
         // These are separate variables, so that their addresses are part of the instructions. All but constant pins are
         // zero until `start`, so that they require no initial values in flash.
-        static PINS: [[$crate::cells::Byte; 2]; SIZE] = $pins;
-        static FRAMES: [[$crate::cells::Word; SIZE]; 2] =
-            [const { [const { $crate::cells::Word::new(0) }; SIZE] }; 2];
-        static PLAYED_FRAME: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static HAS_NEW_FRAME: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static SLOT: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static PORT: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static MASK: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static FALL_COUNT: $crate::cells::Word = $crate::cells::Word::new(0);
-        static ALLOWED_PINS: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static TICKS: $crate::cells::Byte = $crate::cells::Byte::new(0);
-        static LATE_EDGES: $crate::cells::Counter = $crate::cells::Counter::new();
+        static PINS: [[$crate::cells::SharedByte; 2]; SIZE] = $pins;
+        static FRAMES: [[$crate::cells::SharedWord; SIZE]; 2] =
+            [const { [const { $crate::cells::SharedWord::new(0) }; SIZE] }; 2];
+        static PLAYED_FRAME: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static HAS_NEW_FRAME: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static SLOT: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static PORT: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static MASK: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static FALL_COUNT: $crate::cells::SharedWord = $crate::cells::SharedWord::new(0);
+        static ALLOWED_PINS: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static TICKS: $crate::cells::SharedByte = $crate::cells::SharedByte::new(0);
+        static LATE_EDGES: $crate::cells::SharedCounter = $crate::cells::SharedCounter::new();
 
-        const ENGINE: $crate::Engine<'static, SERVOS, SIZE> = $crate::Engine {
+        const ENGINE: $crate::Engine<'static, SERVO_COUNT, SIZE> = $crate::Engine {
             pins: &PINS,
             frames: &FRAMES,
             played_frame: &PLAYED_FRAME,
@@ -154,7 +154,7 @@ macro_rules! engine {
 
         /// See `servo_pulses::Engine::submit`.
         #[inline(always)]
-        pub fn submit<W: ::core::convert::Into<u16>>(widths: [W; SERVOS]) {
+        pub fn submit<W: ::core::convert::Into<u16>>(widths: [W; SERVO_COUNT]) {
             ENGINE.submit(widths);
         }
 

@@ -14,8 +14,8 @@ pub const MIN_WIDTH_CYCLES: u16 = MARGIN_CYCLES;
 /// and for interrupts that delay them.
 const MARGIN_CYCLES: u16 = 1_000;
 
-/// The period of a servo's pulses, 20 ms, in cycles.
-const FRAME_CYCLES: u32 = 320_000;
+/// The nominal period of a servo's pulses, 20 ms, in cycles.
+const NOMINAL_FRAME_CYCLES: u32 = 320_000;
 
 /// The shortest slot, 2.5 ms, in cycles. Its longest pulse, 2.4375 ms, is beyond any servo's travel.
 const MIN_SLOT_CYCLES: u32 = 40_000;
@@ -23,19 +23,19 @@ const MIN_SLOT_CYCLES: u32 = 40_000;
 /// The longest slot, 4 ms as with four servos, in cycles.
 const MAX_SLOT_CYCLES: u32 = 64_000;
 
-/// Returns the length of a slot in cycles for a number of servos. A frame of 20 ms consists of the servos' slots and
-/// one slot without a pin, which opens with the tick. But a slot takes at least 2.5 ms, so a frame with eight servos
-/// takes 22.5 ms; and a slot takes at most 4 ms, so a frame with three servos takes 16 ms.
+/// Returns the length of a slot in cycles for a number of servos. A frame of 20 ms consists of a slot for each servo
+/// and one slot without a pin, at whose start the tick occurs. A slot lasts at least 2.5 ms, so a frame with eight
+/// servos lasts 22.5 ms, and at most 4 ms, so a frame with three servos lasts 16 ms.
 ///
 /// # Panics
 /// Panics, at compile time, if there are no servos or more than eight.
 #[must_use]
-pub const fn slot_cycles(servos: usize) -> u16 {
+pub const fn slot_cycles(servo_count: usize) -> u16 {
     assert!(
-        1 <= servos && servos <= 8,
+        1 <= servo_count && servo_count <= 8,
         "an engine has one to eight servos"
     );
-    let equal_slot_cycles = FRAME_CYCLES / (servos as u32 + 1);
+    let equal_slot_cycles = NOMINAL_FRAME_CYCLES / (servo_count as u32 + 1);
     // With fewer than four servos, an equal part of the frame does not fit into 16 bits.
     if equal_slot_cycles > MAX_SLOT_CYCLES {
         return MAX_SLOT_CYCLES as u16;
@@ -51,8 +51,8 @@ pub const fn slot_cycles(servos: usize) -> u16 {
 /// # Panics
 /// Panics as [`slot_cycles`] does.
 #[must_use]
-pub const fn frame_cycles(servos: usize) -> u32 {
-    (servos as u32 + 1) * slot_cycles(servos) as u32
+pub const fn frame_cycles(servo_count: usize) -> u32 {
+    (servo_count as u32 + 1) * slot_cycles(servo_count) as u32
 }
 
 /// Returns the longest possible pulse, in cycles.
@@ -60,8 +60,8 @@ pub const fn frame_cycles(servos: usize) -> u32 {
 /// # Panics
 /// Panics as [`slot_cycles`] does.
 #[must_use]
-pub const fn max_width_cycles(servos: usize) -> u16 {
-    slot_cycles(servos) - MARGIN_CYCLES
+pub const fn max_width_cycles(servo_count: usize) -> u16 {
+    slot_cycles(servo_count) - MARGIN_CYCLES
 }
 
 #[cfg(test)]
@@ -71,24 +71,24 @@ mod tests {
     #[test]
     fn a_frame_of_four_to_seven_servos_takes_20_ms_within_half_a_microsecond() {
         assert_eq!(frame_cycles(4), 320_000);
-        for servos in 4..=7 {
+        for servo_count in 4..=7 {
             assert!(
-                frame_cycles(servos).abs_diff(320_000) < 8,
-                "{servos} servos"
+                frame_cycles(servo_count).abs_diff(320_000) < 8,
+                "{servo_count} servos"
             );
         }
     }
 
     #[test]
-    fn for_any_number_of_servos_pulses_may_take_2_4_ms_and_repeat_after_8_to_22_5_ms() {
-        for servos in 1..=8 {
+    fn any_servo_count_allows_pulses_of_2_4_ms_every_8_to_22_5_ms() {
+        for servo_count in 1..=8 {
             assert!(
-                max_width_cycles(servos) >= 2_400 * CYCLES_PER_US,
-                "{servos} servos"
+                max_width_cycles(servo_count) >= 2_400 * CYCLES_PER_US,
+                "{servo_count} servos"
             );
             // Analogue servos accept a pulse every 8 to 22.5 ms.
-            let ms = f64::from(frame_cycles(servos)) / 16_000.0;
-            assert!((8.0..=22.5).contains(&ms), "{servos} servos: {ms} ms");
+            let ms = f64::from(frame_cycles(servo_count)) / 16_000.0;
+            assert!((8.0..=22.5).contains(&ms), "{servo_count} servos: {ms} ms");
         }
     }
 

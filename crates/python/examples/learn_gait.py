@@ -42,7 +42,7 @@ def compute_score(
     except lizard.RobotFileError:
         return -np.inf
     if np.isnan(gait.predict().forward):
-        # Two feet pull against the other two, so the direction is undecided.
+        # Two feet pull against the other two, so the direction is undetermined.
         return -np.inf
     sweeps = (gait.angles[:-1] - model.neutral + 180) % 360 - 180
     actions = (sweeps / MAX_SWEEP).astype(np.float32)

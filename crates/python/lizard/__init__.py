@@ -7,7 +7,15 @@ front right, A3 back right, A4 back left.
 
 from lizard._lizard import VERSION as __version__
 from lizard._lizard import RobotFileError
-from lizard.model import MARGINS, Gait, Mobility, Model, Solution, Travel, default_toml
+from lizard.model import (
+    MARGINS,
+    Gait,
+    Mobility,
+    Model,
+    Movement,
+    Solution,
+    default_toml,
+)
 from lizard.robot import Robot
 from lizard.status import Frame, RobotError, Status
 
@@ -17,12 +25,12 @@ __all__ = [
     "Gait",
     "Mobility",
     "Model",
+    "Movement",
     "Robot",
     "RobotError",
     "RobotFileError",
     "Solution",
     "Status",
-    "Travel",
     "__version__",
     "default_toml",
 ]

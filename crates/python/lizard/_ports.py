@@ -10,7 +10,7 @@ import serial
 
 from lizard import _lizard
 
-FRAME = 0.02
+FRAME_PERIOD = 0.02
 """Time from one frame to the next, s."""
 
 
@@ -26,7 +26,7 @@ class SerialPort:
     """A port of this machine; raises OSError if the port has disappeared."""
 
     def __init__(self, name: str, baud: int) -> None:
-        self._serial = serial.Serial(name, baud, timeout=FRAME, exclusive=True)
+        self._serial = serial.Serial(name, baud, timeout=FRAME_PERIOD, exclusive=True)
 
     def read(self) -> bytes:
         return bytes(self._serial.read(self._serial.in_waiting or 1))
@@ -48,7 +48,7 @@ class SimulatedPort:
         self._next_frame_time = time.monotonic()
 
     def read(self) -> bytes:
-        self._next_frame_time += FRAME
+        self._next_frame_time += FRAME_PERIOD
         time.sleep(max(0.0, self._next_frame_time - time.monotonic()))
         with self._lock:
             data = bytes(self._unread)

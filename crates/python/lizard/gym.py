@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from lizard._ports import FRAME
+from lizard._ports import FRAME_PERIOD
 from lizard.model import Array, Model
 
 MAX_SWEEP = 30.0
@@ -49,8 +49,8 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         friction_spread: float = 0.1,
         timestep: float = TIMESTEP,
     ) -> None:
-        self.robot = model or Model.default()
-        self.engine = mujoco.MjModel.from_xml_string(self.robot.mjcf(shapes=False))
+        self.model = model or Model.default()
+        self.engine = mujoco.MjModel.from_xml_string(self.model.mjcf(shapes=False))
         if self.engine.numeric("back over forward").data[0] != 1:
             raise ValueError(
                 "[ground] friction_back_over_forward must be 1: MuJoCo cannot simulate pads with a grain"
@@ -58,14 +58,14 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         _set_timestep(self.engine, timestep)
         self.data = mujoco.MjData(self.engine)
         self.friction_spread = friction_spread
-        self._substeps = round(FRAME / timestep)
-        self._friction = self.engine.geom_friction.copy()
+        self._substeps = round(FRAME_PERIOD / timestep)
+        self._nominal_friction = self.engine.geom_friction.copy()
         joints = [
             self.engine.actuator(name).trnid[0] for name in ("A1", "A2", "A3", "A4")
         ]
         self._qpos_indices = self.engine.jnt_qposadr[joints]
         self._qvel_indices = self.engine.jnt_dofadr[joints]
-        self._max_change = math.radians(self.robot.gait_slew) * FRAME
+        self._max_change = math.radians(self.model.gait_slew) * FRAME_PERIOD
         self._target: Array = np.zeros(4)
         self._start_pose = (0.0, 0.0, 0.0)
         mujoco.mj_step(self.engine, self.data, round(SETTLING_TIME / timestep))
@@ -82,9 +82,8 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         mujoco.mj_resetData(self.engine, self.data)
         self.data.qpos[:] = self._settled_qpos
         spread = self.friction_spread
-        self.engine.geom_friction[:, 0] = self._friction[:, 0] * self.np_random.uniform(
-            1 - spread, 1 + spread
-        )
+        scale = self.np_random.uniform(1 - spread, 1 + spread)
+        self.engine.geom_friction[:, 0] = scale * self._nominal_friction[:, 0]
         mujoco.mj_forward(self.engine, self.data)
         self._target = np.zeros(4)
         self._start_pose = self._chassis_pose()
@@ -97,7 +96,7 @@ class LizardEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         target = self._target + np.clip(
             target_sweeps - self._target, -self._max_change, self._max_change
         )
-        is_held = not self.robot.solve(self.robot.neutral + np.degrees(target)).safe
+        is_held = not self.model.solve(self.model.neutral + np.degrees(target)).safe
         if not is_held:
             self._target = target
         self.data.ctrl[:] = self._target

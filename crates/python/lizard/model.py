@@ -17,8 +17,8 @@ MARGINS: tuple[str, ...] = tuple(_lizard.MARGINS)
 """Names of a pose's ten margins, in the order of `Solution.margins`."""
 
 
-class Travel(NamedTuple):
-    """Movement of the body; a component is NaN if two feet pull against the other two, so that it is undecided."""
+class Movement(NamedTuple):
+    """Movement of the body; a component is NaN if two feet pull against the other two, so that it is undetermined."""
 
     forward: float
     """mm"""
@@ -38,7 +38,7 @@ class Solution:
     """Tail point, mm, (..., 2)."""
     couplers: Array
     """Coupler angles theta2, theta3 (head), theta6, theta7 (tail), deg, (..., 4)."""
-    directions: Array
+    slider_directions: Array
     """Directions of the left and the right slider, rear to front, deg, (..., 2)."""
     strokes: Array
     """Strokes of the left and the right slider from nominal, mm, (..., 2)."""
@@ -54,7 +54,7 @@ class Mobility:
 
     freedoms: NDArray[np.int_]
     """Degrees of freedom while the servos turn, (...): 4 away from singularities."""
-    loose: NDArray[np.int_]
+    locked_freedoms: NDArray[np.int_]
     """Degrees of freedom while the servos are locked, (...): more than 0 at a type-2 singularity."""
 
 
@@ -73,13 +73,13 @@ class Gait:
     """Pulse widths in each frame, us, (n, 4)."""
     peak_speed: float
     """Largest servo speed over a frame, deg/s."""
-    least_margin: tuple[str, float]
+    min_margin: tuple[str, float]
     """Name and value of the smallest margin in a cycle."""
     _robot: _lizard.Robot
 
-    def predict(self, *, with_servos: bool = False) -> Travel:
+    def predict(self, *, with_servos: bool = False) -> Movement:
         """Predicts the movement per cycle in the contact model, with ideal servos or with those in robot.toml."""
-        return Travel(*self._robot.predict(self.name, with_servos))
+        return Movement(*self._robot.predict(self.name, with_servos))
 
 
 class Model:
@@ -140,18 +140,11 @@ class Model:
 
     def gait(self, name: str) -> Gait:
         """Returns a gait by its name; raises KeyError, which lists all names."""
-        period, peak_speed, least_margin, times, angles = self._robot.gait(name)
+        period, peak_speed, min_margin, times, angles = self._robot.gait(name)
         pulses = self._robot.pulses(angles)
         name = name.replace(" ", "-")
         return Gait(
-            name,
-            period,
-            times,
-            angles,
-            pulses,
-            peak_speed,
-            least_margin,
-            self._robot,
+            name, period, times, angles, pulses, peak_speed, min_margin, self._robot
         )
 
     def solve(self, angles: ArrayLike) -> Solution:
@@ -164,7 +157,7 @@ class Model:
         is_safe = safe[..., 0] > 0
         return Solution(head, tail, couplers, directions, strokes, margins, is_safe)
 
-    def inverse(
+    def solve_inverse(
         self, head: ArrayLike | None = None, tail: ArrayLike | None = None
     ) -> Array:
         """Inverse kinematics: computes servo angles (..., 4), deg, for head and tail points (..., 2), mm.
@@ -192,14 +185,14 @@ class Model:
         if end not in ("head", "tail"):
             raise ValueError(f'the end must be "head" or "tail", got {end!r}')
         rows, shape = _to_rows(points, 2)
-        return self._robot.inverse(end == "head", rows).reshape(*shape, 4, 2)
+        return self._robot.solve_inverse(end == "head", rows).reshape(*shape, 4, 2)
 
-    def reasons(self, angles: ArrayLike) -> list[str]:
+    def describe_violations(self, angles: ArrayLike) -> list[str]:
         """Returns messages with the reasons why a pose (4,), deg, is not safe; an empty list if it is safe."""
         poses, shape = _to_rows(angles, 4)
         if shape != ():
             raise ValueError(f"expected one pose of shape (4,), got {(*shape, 4)}")
-        return self._robot.reasons(poses[0].tolist())
+        return self._robot.describe_violations(poses[0].tolist())
 
     def pulses(self, angles: ArrayLike) -> Array:
         """Computes pulse widths (..., 4), us, for servo angles (..., 4), deg, without trims."""
@@ -227,11 +220,11 @@ class Model:
         passive = np.where(closes[..., None, None], passive, 0) / scale
         active = np.where(closes[..., None, None], active, 0) / 50
         combined = np.concatenate([active, passive], axis=-1)
-        freedoms, loose = (
+        freedoms, locked = (
             count - np.linalg.matrix_rank(matrix, rtol=1e-7)
             for count, matrix in [(12, combined), (8, passive)]
         )
-        return Mobility(np.where(closes, freedoms, -1), np.where(closes, loose, -1))
+        return Mobility(np.where(closes, freedoms, -1), np.where(closes, locked, -1))
 
     def section(self) -> bytes:
         """Builds the robot's flash section, with the maps of certified cells."""

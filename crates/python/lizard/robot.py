@@ -9,20 +9,20 @@ from collections.abc import Callable, Iterator
 from queue import Empty, SimpleQueue
 from typing import Self
 
-from lizard._ports import FRAME, Port, SerialPort, SimulatedPort
+from lizard._ports import FRAME_PERIOD, Port, SerialPort, SimulatedPort
 from lizard.model import Model
 from lizard.status import Frame, RobotError, Status, parse_angles
 
 BAUD = 115_200
-BANNER = "# lizard "
+BANNER_PREFIX = "# lizard "
 BANNER_TIMEOUT = 3.0
 """Time limit for the banner after the port is opened, s; it includes more than 1 s for a UNO's boot loader."""
-STATUS_TRIES = 8
+STATUS_ATTEMPT_COUNT = 8
 """Number of `status` lines to a board without a banner, which finds its baud rate by five; a radio may lose some."""
 ANSWER_TIMEOUT = 2.0
 """Time limit for an answer, s; `save` takes a third of a second."""
 RETRY_TIME = 5.0
-"""Time for which an unanswered line that may be sent twice is repeated, s."""
+"""Time during which an unanswered line that may be sent twice is repeated, s."""
 NO_PULSES_CODES = (7, 10)
 """Codes of the refusals of `stop` if the servos rest or the flash has no robot."""
 STALL_TIME = 1.0
@@ -30,7 +30,7 @@ STALL_TIME = 1.0
 POSE_TOLERANCE = 0.02
 """Largest rounding difference between a commanded angle and the angle in `status`, deg."""
 DRIVING_DEADMAN = 901
-"""`deadman` while a program drives the robot, ms. A robot with this unusual value has kept it from such a program."""
+"""`deadman` while a program drives the robot, ms. A robot with this unusual value still has it from such a program."""
 
 
 class NoAnswer(RobotError):
@@ -48,7 +48,7 @@ class Robot:
     def __init__(self, port: str, *, baud: int = BAUD) -> None:
         """Opens the port, and waits for the robot's banner or status.
 
-        Raises OSError if the port cannot be opened, RobotError if no lizard answers.
+        Raises OSError if the port cannot be opened, RobotError if no robot answers.
         """
         self._start(SerialPort(port, baud))
 
@@ -62,7 +62,7 @@ class Robot:
     def _start(self, port: Port) -> None:
         self._port = port
         # Held while a line waits for its answer.
-        self._exchange = threading.RLock()
+        self._exchange_lock = threading.RLock()
         # Guards the fields that the listener changes.
         self._condition = threading.Condition()
         self._answers: list[str] = []
@@ -77,21 +77,21 @@ class Robot:
         self._driving_deadman: int | None = None
         self._closing = threading.Event()
         self._listener = threading.Thread(target=self._listen, daemon=True)
-        self._keeper = threading.Thread(target=self._send_keep_alives, daemon=True)
+        self._keep_alive = threading.Thread(target=self._send_keep_alives, daemon=True)
         self._listener.start()
         try:
             self._wait_for_robot()
         except BaseException:
             self._shut_down()
             raise
-        self._keeper.start()
+        self._keep_alive.start()
 
     def _wait_for_robot(self) -> None:
         if self._wait(lambda: self._has_banner, BANNER_TIMEOUT):
             return
-        for _ in range(STATUS_TRIES):
+        for _ in range(STATUS_ATTEMPT_COUNT):
             try:
-                self._ask("status", ANSWER_TIMEOUT / 4)
+                self._send("status", ANSWER_TIMEOUT / 4)
                 return
             except RobotError:
                 continue
@@ -118,7 +118,7 @@ class Robot:
 
     def _shut_down(self) -> None:
         self._closing.set()
-        for thread in (self._listener, self._keeper):
+        for thread in (self._listener, self._keep_alive):
             if thread.is_alive():
                 thread.join()
         self._port.close()
@@ -128,11 +128,11 @@ class Robot:
         line = name.replace("-", " ")
         if cycles is not None:
             line += f" {cycles}"
-        with self._exchange:
+        with self._exchange_lock:
             self._set_deadman()
             self._end_reason = None
             try:
-                self.ask(line)
+                self.send(line)
             except NoAnswer:
                 self._end_reason = ""  # If the gait runs, `deadman` stops it.
                 raise
@@ -168,16 +168,16 @@ class Robot:
 
         A robot without pulses ignores the line.
         """
-        if not self._exchange.acquire(blocking=False):
+        if not self._exchange_lock.acquire(blocking=False):
             self._write("stop")  # overtakes the line that waits for its answer
-            self._exchange.acquire()
+            self._exchange_lock.acquire()
         try:
             self._end_gait("stop")
         except RobotError as error:
             if error.code not in NO_PULSES_CODES:
                 raise
         finally:
-            self._exchange.release()
+            self._exchange_lock.release()
 
     def rest(self) -> None:
         """Stops the pulses: the servos go limp. `stand` wakes them."""
@@ -189,7 +189,7 @@ class Robot:
 
     def speed(self, percent: int) -> None:
         """Sets the pace of gaits, 10 to 100 percent."""
-        self.ask(f"speed {percent}")
+        self.send(f"speed {percent}")
 
     def pose(self, *angles: float) -> tuple[float, ...]:
         """Returns the servo angles, deg; with four angles, first moves to them and waits until they are reached.
@@ -218,11 +218,11 @@ class Robot:
             elif status.gait != "pose" or now - last_movement_time > STALL_TIME:
                 reason = f"guard {status.guard}, fault {status.fault}"
                 raise RobotError(f"the robot stopped before the pose: {reason}")
-            time.sleep(FRAME)
+            time.sleep(FRAME_PERIOD)
 
     def status(self) -> Status:
-        """Asks the robot for its state."""
-        return Status.parse(self._ask_until_answered("status")[-1])
+        """Requests the robot's state."""
+        return Status.parse(self._send_until_answered("status")[-1])
 
     def watch(self, every: int = 1) -> Iterator[Frame]:
         """Yields the pose in every n-th frame of 20 ms (n is `every`), until the iteration ends."""
@@ -231,10 +231,10 @@ class Robot:
         frames: SimpleQueue[Frame] = SimpleQueue()
         self._watchers.append(frames)
         try:
-            self.ask(f"watch {every}")
+            self.send(f"watch {every}")
             while True:
                 try:
-                    frame = frames.get(timeout=every * FRAME + ANSWER_TIMEOUT)
+                    frame = frames.get(timeout=every * FRAME_PERIOD + ANSWER_TIMEOUT)
                 except Empty:
                     self._check_open()
                     raise RobotError("the robot no longer sends its poses") from None
@@ -242,38 +242,38 @@ class Robot:
         finally:
             self._watchers.remove(frames)
             if self._port_error is None and not self._closing.is_set():
-                self._ask_until_answered("watch 0")
+                self._send_until_answered("watch 0")
 
-    def ask(self, line: str) -> list[str]:
+    def send(self, line: str) -> list[str]:
         """Sends a console line; returns the `#` lines before its answer, and the answer.
 
         Raises RobotError if the robot refuses the line. Does not change `deadman`.
         """
-        return self._ask(line, ANSWER_TIMEOUT)
+        return self._send(line, ANSWER_TIMEOUT)
 
     def _end_gait(self, line: str) -> None:
-        with self._exchange:
-            self._ask_until_answered(line)
+        with self._exchange_lock:
+            self._send_until_answered(line)
             self._mark_ended(f"`{line}` has ended the gait")
             self._restore_deadman()
 
-    def _ask_until_answered(self, line: str) -> list[str]:
+    def _send_until_answered(self, line: str) -> list[str]:
         """Repeats a line until it is answered, since a radio may lose it."""
         deadline = time.monotonic() + RETRY_TIME
         while True:
             try:
-                return self._ask(line, ANSWER_TIMEOUT / 2)
+                return self._send(line, ANSWER_TIMEOUT / 2)
             except NoAnswer:
                 if time.monotonic() >= deadline:
                     raise
 
-    def _ask(self, line: str, timeout: float) -> list[str]:
+    def _send(self, line: str, timeout: float) -> list[str]:
         line = line.strip().lower()
         if not (line.isascii() and line.isprintable() and line):
             raise ValueError(f"a console line must be printable ASCII, got {line!r}")
         word = line.split(" ")[0]
         expected = "ok gait=" if word == "status" else f"ok {word}"
-        with self._exchange:
+        with self._exchange_lock:
             self._check_open()
             with self._condition:
                 self._answers, self._notes = [], []
@@ -327,19 +327,19 @@ class Robot:
         if self._driving_deadman is not None:
             return
         if self._own_deadman is None:
-            notes = self._ask_until_answered("cal")
+            notes = self._send_until_answered("cal")
             own_deadman = next(
                 int(note.split()[-1]) for note in notes if note.startswith("# deadman ")
             )
             self._own_deadman = 0 if own_deadman == DRIVING_DEADMAN else own_deadman
         driving_deadman = min(self._own_deadman or DRIVING_DEADMAN, DRIVING_DEADMAN)
-        self._ask_until_answered(f"deadman {driving_deadman}")
+        self._send_until_answered(f"deadman {driving_deadman}")
         self._driving_deadman = driving_deadman
 
     def _restore_deadman(self) -> None:
-        with self._exchange:
+        with self._exchange_lock:
             if self._driving_deadman is not None:
-                self._ask_until_answered(f"deadman {self._own_deadman}")
+                self._send_until_answered(f"deadman {self._own_deadman}")
                 self._driving_deadman = None
 
     def _send_keep_alives(self) -> None:
@@ -348,18 +348,18 @@ class Robot:
         while not self._closing.wait(
             min(0.2, (self._driving_deadman or DRIVING_DEADMAN) / 4000)
         ):
-            with self._exchange:
+            with self._exchange_lock:
                 if self._driving_deadman is None or self._end_reason is not None:
                     continue
                 line_count += 1
                 try:
                     if line_count % 5:
-                        self._ask(
+                        self._send(
                             f"deadman {self._driving_deadman}", ANSWER_TIMEOUT / 4
                         )
                         continue
                     # A radio may have lost the line that reports the gait's end.
-                    status = Status.parse(self._ask("status", ANSWER_TIMEOUT / 4)[-1])
+                    status = Status.parse(self._send("status", ANSWER_TIMEOUT / 4)[-1])
                 except RobotError:
                     continue
                 except OSError:
@@ -393,14 +393,16 @@ class Robot:
                 self._handle_line(line.decode("ascii", "replace").strip())
 
     def _handle_line(self, line: str) -> None:
-        line = line[max(0, line.find(BANNER)) :]  # a reset cuts off the previous line
+        # A reset cuts off the previous line.
+        line = line[max(0, line.find(BANNER_PREFIX)) :]
         with self._condition:
             if line.startswith("# t="):
                 fields = dict(word.split("=", 1) for word in line[2:].split())
-                frame = Frame(int(fields["t"]) * FRAME, parse_angles(fields["pose"]))
+                pose = parse_angles(fields["pose"])
+                frame = Frame(int(fields["t"]) * FRAME_PERIOD, pose)
                 for watcher in self._watchers:
                     watcher.put(frame)
-            elif line.startswith(BANNER):
+            elif line.startswith(BANNER_PREFIX):
                 if self._has_banner:
                     # After a reset, the robot has its saved settings.
                     self._driving_deadman = None

@@ -32,7 +32,7 @@ def joint_values(model: Model, poses: ArrayLike) -> Array:
         servos, solved = np.asarray(poses, np.float64), model.solve(poses)
         # theta2 and theta3 belong to A1 and A2, theta7 and theta6 to A3 and A4; the left sleeve to A4, the right to A3.
         couplers = solved.couplers[..., [0, 1, 3, 2]] - servos
-        sleeves = solved.directions - servos[..., [3, 2]]
+        sleeves = solved.slider_directions - servos[..., [3, 2]]
         return np.concatenate([servos, couplers, sleeves], axis=-1)
 
     turns = np.radians(joint_angles(poses) - joint_angles(model.neutral))
@@ -42,7 +42,7 @@ def joint_values(model: Model, poses: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True)
-class Speed:
+class GaitVelocity:
     """A gait's velocity at its nominal rate, predicted by the contact model."""
 
     gait: str
@@ -61,30 +61,30 @@ class Driver:
         self._last_velocity_time = 0.0
         self._current: tuple[str, int] | None = None  # gait and pace, percent
         gaits = [model.gait(name) for name in model.gaits]
-        travels = [(gait, gait.predict(with_servos=True)) for gait in gaits]
-        self.speeds = [
-            Speed(
+        movements = [(gait, gait.predict(with_servos=True)) for gait in gaits]
+        self.velocities = [
+            GaitVelocity(
                 gait.name,
-                travel.forward / 1000 / gait.period,
-                np.radians(travel.turn) / gait.period,
+                movement.forward / 1000 / gait.period,
+                np.radians(movement.turn) / gait.period,
             )
-            for gait, travel in travels
-            if np.isfinite([travel.forward, travel.turn]).all()
+            for gait, movement in movements
+            if np.isfinite([movement.forward, movement.turn]).all()
         ]
 
-    def choose(self, forward: float, turn: float) -> tuple[str, int] | None:
+    def choose_gait(self, forward: float, turn: float) -> tuple[str, int] | None:
         """Finds the gait and the pace, percent, nearest to a velocity in m/s and rad/s; None if standing is nearer."""
         target = np.array([forward, TURN_LEVER_ARM * turn])
-        nearest, min_square = None, float(target @ target)
-        for speed in self.speeds:
-            full = np.array([speed.forward, TURN_LEVER_ARM * speed.turn])
-            if (square := full @ full) == 0:
+        nearest, min_square_error = None, float(target @ target)
+        for velocity in self.velocities:
+            nominal = np.array([velocity.forward, TURN_LEVER_ARM * velocity.turn])
+            if (nominal_square := nominal @ nominal) == 0:
                 continue
-            pace = np.clip(target @ full / square, MIN_PACE, 1)
-            error = target - pace * full
-            if error @ error < min_square:
-                nearest = (speed.gait, round(100 * pace))
-                min_square = float(error @ error)
+            pace = np.clip(target @ nominal / nominal_square, MIN_PACE, 1)
+            error = target - pace * nominal
+            if error @ error < min_square_error:
+                nearest = (velocity.gait, round(100 * pace))
+                min_square_error = float(error @ error)
         return nearest
 
     def drive(self, forward: float, turn: float) -> None:
@@ -96,7 +96,7 @@ class Driver:
         if self._current and not self._robot.is_going:
             self._current = None
             self._robot.wait(0)  # raises the reason
-        target, current = self.choose(forward, turn), self._current
+        target, current = self.choose_gait(forward, turn), self._current
         if target == current:
             return
         if target is None:

@@ -60,10 +60,10 @@ class Status:
         """Parses `ok gait=...`; ignores unknown fields."""
         fields = dict(word.split("=", 1) for word in answer.split() if "=" in word)
 
-        def number(name: str) -> float:
+        def get_float(name: str) -> float:
             return float(fields.get(name, "nan"))
 
-        def count(name: str) -> int:
+        def get_int(name: str) -> int:
             return int(fields.get(name, "0"))
 
         return Status(
@@ -72,15 +72,15 @@ class Status:
             guard=fields.get("guard", ""),
             reset=fields.get("reset", ""),
             pose=parse_angles(fields.get("pose", "")),
-            margin=number("margin"),
-            phase=number("phase"),
-            vcc=number("vcc"),
-            rail=number("rail"),
-            speed=count("speed"),
-            frames=count("frames"),
-            late=count("late"),
-            rx_lost=count("rx_lost"),
-            resets=count("resets"),
+            margin=get_float("margin"),
+            phase=get_float("phase"),
+            vcc=get_float("vcc"),
+            rail=get_float("rail"),
+            speed=get_int("speed"),
+            frames=get_int("frames"),
+            late=get_int("late"),
+            rx_lost=get_int("rx_lost"),
+            resets=get_int("resets"),
         )
 
 

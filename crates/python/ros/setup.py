@@ -1,4 +1,4 @@
-"""Builds the ROS package `lizard_ros` with colcon."""
+"""Setup script of the ROS package `lizard_ros`, which colcon builds."""
 
 from setuptools import setup
 

@@ -1,9 +1,9 @@
 //! A checked robot.toml, and computations on it for many poses at once.
 
-use lizard_host::flash::file;
+use lizard_host::flash::image_source;
 use lizard_kinematics::{Check, End, Solution, Vector};
 use lizard_parts::{Assembly, Scene, format_mjcf};
-use lizard_robot::{CheckedGait, Error, Prediction, verdict};
+use lizard_robot::{CheckedGait, Error, Prediction, violations};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
@@ -88,7 +88,7 @@ impl Robot {
 
     /// Computes the left and right servo angles of an end in all four working modes from the end's points (mm, chassis
     /// frame); NaN where a point is out of reach.
-    fn inverse<'py>(
+    fn solve_inverse<'py>(
         &self,
         py: Python<'py>,
         head: bool,
@@ -114,9 +114,9 @@ impl Robot {
     }
 
     /// Returns messages with the reasons why a pose is not safe; an empty list if it is safe.
-    fn reasons(&self, angles: [f64; 4]) -> Vec<String> {
+    fn describe_violations(&self, angles: [f64; 4]) -> Vec<String> {
         match self.0.lizard().solve(&angles.into()) {
-            Ok(solution) => verdict::find_pose_violations(&self.0, &solution),
+            Ok(solution) => violations::find_pose_violations(&self.0, &solution),
             Err(infeasible) => vec![infeasible.to_string()],
         }
     }
@@ -169,7 +169,7 @@ impl Robot {
     }
 
     /// Predicts the movement of one cycle: forward (mm), left (mm) and turn (deg, counter-clockwise). A component is
-    /// NaN if two feet pull against the other two, so that it is undecided.
+    /// NaN if two feet pull against the other two, so that it is undetermined.
     fn predict(&self, py: Python<'_>, name: &str, with_servos: bool) -> PyResult<[f64; 3]> {
         let gait = self.find_gait(name)?;
         let Prediction {
@@ -179,7 +179,7 @@ impl Robot {
         } = py.detach(|| {
             let prediction = self.0.predict(gait);
             match with_servos {
-                true => prediction.keep_decided(gait.simulate_driven_cycle(
+                true => prediction.keep_determined(gait.simulate_driven_cycle(
                     self.0.ground(),
                     &self.0.motors(),
                     1.0,
@@ -198,8 +198,8 @@ impl Robot {
     /// Builds the image for a board as Intel HEX: the firmware with this robot, or the robot alone.
     fn image(&self, py: Python<'_>, only_robot: bool) -> PyResult<String> {
         let image = py.detach(|| match only_robot {
-            true => file::build_robot_image(&self.0),
-            false => file::build_image(&self.0),
+            true => image_source::build_robot_image(&self.0),
+            false => image_source::build_image(&self.0),
         });
         image.map(|image| image.to_hex()).map_err(to_value_error)
     }

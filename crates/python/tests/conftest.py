@@ -1,4 +1,4 @@
-"""Fixtures of all tests: the default robot, and the program `lizard` in the wheel."""
+"""Fixtures shared by all tests: the default robot, and the program `lizard` installed from the wheel."""
 
 import subprocess
 import sys
@@ -24,7 +24,7 @@ def run_lizard() -> RunLizard:
 
     def run(*arguments: object, text: str = "") -> subprocess.CompletedProcess[str]:
         return subprocess.run(
-            [str(word) for word in (path, *arguments)],
+            [str(argument) for argument in (path, *arguments)],
             check=False,
             input=text,
             capture_output=True,

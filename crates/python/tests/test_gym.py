@@ -82,11 +82,8 @@ def test_the_environment_rejects_pads_with_a_grain():
 def test_the_example_learns_a_gait_that_the_command_line_accepts(
     monkeypatch, run_lizard, tmp_path
 ):
-    for name, value in [
-        ("GENERATIONS", 2),
-        ("FIRST_POPULATION", 16),
-        ("POPULATION", 4),
-    ]:
+    values = {"GENERATIONS": 2, "FIRST_POPULATION": 16, "POPULATION": 4}
+    for name, value in values.items():
         monkeypatch.setattr(learn_gait, name, value)
     output_path = tmp_path / "learned.toml"
     monkeypatch.setattr("sys.argv", ["learn_gait.py", str(output_path)])

@@ -19,7 +19,7 @@ def unit_vector(degrees: np.ndarray) -> np.ndarray:
     return np.stack([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))], -1)
 
 
-def draw_poses(model: lizard.Model, count: int = 2000) -> np.ndarray:
+def sample_poses(model: lizard.Model, count: int = 2000) -> np.ndarray:
     return model.neutral + np.random.default_rng(1).uniform(-40, 40, (count, 4))
 
 
@@ -38,7 +38,7 @@ def compute_crank_tips(angles: np.ndarray) -> np.ndarray:
 
 
 def test_head_and_tail_are_at_the_intersections_of_the_coupler_circles(model):
-    angles = draw_poses(model)
+    angles = sample_poses(model)
     solved = model.solve(angles)
     a1, a2, a3, a4 = np.moveaxis(compute_crank_tips(angles), -2, 0)
     np.testing.assert_allclose(solved.head, compute_end_point(a1, a2, 1), atol=1e-9)
@@ -46,21 +46,21 @@ def test_head_and_tail_are_at_the_intersections_of_the_coupler_circles(model):
 
 
 def test_a_sliders_length_is_the_distance_between_the_tips_of_its_arms(model):
-    angles = draw_poses(model)
+    angles = sample_poses(model)
     solved = model.solve(angles)
-    for side, (front, rear, turn) in enumerate([(0, 3, 90), (1, 2, -90)]):
+    for side, (front, rear, arm_angle) in enumerate([(0, 3, 90), (1, 2, -90)]):
         x = BASE / 2 * (-1 if side == 0 else 1)
         y = BODY_LENGTH / 2
         ends = [
             np.array([x, end_y]) + SLIDER_ARM * unit_vector(angles[:, servo] + offset)
-            for servo, end_y, offset in [(front, y, turn), (rear, -y, -turn)]
+            for servo, end_y, offset in [(front, y, arm_angle), (rear, -y, -arm_angle)]
         ]
         strokes = np.linalg.norm(ends[0] - ends[1], axis=-1) - NOMINAL_SLIDER_LENGTH
         np.testing.assert_allclose(solved.strokes[:, side], strokes, atol=1e-9)
 
 
-def test_margins_are_sines_between_links(model):
-    angles = draw_poses(model)
+def test_margins_are_sines_of_angles_between_links(model):
+    angles = sample_poses(model)
     solved = model.solve(angles)
     t2, t3, t6, t7 = np.radians(solved.couplers.T)
     a1, a2, a3, a4 = np.radians(angles.T)
@@ -72,7 +72,7 @@ def test_margins_are_sines_between_links(model):
 
 
 def test_a_pose_is_safe_if_its_margins_and_strokes_are_within_the_limits(model):
-    solved = model.solve(draw_poses(model))
+    solved = model.solve(sample_poses(model))
     low, high = STROKE_RANGE
     has_allowed_strokes = ((low <= solved.strokes) & (solved.strokes <= high)).all(-1)
     expected = (solved.margins >= MIN_MARGIN).all(-1) & has_allowed_strokes
@@ -80,12 +80,12 @@ def test_a_pose_is_safe_if_its_margins_and_strokes_are_within_the_limits(model):
     assert 100 < expected.sum() < 1900
 
 
-def test_inverse_recovers_the_angles_for_any_array_shape(model):
+def test_solve_inverse_recovers_the_angles_for_any_array_shape(model):
     angles = model.neutral + np.random.default_rng(2).uniform(-15, 15, (3, 5, 4))
     solved = model.solve(angles)
-    recovered = model.inverse(head=solved.head, tail=solved.tail)
+    recovered = model.solve_inverse(head=solved.head, tail=solved.tail)
     np.testing.assert_allclose((recovered - angles + 180) % 360 - 180, 0, atol=1e-8)
-    tail_only = model.inverse(tail=solved.tail)
+    tail_only = model.solve_inverse(tail=solved.tail)
     assert (tail_only[..., :2] == model.neutral[:2]).all()
     # In every working mode, the distance of each crank tip from the head point is the coupler's length.
     modes = model.working_modes("head", solved.head)
@@ -97,15 +97,15 @@ def test_inverse_recovers_the_angles_for_any_array_shape(model):
 
 
 def test_a_loop_that_does_not_close_has_nan_and_a_reason(model):
-    inverted = model.inverse(head=[[5, 120], [0, 500]])
-    assert np.isnan(inverted[1, :2]).all() and np.isfinite(inverted[0]).all()
+    solved_angles = model.solve_inverse(head=[[5, 120], [0, 500]])
+    assert np.isnan(solved_angles[1, :2]).all() and np.isfinite(solved_angles[0]).all()
     open_pose = [180.0, 0.0, *model.neutral[2:]]
-    short_model = load_model_with_couplers(39.0)
-    solved = short_model.solve([open_pose, short_model.neutral])
+    short_coupler_model = load_model_with_couplers(39.0)
+    solved = short_coupler_model.solve([open_pose, short_coupler_model.neutral])
     assert np.isnan(solved.head[0]).all() and not solved.safe[0] and solved.safe[1]
-    mobility = short_model.mobility([open_pose, short_model.neutral])
+    mobility = short_coupler_model.mobility([open_pose, short_coupler_model.neutral])
     assert mobility.freedoms.tolist() == [-1, 4]
-    assert short_model.reasons(open_pose) == [
+    assert short_coupler_model.describe_violations(open_pose) == [
         "head: the crank tips are 80.000 mm apart, but the couplers reach only 78.000 mm"
     ]
 
@@ -119,13 +119,13 @@ def load_model_with_couplers(length: float) -> lizard.Model:
 
 
 def test_jacobians_are_the_derivatives_of_the_joint_coordinates(model):
-    angles, step = draw_poses(model, 50), 1e-5
+    angles, step = sample_poses(model, 50), 1e-5
     active, passive = model.jacobians(angles)
     slopes = np.empty((50, 8, 4))
     for servo in range(4):
         shifted = angles[:, None, :] + np.array([[step], [-step]]) * np.eye(4)[servo]
         solved = model.solve(shifted)
-        directions = np.moveaxis(solved.directions, -1, 0)
+        directions = np.moveaxis(solved.slider_directions, -1, 0)
         pairs = zip(directions, np.moveaxis(solved.strokes, -1, 0))
         joints = [*np.moveaxis(solved.couplers, -1, 0)]
         joints += [joint for pair in pairs for joint in pair]
@@ -137,7 +137,7 @@ def test_jacobians_are_the_derivatives_of_the_joint_coordinates(model):
 
 
 def test_solutions_match_the_command_line(model, run_lizard):
-    angles = draw_poses(model, 20)
+    angles = sample_poses(model, 20)
     rows = "\n".join(",".join(map(str, row)) for row in angles)
     result = run_lizard("pose", "--json", text=rows + "\n")
     solutions = [json.loads(line) for line in result.stdout.splitlines()]
@@ -147,7 +147,7 @@ def test_solutions_match_the_command_line(model, run_lizard):
         assert solution["head"] == solved.head[i].tolist()
         assert list(solution["margins"].values()) == solved.margins[i].tolist()
         assert solution["safe"] == solved.safe[i]
-        assert solution["why"] == model.reasons(angles[i])
+        assert solution["why"] == model.describe_violations(angles[i])
 
 
 def test_mobility_matches_the_command_line(model, run_lizard):
@@ -160,7 +160,7 @@ def test_mobility_matches_the_command_line(model, run_lizard):
         body = json.loads(result.stdout)[0]
         mobility = model.mobility(pose)
         assert mobility.freedoms == body["freedoms"]
-        assert mobility.loose == body["locked_freedoms"]
+        assert mobility.locked_freedoms == body["locked_freedoms"]
 
 
 def test_the_head_is_loose_if_its_couplers_are_collinear(model):
@@ -168,7 +168,7 @@ def test_the_head_is_loose_if_its_couplers_are_collinear(model):
     collinear_angle = np.degrees(np.arccos((35 - BASE / 2) / CRANK))
     pose = [180 - collinear_angle, collinear_angle, *model.neutral[2:]]
     mobility = load_model_with_couplers(35.0).mobility(pose)
-    assert (mobility.freedoms, mobility.loose) == (4, 1)
+    assert (mobility.freedoms, mobility.locked_freedoms) == (4, 1)
 
 
 def test_gaits_match_the_command_line(model, run_lizard):
@@ -183,7 +183,7 @@ def test_gaits_match_the_command_line(model, run_lizard):
             (row[kind] for kind in ("type2", "type1", "leg")),
             key=lambda margin: margin["margin"],
         )
-        assert gait.least_margin == (min_margin["what"], min_margin["margin"])
+        assert gait.min_margin == (min_margin["what"], min_margin["margin"])
         for with_servos, key in [(False, "predicted"), (True, "by_servos")]:
             expected = [
                 np.nan if value is None else value for value in row[key].values()
@@ -192,7 +192,7 @@ def test_gaits_match_the_command_line(model, run_lizard):
             np.testing.assert_array_equal(predicted, expected)
 
 
-def test_frames_match_the_trace_and_pulses_match_the_servos_gain(model, run_lizard):
+def test_frames_match_the_trace_and_pulses_match_the_servo_gain(model, run_lizard):
     gait = model.gait("arc left")
     assert gait.name == "arc-left"
     rows = run_lizard("gaits", "--trace", "arc-left").stdout.splitlines()[1:]
@@ -255,12 +255,12 @@ def test_the_wheel_contains_its_licences_and_no_simulator(run_lizard):
     result = run_lizard("sim")
     assert result.returncode != 0 and "simulator" in result.stderr
     site_packages = Path(lizard.__file__).parent.parent
-    installed = next(site_packages.glob("lizard_robot-*.dist-info"))
-    metadata = (installed / "METADATA").read_text()
+    dist_info = next(site_packages.glob("lizard_robot-*.dist-info"))
+    metadata = (dist_info / "METADATA").read_text()
     assert "License-Expression: MIT OR Apache-2.0" in metadata
     for name in ("LICENSE-MIT", "LICENSE-APACHE"):
         text = (Path(__file__).parents[3] / name).read_text()
-        assert (installed / "licenses" / name).read_text() == text
+        assert (dist_info / "licenses" / name).read_text() == text
     module = next((site_packages / "lizard").glob("_lizard*")).read_bytes()
     simulator = b"avr_make_mcu"
     assert simulator not in module

@@ -41,7 +41,7 @@ def port(tmp_path: Path) -> Iterator[Path]:
 
 
 def read_deadman(robot: lizard.Robot) -> int:
-    return int(robot.ask("cal")[-2].removeprefix("# deadman "))
+    return int(robot.send("cal")[-2].removeprefix("# deadman "))
 
 
 def test_a_walk_of_two_cycles_takes_about_two_periods_and_ends_at_the_first_pose(
@@ -60,7 +60,7 @@ def test_a_walk_of_two_cycles_takes_about_two_periods_and_ends_at_the_first_pose
 
 
 def test_a_gait_continues_while_the_program_drives_with_deadman(robot):
-    robot.ask("deadman 700")
+    robot.send("deadman 700")
     robot.go("arc-left")
     assert read_deadman(robot) == 700
     time.sleep(2)
@@ -72,7 +72,7 @@ def test_a_gait_continues_while_the_program_drives_with_deadman(robot):
 def test_the_robot_stops_if_the_program_sends_no_lines(robot):
     robot.go("walk")
     robot._closing.set()  # the threads end, as in a killed program
-    robot._keeper.join()
+    robot._keep_alive.join()
     robot._listener.join()
     board = robot._port.board
     for _ in range(60):
@@ -113,7 +113,7 @@ def test_a_refusal_has_the_robots_message_and_code(robot):
     robot.stop()
     for line in ("walk\nstop", "", "st\u00e4nd"):
         with pytest.raises(ValueError, match="ASCII"):
-            robot.ask(line)
+            robot.send(line)
     with pytest.raises(lizard.RobotError, match="resting") as error:
         robot.walk()
     assert error.value.code == 7
@@ -196,7 +196,7 @@ def test_a_robot_walks_over_a_radio_at_another_baud_rate(tmp_path):
         uno.wait()
 
 
-def test_the_error_for_a_port_without_a_lizard_states_the_reason(tmp_path):
+def test_the_error_for_a_port_without_a_robot_states_the_reason(tmp_path):
     with pytest.raises(OSError, match="no-port"):
         lizard.Robot(str(tmp_path / "no-port"))
     controller, terminal = os.openpty()

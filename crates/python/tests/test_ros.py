@@ -68,32 +68,32 @@ def robot():
 
 def test_the_chosen_gait_and_pace_are_closest_to_the_velocity(robot, model):
     driver = Driver(robot, model)
-    nominal_speeds = {
-        speed.gait: (speed.forward, TURN_LEVER_ARM * speed.turn)
-        for speed in driver.speeds
+    nominal_velocities = {
+        velocity.gait: (velocity.forward, TURN_LEVER_ARM * velocity.turn)
+        for velocity in driver.velocities
     }
     walk = model.gait("walk")
-    assert nominal_speeds["walk"][0] == pytest.approx(
+    assert nominal_velocities["walk"][0] == pytest.approx(
         walk.predict(with_servos=True).forward / 1000 / walk.period
     )
-    # In `look`, two feet pull against the other two, so its direction is undecided.
-    assert "look" not in nominal_speeds
+    # In `look`, two feet pull against the other two, so its direction is undetermined.
+    assert "look" not in nominal_velocities
     random = np.random.default_rng(2)
     for forward, turn in random.uniform(-1, 1, (200, 2)) * (0.06, 0.5):
         target = (forward, TURN_LEVER_ARM * turn)
         min_distance = min(
             math.dist(target, (pace / 100 * x, pace / 100 * y))
-            for x, y in nominal_speeds.values()
+            for x, y in nominal_velocities.values()
             for pace in (0, *range(10, 101))
         )
-        chosen = driver.choose(forward, turn)
-        x, y = nominal_speeds[chosen[0]] if chosen else (0, 0)
+        chosen = driver.choose_gait(forward, turn)
+        x, y = nominal_velocities[chosen[0]] if chosen else (0, 0)
         pace = chosen[1] / 100 if chosen else 0
         assert math.dist(target, (pace * x, pace * y)) < min_distance + 1e-4
-    assert driver.choose(0, 0) is None
-    assert driver.choose(1, 0)[1] == 100
-    assert driver.choose(0, 0.3)[0] == "left"
-    assert driver.choose(-1, 0)[0] == "back"
+    assert driver.choose_gait(0, 0) is None
+    assert driver.choose_gait(1, 0)[1] == 100
+    assert driver.choose_gait(0, 0.3)[0] == "left"
+    assert driver.choose_gait(-1, 0)[0] == "back"
 
 
 def test_the_robot_walks_while_velocities_arrive(robot, model):
@@ -103,8 +103,8 @@ def test_the_robot_walks_while_velocities_arrive(robot, model):
         driver.stop_if_silent()
         time.sleep(0.1)
     status = robot.status()
-    assert status.gait == driver.choose(0.03, 0)[0]
-    assert status.speed == driver.choose(0.03, 0)[1]
+    assert status.gait == driver.choose_gait(0.03, 0)[0]
+    assert status.speed == driver.choose_gait(0.03, 0)[1]
     driver.drive(0, 0.3)
     assert robot.status().gait == "left"
     driver.stop_if_silent()
@@ -189,7 +189,7 @@ def test_the_node_publishes_joints_and_follows_velocity_commands(monkeypatch):
         send_velocity()
         send_velocity()
         assert node.robot.is_going
-        node.robot.ask = lambda line: (_ for _ in ()).throw(
+        node.robot.send = lambda line: (_ for _ in ()).throw(
             lizard.RobotError("refused")
         )
         callbacks["cmd_vel"](Message(linear=Message(x=-0.03), angular=Message(z=0.0)))

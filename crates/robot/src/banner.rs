@@ -6,7 +6,7 @@
 pub struct RobotIdentity {
     /// The robot's name in robot.toml.
     pub name: String,
-    /// The hash of the robot's numbers, eight hexadecimal digits.
+    /// The hash of the robot's parameters as stored in the flash, eight lower-case hexadecimal digits.
     pub hash: String,
 }
 
@@ -31,13 +31,14 @@ pub struct Banner {
 }
 
 impl Banner {
-    /// Parses a banner; `None` for any other line, including a truncated banner and a banner of old firmware, which had
-    /// its robot compiled in.
+    /// Parses a banner; `None` for any other line, including a truncated banner and the banner of older firmware, into
+    /// which the robot was compiled.
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
         let (line, _) = line.strip_prefix("# lizard ")?.split_once(',')?;
-        let words: Vec<&str> = line.split(' ').collect();
-        let robot = match words[1..] {
+        let (version, rest) = line.split_once(' ')?;
+        let words: Vec<&str> = rest.split(' ').collect();
+        let robot = match words[..] {
             ["robot", name, hash] if !name.is_empty() && is_hash(hash) => Some(RobotIdentity {
                 name: name.to_owned(),
                 hash: hash.to_owned(),
@@ -46,13 +47,13 @@ impl Banner {
             _ => return None,
         };
         Some(Self {
-            version: words[0].to_owned(),
+            version: version.to_owned(),
             robot,
         })
     }
 }
 
-/// True for eight lower-case hexadecimal digits.
+/// True if a text consists of eight lower-case hexadecimal digits.
 fn is_hash(text: &str) -> bool {
     text.len() == 8 && text.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f'))
 }

@@ -1,5 +1,5 @@
-//! The calibration of one robot (the settings that the console command `save` stores), and its two forms: console lines
-//! and a TOML file.
+//! The calibration of one robot (the settings that the console command `save` stores), its two forms (console lines and
+//! a TOML file), and its transfer to the robot.
 //!
 //! Two robots built from the same robot.toml differ in their servos and in the spline tooth on which each horn is
 //! mounted. The host program and the page measure and store these differences; both use this module.
@@ -175,7 +175,7 @@ impl Calibration {
     /// True if a robot would print the same settings for both calibrations, except for full turns in the limits.
     #[must_use]
     pub fn is_equivalent_to(&self, other: &Self) -> bool {
-        let is_near = |a: f64, b: f64| (a - b).abs() < TOLERANCE;
+        let is_equal = |a: f64, b: f64| (a - b).abs() < TOLERANCE;
         let is_same_angle = |a: f64, b: f64| {
             let difference = (a - b).rem_euclid(360.0);
             difference.min(360.0 - difference) < TOLERANCE
@@ -184,8 +184,8 @@ impl Calibration {
         self.boot == other.boot
             && self.deadman == other.deadman
             && servos.all(|(a, b)| {
-                is_near(a.trim, b.trim)
-                    && is_near(a.scale, b.scale)
+                is_equal(a.trim, b.trim)
+                    && is_equal(a.scale, b.scale)
                     && a.dir == b.dir
                     && is_same_angle(a.limit[0], b.limit[0])
                     && is_same_angle(a.limit[1], b.limit[1])
@@ -247,16 +247,11 @@ impl Calibration {
             let keys = ["trim", "limit", "dir", "scale"];
             ServoSettings::from_section(&servos.section(name, &keys)?)
         };
-        let [a1, a2, a3, a4] = SERVO_NAMES;
+        let [a1, a2, a3, a4] = SERVO_NAMES.map(read_servo);
         Ok(Self {
             boot: boot.to_owned(),
             deadman: deadman as u16,
-            servos: [
-                read_servo(a1)?,
-                read_servo(a2)?,
-                read_servo(a3)?,
-                read_servo(a4)?,
-            ],
+            servos: [a1?, a2?, a3?, a4?],
         })
     }
 }
@@ -330,7 +325,7 @@ impl Transfer {
     }
 }
 
-/// True if a text has the form of a gait's name and may be sent to the robot unchanged.
+/// True if a text has the form of a gait name and may be sent to the robot unchanged.
 fn is_gait_name(text: &str) -> bool {
     let is_allowed = |c: char| c.is_ascii_alphanumeric() || c == ' ' || c == '-' || c == '_';
     !text.is_empty() && text.len() <= MAX_NAME_BYTES && text.chars().all(is_allowed)
@@ -348,7 +343,8 @@ fn require_two_decimals(section: &Section, key: &str, value: f64) -> ReadResult<
 }
 
 /// Rounds to hundredths, as the robot does, without a negative zero.
-fn round_to_hundredths(value: f64) -> f64 {
+#[must_use]
+pub fn round_to_hundredths(value: f64) -> f64 {
     (value * 100.0).round() / 100.0 + 0.0
 }
 

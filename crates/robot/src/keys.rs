@@ -63,7 +63,7 @@ fn to_generic_name(key: &str) -> String {
     parts.collect::<Vec<_>>().join(".")
 }
 
-/// The cells that the reader records for a key of the reference: values and default.
+/// The cells of the reference that the reader records for a key: values and default.
 #[derive(Default)]
 struct RecordedCells {
     values: Option<String>,

@@ -1,5 +1,5 @@
-//! A reader and checker of robot.toml, the robot's configuration and gaits, for the host program, the page, the
-//! firmware's build script and the tests.
+//! Reads and checks robot.toml, the robot's configuration and gaits, for the host program, the page, the firmware's
+//! build script and the tests.
 //!
 //! [`Robot::load`] reads the file and checks everything in it, including every sample of every gait, so every `Robot`
 //! can walk. A `Robot` provides the gaits in floating point together with the firmware's tables ([`CheckedGait`]), the
@@ -36,10 +36,9 @@ mod testing;
 mod units;
 
 pub use banner::{Banner, RobotIdentity};
-pub use calibration::{Calibration, ServoSettings, Transfer};
+pub use calibration::{Calibration, ServoSettings, Transfer, round_to_hundredths};
 pub use checks::{
-    Audit, CheckedGait, Effort, HIGH_UTILISATION, LeastMargin, PeakSpeed, SimulatedCycle,
-    TableError,
+    Audit, CheckedGait, Effort, HIGH_UTILISATION, MinMargin, PeakSpeed, SimulatedCycle, TableError,
 };
 pub use config::servo;
 pub use config::{
@@ -49,13 +48,13 @@ pub use config::{
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};
 pub use lizard_contact::{
-    Body, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, Ground, JointFriction, Motor, Motors,
-    Place, Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
+    Body, BodyPose, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, GroundContact,
+    JointFriction, Motor, Motors, Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
 };
-pub use reports::verdict;
+pub use reports::violations;
 pub use reports::{
     Assumptions, DriveEffect, Extreme, GaitRow, MovementRange, OPEN_INPUTS_NOTE, PACES_PERCENT,
-    Report, RoutineRow, Sensitivity, ServoTable, UNDECIDED_NOTE, plausible_range,
+    Report, RoutineRow, Sensitivity, ServoTable, UNDETERMINED_NOTE, plausible_range,
 };
 pub use robot::Robot;
 pub use status::{Status, parse_pose_report};

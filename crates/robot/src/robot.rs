@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use lizard_avr::Region;
-use lizard_contact::{Drive, Ground, Motors, Prediction, Strut, Travel};
+use lizard_contact::{Drive, GroundContact, Motors, Prediction, Strut, Travel};
 use lizard_core::numbers::gaits::{Gait, Step};
 use lizard_core::numbers::section::{Content, MAX_NAME_BYTES, REGION_BYTES};
 use lizard_kinematics::{Limits, Lizard, Pose, Solution, wrap};
@@ -22,7 +22,7 @@ use crate::tables::{CellMaps, CoreRobot, Tables, flash, numbers};
 /// A robot, all of whose values and gaits have been checked.
 #[derive(Debug, Clone)]
 pub struct Robot {
-    config: RobotConfig,
+    pub(crate) config: RobotConfig,
     gaits: Vec<CheckedGait>,
     routines: Vec<Routine>,
     content: Content,
@@ -69,8 +69,6 @@ impl Robot {
     /// # Errors
     /// Fails if the table is invalid, if the gait violates a limit, or if the robot's section is too large.
     pub fn with_gait(&self, table: &str) -> Result<Self, Error> {
-        /// The first gait of every valid robot.
-        const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
         // The table is first parsed alone, because the message of a syntax error may contain a second line number.
         file::parse(table, |_| Ok(()))?;
         let robot = file::parse(&format!("{STAND}{table}"), |table| {
@@ -101,7 +99,7 @@ impl Robot {
         let efforts: Vec<Effort> = robot.gaits().iter().map(simulate).collect();
         let volts = robot.servo_type().supply_volts;
         let utilisations = efforts.iter().map(|effort| effort.utilisation(1.0, 1.0));
-        rail.set_slow_threshold(utilisations.fold(0.0, f64::max), HIGH_UTILISATION, volts);
+        rail.derive_slow_threshold(utilisations.fold(0.0, f64::max), HIGH_UTILISATION, volts);
         // The torque-speed line is proportional to the supply voltage. A utilisation limit is therefore equivalent to a
         // supply voltage that is lower by the same factor.
         let [_, stop, _] = rail.thresholds;
@@ -233,7 +231,7 @@ impl Robot {
 
     /// The motors of another servo type at a supply voltage in V, and the joint friction.
     pub fn motors_with_type(&self, servo_type: &ServoType, volts: f64) -> Motors {
-        let create_motor = |settings: &Servo| servo_type.motor(volts, settings.us_per_degree);
+        let create_motor = |servo: &Servo| servo_type.motor(volts, servo.us_per_degree);
         Motors {
             per_servo: self.servos().each_ref().map(create_motor),
             joint_friction: self.config.joint_friction,
@@ -305,7 +303,7 @@ impl Robot {
     }
 
     /// The contact model of this robot on its floor.
-    pub fn ground(&self) -> &Ground {
+    pub fn ground(&self) -> &GroundContact {
         &self.config.ground
     }
 
@@ -319,13 +317,13 @@ impl Robot {
         &self.routines
     }
 
-    /// Finds a routine by its name, with hyphens or spaces between the words.
+    /// The routine with this name, whose words are separated by hyphens or spaces; `None` if there is none.
     pub fn routine(&self, name: &str) -> Option<&Routine> {
         let name = name.replace(' ', "-");
         self.routines.iter().find(|routine| routine.name() == name)
     }
 
-    /// Finds a gait by its name, with hyphens or spaces between the words.
+    /// The gait with this name, whose words are separated by hyphens or spaces; `None` if there is none.
     pub fn gait(&self, name: &str) -> Option<&CheckedGait> {
         let name = name.replace(' ', "-");
         self.gaits.iter().find(|gait| gait.name() == name)
@@ -415,6 +413,9 @@ impl Robot {
         gait.predict(self.ground())
     }
 }
+
+/// The first gait of every valid robot.
+pub(crate) const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
 /// The top-level keys of the file: its tables, and `name`.
 pub(crate) const TOP_LEVEL_KEYS: [&str; 14] = [

@@ -1,6 +1,6 @@
 //! The robot's reports: the answer to `status`, and the poses that the robot sends after `watch`.
 
-/// The fault name of a board without a usable robot in its flash.
+/// The name of the fault of a board without a usable robot in its flash.
 const NO_ROBOT_FAULT: &str = "robot";
 
 /// The reported state of a robot.
@@ -12,17 +12,17 @@ pub struct Status {
     pub gait: String,
     /// Phase of the gait's cycle, 0 to 1; 0 while no gait runs.
     pub phase: f64,
-    /// Servo angles, degrees, chassis frame; `None` without a robot in the flash.
+    /// Servo angles, degrees, chassis frame; `None` if the flash contains no robot.
     pub pose: Option<[f64; 4]>,
-    /// Pace of the gaits, percent; `None` without a robot in the flash.
+    /// Pace of the gaits, percent; `None` if the flash contains no robot.
     pub pace: Option<f64>,
     /// Number of frames since power-on.
     pub frames: u64,
-    /// The smallest of the guard's margins, a sine; `None` without a robot in the flash.
+    /// The smallest of the guard's margins, a sine; `None` if the flash contains no robot.
     pub margin: Option<f64>,
     /// True if the guard holds the robot in its last safe pose.
     pub is_held: bool,
-    /// The fault's name; `None` without a fault.
+    /// The fault's name; `None` if there is no fault.
     pub fault: Option<String>,
     /// Supply voltage of the board, V; `None` until it is measured.
     pub vcc: Option<f64>,
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_and_holds_by_the_guard_are_in_capitals() {
+    fn faults_and_holds_by_the_guard_are_marked_in_capitals() {
         for (old, new, phrase) in [
             ("fault=none", "fault=supply", "FAULT supply"),
             ("clear", "held", "HELD by the guard"),

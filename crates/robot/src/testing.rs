@@ -21,6 +21,11 @@ pub fn robot_with(name: &str, changes: &[(&str, &str)]) -> Result<Robot, Error> 
     Robot::parse(&text)
 }
 
+/// Parses the paper's robot with further tables at the end of its text.
+pub fn paper_with_tables(tables: &str) -> Result<Robot, Error> {
+    Robot::parse(&format!("{}\n{tables}", robot_text("paper")))
+}
+
 /// Reads a robot from its file.
 pub fn robot(name: &str) -> Robot {
     robot_with(name, &[]).unwrap_or_else(|error| panic!("{name}: {error}"))

@@ -89,7 +89,7 @@ static void stop_conversion(struct adc *adc)
 static void begin_conversion(struct adc *adc, uint64_t edge)
 {
 	avr_t *avr = adc->avr;
-	uint64_t clock = cycles_per_clock(avr);
+	uint64_t clock_cycles = cycles_per_clock(avr);
 	uint64_t ready_at = adc->enabled_at > adc->selected_at ? adc->enabled_at : adc->selected_at;
 	uint64_t waited_cycles = edge > ready_at ? edge - ready_at : 0;
 	adc->settled_fraction = waited_cycles < SETTLING_CYCLES
@@ -99,8 +99,8 @@ static void begin_conversion(struct adc *adc, uint64_t edge)
 	adc->reference = avr->data[REG_ADMUX] & REFS;
 	adc->is_converting = true;
 	avr->data[REG_ADCSRA] |= ADSC;
-	adc->sample_at = edge + sample_half_clocks[adc->next_is_first] * clock / 2;
-	adc->end_at = edge + length_half_clocks[adc->next_is_first] * clock / 2;
+	adc->sample_at = edge + sample_half_clocks[adc->next_is_first] * clock_cycles / 2;
+	adc->end_at = edge + length_half_clocks[adc->next_is_first] * clock_cycles / 2;
 	adc->next_is_first = false;
 	arm_timers(adc);
 }
@@ -109,8 +109,8 @@ static void begin_conversion(struct adc *adc, uint64_t edge)
  * the prescaler "starts counting from the moment the ADC is switched on" (24.4). */
 static uint64_t next_edge(const struct adc *adc, uint64_t cycle)
 {
-	uint64_t clock = cycles_per_clock(adc->avr);
-	return adc->enabled_at + ((cycle - adc->enabled_at) / clock + 1) * clock;
+	uint64_t clock_cycles = cycles_per_clock(adc->avr);
+	return adc->enabled_at + ((cycle - adc->enabled_at) / clock_cycles + 1) * clock_cycles;
 }
 
 static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void *param)

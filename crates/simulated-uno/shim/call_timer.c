@@ -16,10 +16,10 @@ void call_timer_reset(struct call_timer *timer)
 	timer->is_in_call = false;
 }
 
-void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry)
+void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry_address)
 {
 	timer->is_enabled = is_enabled;
-	timer->entry = entry;
+	timer->entry_address = entry_address;
 	timer->is_in_call = false;
 }
 
@@ -33,7 +33,7 @@ void call_timer_check(struct call_timer *timer)
 		struct call *call = list_push(&timer->calls);
 		*call = (struct call){ timer->enter_cycle, avr->cycle, interrupt_cycles };
 		timer->is_in_call = false;
-	} else if (!timer->is_in_call && avr->pc == timer->entry) {
+	} else if (!timer->is_in_call && avr->pc == timer->entry_address) {
 		/* The firmware may have set any stack pointer, so the address may wrap. */
 		uint8_t high = avr->data[(uint16_t)(sp + 1)], low = avr->data[(uint16_t)(sp + 2)];
 		timer->return_address = (high << 8 | low) << 1;

@@ -18,7 +18,7 @@ struct call_timer {
 	const struct handlers *handlers;
 	bool is_enabled;         /* true: simavr must run one instruction at a time */
 	bool is_in_call;         /* true between the entry and the return of a timed call */
-	uint32_t entry;          /* byte address of the function in flash */
+	uint32_t entry_address;  /* byte address of the function in flash */
 	/* The timed call in progress: */
 	uint32_t return_address; /* byte address in flash after the call instruction */
 	uint16_t stack_pointer;  /* stack pointer at the entry */
@@ -30,7 +30,7 @@ struct call_timer {
 void call_timer_attach(struct call_timer *timer, const avr_t *avr,
                        const struct handlers *handlers);
 void call_timer_reset(struct call_timer *timer);
-/* Starts or stops timing the calls of the function at byte address `entry`. */
-void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry);
+/* Starts or stops timing the calls of the function at this byte address. */
+void call_timer_set(struct call_timer *timer, bool is_enabled, uint32_t entry_address);
 /* Detects the start and the end of a timed call; must be called before each instruction. */
 void call_timer_check(struct call_timer *timer);

@@ -13,11 +13,12 @@ static uint8_t read_pin(avr_t *avr, avr_io_addr_t address, void *param)
 	for (int i = 0; i < CONTACT_PORT_COUNT; i++) {
 		if (pin_registers[i] != address)
 			continue;
-		if (contacts->stock_reads[i].callback)
-			value = contacts->stock_reads[i].callback(avr, address, contacts->stock_reads[i].param);
-		uint8_t inputs = contacts->contact_bits[i] & ~avr->data[address + DDR];
-		uint8_t high = avr->data[address + PORT] & ~contacts->closed_bits[i];
-		value = (value & ~inputs) | (high & inputs);
+		const struct read_hook *stock = &contacts->stock_hooks[i];
+		if (stock->callback)
+			value = stock->callback(avr, address, stock->param);
+		uint8_t input_bits = contacts->contact_bits[i] & ~avr->data[address + DDR];
+		uint8_t high_bits = avr->data[address + PORT] & ~contacts->closed_bits[i];
+		value = (value & ~input_bits) | (high_bits & input_bits);
 	}
 	return value;
 }
@@ -25,7 +26,7 @@ static uint8_t read_pin(avr_t *avr, avr_io_addr_t address, void *param)
 void contacts_attach(struct contacts *contacts, avr_t *avr)
 {
 	for (int i = 0; i < CONTACT_PORT_COUNT; i++)
-		contacts->stock_reads[i] = hook_read(avr, pin_registers[i], read_pin, contacts);
+		contacts->stock_hooks[i] = hook_read(avr, pin_registers[i], read_pin, contacts);
 }
 
 void contacts_set(struct contacts *contacts, uint16_t address, uint8_t bit, bool is_closed)

@@ -12,7 +12,7 @@
 
 struct contacts {
 	/* All arrays are indexed by port: B, C, D. */
-	struct read_hook stock_reads[CONTACT_PORT_COUNT]; /* simavr's callbacks for the PIN registers */
+	struct read_hook stock_hooks[CONTACT_PORT_COUNT]; /* simavr's callbacks for the PIN registers */
 	uint8_t contact_bits[CONTACT_PORT_COUNT]; /* pins that have a contact */
 	uint8_t closed_bits[CONTACT_PORT_COUNT];  /* pins whose contact is closed */
 };

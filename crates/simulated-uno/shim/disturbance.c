@@ -57,10 +57,10 @@ void disturbance_advance_stall(struct disturbance *disturbance, uint64_t until)
 {
 	avr_t *avr = disturbance->avr;
 	uint64_t end = until < disturbance->stalled_until ? until : disturbance->stalled_until;
-	uint64_t event = avr_cycle_timer_process(avr);
-	uint64_t left = end > avr->cycle ? end - avr->cycle : 0;
+	uint64_t cycles_to_event = avr_cycle_timer_process(avr);
+	uint64_t cycles_to_end = end > avr->cycle ? end - avr->cycle : 0;
 	if (avr->interrupt_state)
-		event = 1; /* an interrupt is about to be served */
-	avr->cycle += event < left ? event : left;
+		cycles_to_event = 1; /* an interrupt is about to be served */
+	avr->cycle += cycles_to_event < cycles_to_end ? cycles_to_event : cycles_to_end;
 	avr_cycle_timer_process(avr);
 }

@@ -5,31 +5,31 @@
 
 uint64_t handlers_cycles(const struct handlers *handlers)
 {
-	uint64_t running = handlers->avr->cycle - handlers->running_since;
-	return handlers->finished_cycles + (handlers->depth ? running : 0);
+	uint64_t running_cycles = handlers->avr->cycle - handlers->running_since;
+	return handlers->finished_cycles + (handlers->depth ? running_cycles : 0);
 }
 
 /* Adds the cycles since `running_since` to the innermost handler. */
 static void account_cycles(struct handlers *handlers, uint64_t cycle)
 {
 	if (handlers->depth) {
-		uint64_t spent = cycle - handlers->running_since;
-		handlers->finished_cycles += spent;
-		handlers->vectors[handlers->running_vectors[handlers->depth - 1]].cycles += spent;
+		uint64_t spent_cycles = cycle - handlers->running_since;
+		handlers->finished_cycles += spent_cycles;
+		handlers->vectors[handlers->running_vectors[handlers->depth - 1]].cycles += spent_cycles;
 	}
 	handlers->running_since = cycle;
 }
 
-static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
+static void on_vector(struct avr_irq_t *irq, uint32_t is_running, void *param)
 {
 	struct handlers *handlers = param;
 	uint8_t vector = irq->irq / 256;
-	account_cycles(handlers, handlers->avr->cycle + (running ? 0 : RETI_CYCLES));
-	if (!running) {
+	account_cycles(handlers, handlers->avr->cycle + (is_running ? 0 : RETI_CYCLES));
+	if (!is_running) {
 		if (handlers->depth)
 			handlers->depth--;
 	} else if (vector < CHIP_VECTOR_COUNT && handlers->depth < sizeof handlers->running_vectors) {
-		handlers->vectors[vector].entries++;
+		handlers->vectors[vector].entry_count++;
 		handlers->running_vectors[handlers->depth++] = vector;
 	}
 }

@@ -7,8 +7,8 @@
 #include "chip.h"
 
 struct vector_stats {
-	uint64_t entries; /* number of times that the interrupt was served */
-	uint64_t cycles;  /* cycles spent in its handler */
+	uint64_t entry_count; /* number of times that the interrupt was served */
+	uint64_t cycles;      /* cycles spent in its handler */
 };
 
 struct handlers {

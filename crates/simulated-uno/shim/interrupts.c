@@ -6,7 +6,7 @@
 #define ENTRY_CYCLES 4
 #define WAKE_CYCLES 4
 
-static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *vector)
+static bool is_pending(const struct interrupts *interrupts, const avr_int_vector_t *vector)
 {
 	avr_t *avr = interrupts->avr;
 	if (!avr_regbit_get(avr, vector->enable))
@@ -17,26 +17,26 @@ static bool is_due(const struct interrupts *interrupts, const avr_int_vector_t *
 }
 
 /* Rebuilds simavr's list of pending interrupts, which `sleep` checks, from the flags. Returns the
- * interrupt with the highest priority, or NULL if none is due. */
-static avr_int_vector_t *collect_due(const struct interrupts *interrupts)
+ * interrupt with the highest priority, or NULL if none is pending. */
+static avr_int_vector_t *collect_pending(const struct interrupts *interrupts)
 {
 	avr_t *avr = interrupts->avr;
 	avr_int_table_t *table = &avr->interrupts;
-	avr_int_vector_t *first = NULL;
+	avr_int_vector_t *highest = NULL;
 	table->pending.read = table->pending.write = 0;
 	for (int i = 0; i < table->vector_count; i++) {
 		avr_int_vector_t *vector = table->vector[i];
-		vector->pending = is_due(interrupts, vector);
+		vector->pending = is_pending(interrupts, vector);
 		if (!vector->pending)
 			continue;
 		table->pending.buffer[table->pending.write++] = vector;
-		if (!first || vector->vector < first->vector)
-			first = vector;
+		if (!highest || vector->vector < highest->vector)
+			highest = vector;
 	}
-	return first;
+	return highest;
 }
 
-static void enter(struct interrupts *interrupts, avr_int_vector_t *vector)
+static void enter_handler(struct interrupts *interrupts, avr_int_vector_t *vector)
 {
 	avr_t *avr = interrupts->avr;
 	avr_int_table_t *table = &avr->interrupts;
@@ -49,7 +49,7 @@ static void enter(struct interrupts *interrupts, avr_int_vector_t *vector)
 	if (table->running_ptr < ARRAY_SIZE(table->running))
 		table->running[table->running_ptr++] = vector;
 	avr_clear_interrupt(avr, vector);
-	collect_due(interrupts);
+	collect_pending(interrupts);
 }
 
 bool interrupts_serve(struct interrupts *interrupts)
@@ -57,7 +57,7 @@ bool interrupts_serve(struct interrupts *interrupts)
 	avr_t *avr = interrupts->avr;
 	if (!avr->sreg[S_I]) {
 		if (interrupts->needs_check)
-			collect_due(interrupts);
+			collect_pending(interrupts);
 		interrupts->needs_check = false;
 		return false;
 	}
@@ -67,11 +67,11 @@ bool interrupts_serve(struct interrupts *interrupts)
 			return false;
 	}
 	interrupts->needs_check = false;
-	avr_int_vector_t *vector = collect_due(interrupts);
+	avr_int_vector_t *vector = collect_pending(interrupts);
 	avr->interrupt_state = vector != NULL;
 	if (!vector)
 		return false;
-	enter(interrupts, vector);
+	enter_handler(interrupts, vector);
 	return true;
 }
 

@@ -1,9 +1,9 @@
-/* Corrections of simavr 1.6's interrupts according to the ATmega328P's data sheet.
+/* Corrections to simavr 1.6's interrupt handling, to match the ATmega328P's data sheet.
  *
- * - Entering an interrupt takes 4 cycles, and 4 more from sleep (7.7.1).
+ * - Entering an interrupt takes 4 cycles, and 4 more from sleep (section 7.7.1).
  * - An enabled interrupt is served whenever its flag is set, even if it was enabled after the flag
  *   was set. After `sei`, one more instruction is executed first.
- * - A one written to TIFRn clears that flag and no other flag.
+ * - Writing a one to a flag in TIFRn clears that flag and no other.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -26,9 +26,9 @@ struct interrupts {
 };
 
 void interrupts_attach(struct interrupts *interrupts, const struct instruction *instruction);
-/* Has all interrupts checked right after the current instruction; must be called when a flag or an
- * enable bit has changed. */
+/* Requests a check of all interrupts after the current instruction; must be called when a flag or
+ * an enable bit has changed. */
 void interrupts_request_check(struct interrupts *interrupts);
-/* Enters the handler of the due interrupt with the highest priority. Returns true if cycles have
- * passed. */
+/* Enters the handler of the pending interrupt with the highest priority. Returns true if it has
+ * entered a handler, which takes cycles. */
 bool interrupts_serve(struct interrupts *interrupts);

@@ -9,12 +9,12 @@ static void write_pin(avr_t *avr, avr_io_addr_t address, uint8_t value, void *pa
 	uint8_t bits = instruction_written_bits(toggle->instruction, value);
 	for (int i = 0; i < 3; i++)
 		if (pin_registers[i] == address)
-			toggle->stock_writes[i].callback(avr, address, bits, toggle->stock_writes[i].param);
+			toggle->stock_hooks[i].callback(avr, address, bits, toggle->stock_hooks[i].param);
 }
 
 void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction)
 {
 	toggle->instruction = instruction;
 	for (int i = 0; i < 3; i++)
-		toggle->stock_writes[i] = hook_write(instruction->avr, pin_registers[i], write_pin, toggle);
+		toggle->stock_hooks[i] = hook_write(instruction->avr, pin_registers[i], write_pin, toggle);
 }

@@ -1,4 +1,5 @@
-/* Corrects `sbi PINx, n`: it toggles only pin n. simavr 1.6 toggles every high pin of the port.
+/* Makes `sbi PINx, n` toggle only pin n, as on the chip; simavr 1.6 also toggles every other high
+ * pin of the port.
  *
  * SPDX-License-Identifier: GPL-3.0-or-later
  */
@@ -8,7 +9,7 @@
 
 struct pin_toggle {
 	const struct instruction *instruction;
-	struct write_hook stock_writes[3]; /* simavr's callbacks for PINB, PINC and PIND */
+	struct write_hook stock_hooks[3]; /* simavr's callbacks for PINB, PINC and PIND */
 };
 
 void pin_toggle_attach(struct pin_toggle *toggle, const struct instruction *instruction);

@@ -33,15 +33,14 @@ bool restart_if_requested(struct uno *uno)
 	return true;
 }
 
-bool restart_wait_for_supply(struct uno *uno, uint64_t until)
+void restart_wait_for_supply(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	uint64_t next = avr_cycle_timer_process(avr);
+	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);
 	if (uno->reset.requested_causes || uno->reset.is_power_cut_requested)
-		return true;
-	uint64_t left = until - avr->cycle;
-	avr->cycle += next < left ? next : left;
-	return true;
+		return;
+	uint64_t cycles_to_end = until - avr->cycle;
+	avr->cycle += cycles_to_timer < cycles_to_end ? cycles_to_timer : cycles_to_end;
 }
 
 void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run)

@@ -10,9 +10,9 @@
 void restart(struct uno *uno, uint8_t causes);
 /* Executes the reset or power cut that a part has requested. Returns false if none is requested. */
 bool restart_if_requested(struct uno *uno);
-/* Advances the clock to the next simavr timer or to `until` while the supply holds the chip
- * in reset. Returns true. */
-bool restart_wait_for_supply(struct uno *uno, uint64_t until);
+/* Advances the clock to the next simavr timer or to `until` while the supply holds the chip in
+ * reset. */
+void restart_wait_for_supply(struct uno *uno, uint64_t until);
 /* Executes the reset that stock simavr's watchdog requests by replacing avr->run. `normal_run`: the
  * previous value of avr->run. */
 void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run);

@@ -45,7 +45,7 @@ static uint64_t crossing_cycle(const struct supply *supply, double level_mv)
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param);
 
 /* Schedules a check of the supply at the cycle at which the ramp crosses the next level. */
-static void schedule(struct supply *supply)
+static void schedule_check(struct supply *supply)
 {
 	const double levels_mv[] = {
 		hold_below_mv(supply), release_above_mv(supply), MIN_OPERATING_MV, POWER_ON_FALLING_MV,
@@ -84,7 +84,7 @@ static void update(struct supply *supply, uint64_t now)
 	if (!supply->is_data_sheet)
 		return;
 	apply_voltage(supply, supply_mv(supply, now));
-	schedule(supply);
+	schedule_check(supply);
 }
 
 static avr_cycle_count_t check_supply(avr_t *avr, avr_cycle_count_t when, void *param)
@@ -154,7 +154,7 @@ bool supply_may_reset(const struct supply *supply)
 
 void supply_reset(struct supply *supply)
 {
-	schedule(supply);
+	schedule_check(supply);
 	arm_power_cut(supply);
 }
 

@@ -15,7 +15,7 @@ static void write_low(avr_t *avr, avr_io_addr_t address, uint8_t value, void *pa
 	for (int i = 0; i < 4; i++) {
 		if (low_byte_registers[i] != address)
 			continue;
-		const struct write_hook *stock_hook = &timer1->stock_writes_low[i];
+		const struct write_hook *stock_hook = &timer1->stock_low_hooks[i];
 		if (stock_hook->callback)
 			stock_hook->callback(avr, address, value, stock_hook->param);
 		else
@@ -26,7 +26,7 @@ static void write_low(avr_t *avr, avr_io_addr_t address, uint8_t value, void *pa
 static uint8_t read_count_low(avr_t *avr, avr_io_addr_t address, void *param)
 {
 	struct timer1 *timer1 = param;
-	uint8_t low = timer1->stock_read_count.callback(avr, address, timer1->stock_read_count.param);
+	uint8_t low = timer1->stock_count_hook.callback(avr, address, timer1->stock_count_hook.param);
 	timer1->temp = avr->data[address + 1];
 	return low;
 }
@@ -45,10 +45,10 @@ static uint8_t read_temp(avr_t *avr, avr_io_addr_t address, void *param)
 void timer1_attach(struct timer1 *timer1, avr_t *avr)
 {
 	for (int i = 0; i < 4; i++) {
-		timer1->stock_writes_low[i] = hook_write(avr, low_byte_registers[i], write_low, timer1);
+		timer1->stock_low_hooks[i] = hook_write(avr, low_byte_registers[i], write_low, timer1);
 		hook_write(avr, low_byte_registers[i] + 1, write_high, timer1);
 	}
-	timer1->stock_read_count = hook_read(avr, REG_TCNT1L, read_count_low, timer1);
+	timer1->stock_count_hook = hook_read(avr, REG_TCNT1L, read_count_low, timer1);
 	hook_read(avr, REG_TCNT1L + 1, read_temp, timer1);
 	hook_read(avr, REG_ICR1L, read_capture_low, timer1);
 	hook_read(avr, REG_ICR1L + 1, read_temp, timer1);

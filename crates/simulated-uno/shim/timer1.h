@@ -8,9 +8,9 @@
 #include "chip.h"
 
 struct timer1 {
-	uint8_t temp;                          /* TEMP */
-	struct write_hook stock_writes_low[4]; /* simavr's callbacks for the low bytes */
-	struct read_hook stock_read_count;     /* simavr's callback for TCNT1L */
+	uint8_t temp;                         /* TEMP */
+	struct write_hook stock_low_hooks[4]; /* simavr's callbacks for the low bytes */
+	struct read_hook stock_count_hook;    /* simavr's callback for TCNT1L */
 };
 
 void timer1_attach(struct timer1 *timer1, avr_t *avr);

@@ -172,8 +172,8 @@ static void run_instructions(struct uno *uno, uint64_t until)
 	} else if (disturbance_is_active(&uno->disturbance)) {
 		avr->run_cycle_limit = 1;
 	} else {
-		uint64_t left = until > avr->cycle ? until - avr->cycle : 1;
-		avr->run_cycle_limit = left < MAX_SLICE_CYCLES ? left : MAX_SLICE_CYCLES;
+		uint64_t cycles_to_end = until > avr->cycle ? until - avr->cycle : 1;
+		avr->run_cycle_limit = cycles_to_end < MAX_SLICE_CYCLES ? cycles_to_end : MAX_SLICE_CYCLES;
 	}
 	/* The count that simavr computed from the old limit may extend beyond `until`. */
 	if (avr->run_cycle_count > avr->run_cycle_limit)
@@ -232,8 +232,10 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 	avr_t *avr = uno->avr;
 	if (restart_if_requested(uno))
 		return !uno->is_powered_off;
-	if (uno->supply.holds_reset)
-		return restart_wait_for_supply(uno, until);
+	if (uno->supply.holds_reset) {
+		restart_wait_for_supply(uno, until);
+		return true;
+	}
 	if (avr->state == cpu_Sleeping)
 		disturbance_serve(&uno->disturbance);
 	if (avr->state == cpu_Running && disturbance_stalls_main(&uno->disturbance)) {
@@ -303,9 +305,9 @@ uint64_t uno_sleep_cycles(const struct uno *uno)
 	return uno->sleep_cycles + (is_behind ? uno->now - uno->avr->cycle : 0);
 }
 
-void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry)
+void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry_address)
 {
-	call_timer_set(&uno->call_timer, is_enabled, entry);
+	call_timer_set(&uno->call_timer, is_enabled, entry_address);
 }
 
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool is_stop_bit_low)
@@ -324,8 +326,7 @@ void uno_block_cpu(struct uno *uno, uint64_t cycles)
 	uno->disturbance.blocked_cycles = cycles;
 	if (avr->state != cpu_Sleeping)
 		return; /* served by the loop, as soon as interrupts are enabled */
-	uno->sleep_cycles += uno->now - avr->cycle;
-	avr->cycle = uno->now;
+	restart_catch_up(uno);
 	disturbance_serve(&uno->disturbance);
 	uno->now = avr->cycle;
 }

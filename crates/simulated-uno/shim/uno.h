@@ -34,8 +34,8 @@ void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end);
 enum stop_reason uno_run(struct uno *uno, uint64_t until);
 /* While `is_enabled`, a run ends as soon as the firmware has sent a complete line. */
 void uno_set_stop_at_line(struct uno *uno, bool is_enabled);
-/* Starts or stops timing the calls of the function at byte address `entry`. */
-void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry);
+/* Starts or stops timing the calls of the function at this byte address. */
+void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry_address);
 /* Queues bytes for the serial line. `is_stop_bit_low`: the line is low during each stop bit. */
 void uno_send(struct uno *uno, const uint8_t *bytes, size_t length, bool is_stop_bit_low);
 /* Sends `bytes` repeatedly whenever the queue is empty; length 0 ends the flood. */

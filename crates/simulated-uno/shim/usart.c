@@ -70,7 +70,7 @@ static uint8_t receive_byte(void *param, struct line_byte byte, double sender_cy
 	double ratio = usart_cycles_per_bit(avr) / sender_cycles_per_bit;
 	bool has_frame_error = byte.is_stop_bit_low || fabs(ratio - 1.0) > BAUD_TOLERANCE;
 	uint8_t value = usart_sample_byte(byte.value, ratio);
-	usart->received[usart->received_count++] = (struct received){ value, has_frame_error };
+	usart->received[usart->received_count++] = (struct received_byte){ value, has_frame_error };
 	update_receive_flags(usart);
 	return has_frame_error ? 0xff : value;
 }

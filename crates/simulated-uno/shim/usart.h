@@ -21,7 +21,7 @@ struct usart {
 	avr_uart_t *vectors;              /* simavr's USART0, for its interrupt vectors */
 	struct interrupts *interrupts;
 	struct serial_bytes *transmitted; /* record of the bytes that the chip has sent */
-	struct received { uint8_t value; bool has_frame_error; } received[RECEIVE_CAPACITY];
+	struct received_byte { uint8_t value; bool has_frame_error; } received[RECEIVE_CAPACITY];
 	uint8_t received_count;           /* number of bytes in `received` */
 	bool has_overrun;                 /* DOR: a byte was lost after UDR0 was last read */
 	uint8_t sent_byte;                /* byte in the transmit shift register */

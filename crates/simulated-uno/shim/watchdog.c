@@ -40,15 +40,15 @@ static avr_cycle_count_t on_time_out(avr_t *avr, avr_cycle_count_t when, void *p
 	return when + period_cycles(control);
 }
 
-static void schedule(struct watchdog *watchdog)
+static void schedule_time_out(struct watchdog *watchdog)
 {
 	avr_t *avr = watchdog->avr;
 	uint8_t control = avr->data[REG_WDTCSR];
 	avr_cycle_timer_cancel(avr, on_time_out, watchdog);
 	if (!is_on(control))
 		return;
-	uint64_t due = watchdog->counter_start + period_cycles(control);
-	avr_cycle_timer_register(avr, chip_cycles_until(avr, due), on_time_out, watchdog);
+	uint64_t time_out_cycle = watchdog->counter_start + period_cycles(control);
+	avr_cycle_timer_register(avr, chip_cycles_until(avr, time_out_cycle), on_time_out, watchdog);
 }
 
 /* Called by simavr with each request to its parts, such as `wdr`. Returns -1 for other requests. */
@@ -58,7 +58,7 @@ static int on_request(avr_io_t *io, uint32_t request, void *param)
 		return -1;
 	struct watchdog *watchdog = (struct watchdog *)io;
 	watchdog->counter_start = watchdog->avr->cycle + 1; /* `wdr` ends with this cycle */
-	schedule(watchdog);
+	schedule_time_out(watchdog);
 	return 0;
 }
 
@@ -80,7 +80,7 @@ static void write_control(avr_t *avr, avr_io_addr_t address, uint8_t value, void
 		watchdog->stock->watchdog.pending = 0; /* a time-out in this cycle requests it again */
 	if (!is_on(old))
 		watchdog->counter_start = cycle;
-	schedule(watchdog);
+	schedule_time_out(watchdog);
 	interrupts_request_check(watchdog->interrupts);
 }
 
@@ -94,11 +94,11 @@ static uint8_t read_control(avr_t *avr, avr_io_addr_t address, void *param)
 /* If WDE and WDIE are set, "Executing the corresponding interrupt vector will clear WDIE and
  * WDIF automatically by hardware (the Watchdog goes to System Reset Mode)" (11.9.2). In
  * interrupt mode this clears only WDIF, which also keeps simavr from clearing WDIE. */
-static void on_vector(struct avr_irq_t *irq, uint32_t running, void *param)
+static void on_vector(struct avr_irq_t *irq, uint32_t is_running, void *param)
 {
 	struct watchdog *watchdog = param;
 	uint8_t *control = &watchdog->avr->data[REG_WDTCSR];
-	if (running)
+	if (is_running)
 		*control &= *control & WDE ? ~(WDIF | WDIE) : ~WDIF;
 }
 
@@ -127,7 +127,7 @@ void watchdog_reset(struct watchdog *watchdog)
 	watchdog->change_window_end = 0;
 	watchdog->counter_start = avr->cycle;
 	avr->data[REG_WDTCSR] = watchdog->reset->mcusr & RESET_WATCHDOG ? WDE : 0;
-	schedule(watchdog);
+	schedule_time_out(watchdog);
 }
 
 bool watchdog_may_reset(const struct watchdog *watchdog)

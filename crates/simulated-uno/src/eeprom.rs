@@ -1,8 +1,8 @@
 //! The EEPROM, and power failures while it is written.
 //!
-//! Programming a byte takes 3.4 ms. If a firmware loses power during that time, it must find either its old or its
-//! new settings at the next start. To check this, a test can cut the power while any byte is programmed, and can choose
-//! the bits that are set in that byte afterwards.
+//! Programming a byte takes 3.4 ms. If firmware loses power during that time, it must find either its old or its new
+//! settings at the next start. To check this, a test can cut the power while any byte is programmed, and can choose the
+//! bits that are set in that byte afterwards.
 
 use crate::Uno;
 use crate::ffi;
@@ -91,7 +91,7 @@ impl Uno {
     /// byte.
     pub fn cut_power(&mut self, cut: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps numbers.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps numbers.
         unsafe {
             match cut {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
@@ -107,15 +107,14 @@ impl Uno {
 
     /// Cancels a power failure that [`Uno::cut_power`] has scheduled and that has not happened yet.
     pub fn cancel_power_cut(&mut self) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim clears what
-        // `cut_power` has set.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim clears what `cut_power` has set.
         unsafe { ffi::uno_cancel_power_cut(self.raw) }
     }
 
     /// Sets the bits that remain set in a byte after a power failure other than [`Uno::cut_power`]: a supply below
     /// 1.8 V, or [`Uno::power_cycle`]. For the meaning of `ones`, see [`Uno::cut_power`].
     pub fn set_torn_bits(&mut self, ones: u8) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_torn_bits(self.raw, ones) }
     }
 }

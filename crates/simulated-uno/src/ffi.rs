@@ -27,7 +27,7 @@ pub struct RawList {
 #[derive(Clone, Copy)]
 pub struct RawVectorStats {
     /// The number of times that the interrupt was served.
-    pub entries: u64,
+    pub entry_count: u64,
     /// The cycles spent in the interrupt's handler.
     pub cycles: u64,
 }
@@ -62,7 +62,7 @@ unsafe extern "C" {
     pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
     pub fn uno_run(uno: *mut RawUno, until: u64) -> StopReason;
     pub fn uno_set_stop_at_line(uno: *mut RawUno, is_enabled: bool);
-    pub fn uno_time_calls(uno: *mut RawUno, is_enabled: bool, entry: u32);
+    pub fn uno_time_calls(uno: *mut RawUno, is_enabled: bool, entry_address: u32);
     pub fn uno_send(uno: *mut RawUno, bytes: *const u8, length: usize, is_stop_bit_low: bool);
     pub fn uno_set_flood(uno: *mut RawUno, bytes: *const u8, length: usize);
     pub fn uno_set_baud(uno: *mut RawUno, baud: f64);

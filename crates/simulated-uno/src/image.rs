@@ -86,17 +86,17 @@ impl Symbol {
         // `<core::console::Console<Lizard>>::frame` becomes `core::console::Console::frame`: brackets around a type
         // are removed, brackets after a type are removed with their contents.
         let mut path = String::new();
-        let mut brackets: Vec<bool> = Vec::new();
-        for letter in name.chars() {
-            let is_dropping = brackets.contains(&true);
-            match letter {
-                '<' => brackets
+        // For each open bracket: true if its contents are removed.
+        let mut removals: Vec<bool> = Vec::new();
+        for character in name.chars() {
+            match character {
+                '<' => removals
                     .push(path.ends_with(|last: char| last.is_alphanumeric() || last == ':')),
                 '>' if !path.ends_with('-') => {
-                    brackets.pop();
+                    removals.pop();
                 }
-                _ if is_dropping => {}
-                _ => path.push(letter),
+                _ if removals.contains(&true) => {}
+                _ => path.push(character),
             }
         }
         path.trim_end_matches("::").to_owned()
@@ -290,8 +290,8 @@ impl Image {
         flash
     }
 
-    /// Writes bytes to the start of a range in flash and removes all other data in the range. This exchanges the data
-    /// of a compiled program without compiling it again.
+    /// Writes bytes to the start of a range in flash and removes all other data in the range. This replaces the data of
+    /// a compiled program without compiling it again.
     ///
     /// # Errors
     /// Returns [`LoadError::TooLarge`] if the range is not inside flash or is too short for the bytes.

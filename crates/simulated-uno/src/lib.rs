@@ -25,7 +25,7 @@
 //! ```
 //!
 //! README.md has more examples, and lists every correction of simavr with its section of the data sheet.
-//! [`Uno::load`] loads a compiled firmware from a file.
+//! [`Uno::load`] loads compiled firmware from a file.
 //!
 //! Several [`Uno`]s may run at the same time on several threads: the only state that libsimavr keeps outside an
 //! instance is the logger, which is set once.
@@ -35,7 +35,7 @@
 mod adc;
 #[cfg(feature = "avr-gcc")]
 pub mod avr_gcc;
-mod boot;
+mod boot_loader;
 mod contact;
 mod disturbance;
 mod eeprom;
@@ -60,7 +60,7 @@ mod wire;
 
 pub use eeprom::{EEPROM_SIZE, EepromMode, EepromOperation, PowerCut};
 pub use image::{FLASH_SIZE, Image, LoadError, SRAM_END, SRAM_START, Symbol};
-pub use pin::{Edge, Pin, Pulse, most_pins_high, pulses};
+pub use pin::{Edge, Pin, Pulse, max_pins_high, pulses};
 #[cfg(target_os = "linux")]
 pub use port::{BackgroundPort, Port};
 #[cfg(target_os = "linux")]

@@ -98,7 +98,7 @@ pub fn pulses(edges: &[Edge], pin: Pin) -> Vec<Pulse> {
 
 /// Returns the largest number of pins that were high at the same time.
 #[must_use]
-pub fn most_pins_high(edges: &[Edge]) -> u32 {
+pub fn max_pins_high(edges: &[Edge]) -> u32 {
     let mut levels = 0u32;
     let mut largest_count = 0;
     let mut edges = edges.to_vec();

@@ -33,8 +33,8 @@ use crate::pty::Pty;
 use crate::serial::sample_byte;
 use crate::{FREQUENCY, Radio, State, Uno};
 
-/// The time between two checks of the port, the same as in the UNO's USB chip.
-const TICK: Duration = Duration::from_millis(1);
+/// The time between two updates of the port and the chip, the same as in the UNO's USB chip.
+const UPDATE_PERIOD: Duration = Duration::from_millis(1);
 /// The longest simulated time that the chip catches up after a delay of this program. A longer time could let the
 /// chip's watchdog expire before the program at the port has run.
 const MAX_CATCH_UP: Duration = Duration::from_millis(20);
@@ -105,8 +105,8 @@ impl Port {
     pub fn serve(&mut self, uno: &mut Uno, duration: Duration) -> io::Result<()> {
         let end = Instant::now() + duration;
         while Instant::now() < end {
-            self.tick(uno)?;
-            thread::sleep(TICK);
+            self.update(uno)?;
+            thread::sleep(UPDATE_PERIOD);
         }
         Ok(())
     }
@@ -126,9 +126,9 @@ impl Port {
         let thread_stop_requested = Arc::clone(&stop_requested);
         let serve = move || {
             while !thread_stop_requested.load(Ordering::Relaxed) {
-                self.tick(&mut uno)?;
+                self.update(&mut uno)?;
                 watch(&mut uno);
-                thread::sleep(TICK);
+                thread::sleep(UPDATE_PERIOD);
             }
             Ok(uno)
         };
@@ -141,8 +141,9 @@ impl Port {
         })
     }
 
-    /// Passes bytes in both directions and lets the chip catch up with the wall clock. Must be called every [`TICK`].
-    fn tick(&mut self, uno: &mut Uno) -> io::Result<()> {
+    /// Passes bytes in both directions and lets the chip catch up with the wall clock. Must be called every
+    /// [`UPDATE_PERIOD`].
+    fn update(&mut self, uno: &mut Uno) -> io::Result<()> {
         let port_state = self.pty.poll_state()?;
         self.is_open = port_state.is_open;
         if port_state.was_opened {
@@ -157,7 +158,7 @@ impl Port {
             None => self.pty.baud()?,
         };
         uno.set_baud(baud);
-        let room = MAX_UNSENT_BYTES.saturating_sub(uno.bytes_unsent());
+        let room = MAX_UNSENT_BYTES.saturating_sub(uno.unsent_byte_count());
         let mut bytes = [0; MAX_UNSENT_BYTES];
         let read_count = self.pty.read(&mut bytes[..room])?;
         match &mut self.radio {
@@ -194,12 +195,12 @@ impl Port {
     fn update_target_cycle(&mut self, cycle: u64) -> u64 {
         let now = Instant::now();
         let (anchor_time, anchor_cycle) = *self.anchor.get_or_insert((now, cycle));
-        let due_cycle = anchor_cycle + to_cycles(now - anchor_time);
+        let target_cycle = anchor_cycle + to_cycles(now - anchor_time);
         let max_cycle = cycle + to_cycles(MAX_CATCH_UP);
-        if due_cycle > max_cycle {
+        if target_cycle > max_cycle {
             self.anchor = Some((now, max_cycle));
         }
-        due_cycle.min(max_cycle)
+        target_cycle.min(max_cycle)
     }
 }
 

@@ -80,12 +80,12 @@ impl Pty {
             let message = "a program that was started at the same time keeps the new port open";
             return Err(io::Error::new(ErrorKind::TimedOut, message));
         }
-        let open_events = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
+        let event_queue = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let watched_events = WatchFlags::OPEN | WatchFlags::CLOSE;
-        inotify::add_watch(&open_events, &path, watched_events)?;
+        inotify::add_watch(&event_queue, &path, watched_events)?;
         Ok(Self {
             our_end,
-            event_queue: open_events,
+            event_queue,
             path,
             was_open: false,
             may_be_reopened: false,

@@ -72,10 +72,11 @@ impl PacketQueue {
     fn send(&mut self, bytes: &[u8], now: u64, link: RadioLink, random: &mut fastrand::Rng) {
         for packet in bytes.chunks(MAX_PACKET_BYTES) {
             let delay_ms = DELAY_MS.start + random.f64() * (DELAY_MS.end - DELAY_MS.start);
-            let last_due_cycle = self.packets.back().map_or(0, |(due_cycle, _)| *due_cycle);
-            let due_cycle = last_due_cycle.max(now + (delay_ms * CYCLES_PER_MS as f64) as u64);
+            let delay_cycles = (delay_ms * CYCLES_PER_MS as f64) as u64;
+            let last_arrival_cycle = self.packets.back().map_or(0, |(cycle, _)| *cycle);
+            let arrival_cycle = last_arrival_cycle.max(now + delay_cycles);
             if random.f64() >= link.packet_loss {
-                self.packets.push_back((due_cycle, packet.to_vec()));
+                self.packets.push_back((arrival_cycle, packet.to_vec()));
             }
         }
     }
@@ -83,17 +84,8 @@ impl PacketQueue {
     /// Removes and returns the bytes that have arrived by now.
     fn take_arrived(&mut self, now: u64) -> Vec<u8> {
         let mut bytes = Vec::new();
-        while self
-            .packets
-            .front()
-            .is_some_and(|(due_cycle, _)| *due_cycle <= now)
-        {
-            bytes.extend(
-                self.packets
-                    .pop_front()
-                    .into_iter()
-                    .flat_map(|packet| packet.1),
-            );
+        while let Some((_, packet)) = self.packets.pop_front_if(|(cycle, _)| *cycle <= now) {
+            bytes.extend(packet);
         }
         bytes
     }
@@ -115,8 +107,10 @@ pub struct Radio {
     random: fastrand::Rng,
     to_uno: PacketQueue,
     to_phone: PacketQueue,
-    /// The chip's bytes that wait until a packet is full, and the cycle since which they have waited.
-    gathered: (Vec<u8>, u64),
+    /// The chip's bytes that wait until a packet is full.
+    gathered_bytes: Vec<u8>,
+    /// The cycle since which the gathered bytes have waited.
+    gathering_start: u64,
     /// The cycle at which the link ends or, while there is no link, resumes; `None` for never.
     next_link_change: Option<u64>,
     is_linked: bool,
@@ -133,7 +127,8 @@ impl Radio {
             random: fastrand::Rng::with_seed(link.seed),
             to_uno: PacketQueue::default(),
             to_phone: PacketQueue::default(),
-            gathered: (Vec::new(), 0),
+            gathered_bytes: Vec::new(),
+            gathering_start: 0,
             next_link_change: None,
             is_linked: true,
             has_left: false,
@@ -167,8 +162,8 @@ impl Radio {
         self.next_link_change = self.is_linked.then_some(now);
     }
 
-    /// Takes the bytes that the UNO has transmitted, sends the arrived bytes from the phone to the UNO, and returns the
-    /// bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
+    /// Takes the bytes that the UNO has transmitted, sends it the bytes that have arrived from the phone, and returns
+    /// the bytes that have arrived at the phone. Must be called every millisecond of the chip's time.
     pub fn exchange(&mut self, uno: &mut Uno) -> Vec<u8> {
         uno.set_baud(self.link.baud);
         let sent_bytes: Vec<u8> = uno
@@ -202,15 +197,14 @@ impl Radio {
         if !self.is_linked {
             return [to_uno, Vec::new()];
         }
-        let (bytes, gathering_start) = &mut self.gathered;
-        if bytes.is_empty() {
-            *gathering_start = now;
+        if self.gathered_bytes.is_empty() {
+            self.gathering_start = now;
         }
-        bytes.extend(received);
-        if bytes.len() >= MAX_PACKET_BYTES
-            || now >= *gathering_start + MAX_GATHERING_MS * CYCLES_PER_MS
+        self.gathered_bytes.extend(received);
+        if self.gathered_bytes.len() >= MAX_PACKET_BYTES
+            || now >= self.gathering_start + MAX_GATHERING_MS * CYCLES_PER_MS
         {
-            let bytes = std::mem::take(bytes);
+            let bytes = std::mem::take(&mut self.gathered_bytes);
             self.to_phone.send(&bytes, now, self.link, &mut self.random);
         }
         [to_uno, self.to_phone.take_arrived(now)]
@@ -231,7 +225,7 @@ impl Radio {
             self.next_link_change = self.next_link_end(now);
             return [to_uno, Vec::new()];
         }
-        self.gathered.0.clear();
+        self.gathered_bytes.clear();
         let return_cycle = now + self.random.u64(OUTAGE_MS) * CYCLES_PER_MS;
         self.next_link_change = (!self.has_left).then_some(return_cycle);
         [to_uno, self.to_phone.take_remainder(&mut self.random)]

@@ -10,14 +10,13 @@ impl Uno {
     /// Runs until the UNO has sent a complete line, for at most `max_cycles`. Returns false if the UNO has not sent a
     /// complete line by then, or if the firmware has stopped.
     pub fn run_until_line(&mut self, max_cycles: u64) -> bool {
-        self.run_to(self.cycle() + max_cycles, true)
+        self.run_until_cycle_or_line(self.cycle() + max_cycles, true)
     }
 
     /// Queues bytes for the serial line. They are sent back to back at the baud rate, even if the firmware does not
     /// keep up.
     pub fn send(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim copies the bytes of the
-        // slice.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim copies the bytes of the slice.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
@@ -26,7 +25,7 @@ impl Uno {
     /// stopped.
     ///
     /// Removes all bytes that the UNO transmits before and during the call, as [`Uno::take_transmitted`] does. The rest
-    /// of a line that the UNO has already begun counts as the answer. For a firmware that sends lines on its own, use
+    /// of a line that the UNO has already begun counts as the answer. For firmware that sends lines on its own, use
     /// [`Uno::send`] and [`Uno::run_until_line`].
     pub fn say(&mut self, line: &str) -> Option<String> {
         self.take_transmitted();
@@ -64,8 +63,8 @@ impl Uno {
             (1.0..=1e7).contains(&baud),
             "the baud rate must be between 1 and 10 million, but is {baud}"
         );
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; for a rate in this range, the cycles
-        // per bit can be converted in C.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; for a rate in this range, the cycles per
+        // bit can be converted in C.
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
 
@@ -78,14 +77,14 @@ impl Uno {
 
     /// The number of queued bytes that have not yet arrived at the UNO.
     #[must_use]
-    pub fn bytes_unsent(&self) -> usize {
+    pub fn unsent_byte_count(&self) -> usize {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_unsent_count(self.raw) }
     }
 
     /// The number of bytes sent to the UNO so far, including those of a flood.
     #[must_use]
-    pub fn bytes_sent(&self) -> u64 {
+    pub fn sent_byte_count(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_sent_count(self.raw) }
     }
@@ -93,7 +92,7 @@ impl Uno {
     /// The number of bytes lost because the firmware read UDR0 too late. Always 0 with
     /// [`Fidelity::Stock`](crate::Fidelity::Stock).
     #[must_use]
-    pub fn overruns(&self) -> u64 {
+    pub fn overrun_count(&self) -> u64 {
         // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
         unsafe { ffi::uno_overrun_count(self.raw) }
     }

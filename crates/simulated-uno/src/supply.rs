@@ -1,7 +1,7 @@
 //! The supply voltage of the chip, for both VCC and AVCC.
 //!
-//! The voltage of a weak supply drops while servos move. A firmware can measure the drop only with the ADC,
-//! and does not run below the brown-out level.
+//! The voltage of a weak supply drops while servos move. Firmware can measure the drop only with the ADC, and does not
+//! run below the brown-out level.
 
 use crate::Uno;
 use crate::ffi;
@@ -38,8 +38,8 @@ impl Uno {
             (0.0..=10_000.0).contains(&mv),
             "the supply voltage must be between 0 and 10 000 mV, but is {mv} mV"
         );
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps numbers, and a
-        // voltage in this range can be converted in C.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps numbers, and a voltage in
+        // this range can be converted in C.
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
 
@@ -47,7 +47,7 @@ impl Uno {
     /// UNO's fuses; the level of a given chip may be 2500 to 2900 mV. Without brown-out detection, the chip runs down
     /// to 1.3 V and starts above 1.4 V.
     pub fn set_brown_out_mv(&mut self, level_mv: Option<f64>) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
         unsafe { ffi::uno_set_brown_out(self.raw, level_mv.unwrap_or(0.0)) }
     }
 

@@ -14,7 +14,7 @@ pub struct SerialByte {
     pub byte: u8,
 }
 
-/// A store to GPIOR0, with which a firmware marks an event at the cost of one cycle.
+/// A store to GPIOR0, with which firmware marks an event at the cost of one cycle.
 // `struct mark` of the shim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C)]
@@ -58,7 +58,7 @@ pub struct VectorStats {
     /// The vector number, counted from 0 (reset); the data sheet's table counts from 1.
     pub vector: u8,
     /// The number of times that the interrupt was served.
-    pub entries: u64,
+    pub entry_count: u64,
     /// The total number of cycles in the interrupt's handler.
     pub cycles: u64,
 }

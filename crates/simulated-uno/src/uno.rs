@@ -7,7 +7,7 @@ use std::sync::Once;
 use crate::ffi::{self, RawList, RawUno};
 use crate::image::{Image, LoadError, SRAM_END};
 use crate::traces::{Call, Mark, VectorStats};
-use crate::{CYCLES_PER_MS, Edge, FREQUENCY, Pin, Pulse};
+use crate::{CYCLES_PER_MS, Edge, Pin, Pulse};
 
 /// The model of the chip: stock simavr, or simavr with corrections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -40,7 +40,7 @@ pub enum State {
     Off,
 }
 
-/// A simulated Arduino UNO with a firmware in its flash.
+/// A simulated Arduino UNO with firmware in its flash.
 ///
 /// The argument for all `unsafe` code in this package: the pointer `raw` comes from the shim's constructor and is freed
 /// only in `drop`, and nothing outside this struct keeps a copy. Therefore `raw` is valid wherever there is a `self`.
@@ -124,7 +124,7 @@ impl Uno {
     /// Runs until the cycle `end_cycle`, or up to a few hundred cycles longer if an instruction re-arms a timer just
     /// before `end_cycle`. Several short runs have the same result as one long run.
     pub fn run_until_cycle(&mut self, end_cycle: u64) -> &State {
-        self.run_to(end_cycle, false);
+        self.run_until_cycle_or_line(end_cycle, false);
         &self.state
     }
 
@@ -160,9 +160,9 @@ impl Uno {
 
     /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
     /// true if a line ended the run.
-    pub(crate) fn run_to(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim stops at any cycle,
-        // and every value that it returns is one of `StopReason`.
+    pub(crate) fn run_until_cycle_or_line(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim stops at any cycle, and every
+        // value that it returns is one of `StopReason`.
         let stop_reason = unsafe {
             ffi::uno_set_stop_at_line(self.raw, stop_at_line);
             ffi::uno_run(self.raw, end_cycle)
@@ -221,13 +221,13 @@ impl Uno {
         self.take_items(ffi::uno_marks)
     }
 
-    /// Runs for `cycles` and times every call of the function at byte address `entry` in flash (see
-    /// [`Image::symbol`]). Slower than [`Uno::run_cycles`], because it checks every instruction. A recursive call
-    /// counts as part of the outermost call.
-    pub fn time_calls(&mut self, entry: u32, cycles: u64) -> Vec<Call> {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; the shim compares `entry`
-        // with the program counter and never follows it.
-        unsafe { ffi::uno_time_calls(self.raw, true, entry) };
+    /// Runs for `cycles` and times every call of the function at this byte address in flash (see [`Image::symbol`]).
+    /// Slower than [`Uno::run_cycles`], because it checks every instruction. A recursive call counts as part of the
+    /// outermost call.
+    pub fn time_calls(&mut self, entry_address: u32, cycles: u64) -> Vec<Call> {
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim compares the address with the
+        // program counter and never follows it.
+        unsafe { ffi::uno_time_calls(self.raw, true, entry_address) };
         self.run_cycles(cycles);
         // SAFETY: as above.
         unsafe { ffi::uno_time_calls(self.raw, false, 0) };
@@ -294,7 +294,7 @@ impl Uno {
 
     /// Statistics of every interrupt that has been served at least once.
     #[must_use]
-    pub fn interrupts(&self) -> Vec<VectorStats> {
+    pub fn interrupt_stats(&self) -> Vec<VectorStats> {
         // SAFETY: `raw` is valid, see `Uno`. The shim returns an array of `VECTOR_COUNT` items inside
         // the instance, and nothing runs while they are borrowed.
         let vectors =
@@ -302,20 +302,14 @@ impl Uno {
         let served_vectors = vectors
             .iter()
             .enumerate()
-            .filter(|(_, raw_stats)| raw_stats.entries > 0);
+            .filter(|(_, raw_stats)| raw_stats.entry_count > 0);
         served_vectors
             .map(|(vector, raw_stats)| VectorStats {
                 vector: vector as u8,
-                entries: raw_stats.entries,
+                entry_count: raw_stats.entry_count,
                 cycles: raw_stats.cycles,
             })
             .collect()
-    }
-
-    /// The chip's time since power-on, s.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.cycle() as f64 / FREQUENCY as f64
     }
 
     /// Copies the items of one of the shim's lists.
@@ -342,8 +336,8 @@ impl Uno {
 
     /// Empties one of the shim's lists.
     pub(crate) fn clear_items(&mut self, list_getter: ListGetter) {
-        // SAFETY: `raw` is valid and ours alone, see `Uno`; a list is inside the instance, and
-        // the shim appends at `count`, so 0 empties the list.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; a list is inside the instance, and the
+        // shim appends at `count`, so 0 empties the list.
         unsafe { (*list_getter(self.raw)).count = 0 }
     }
 }

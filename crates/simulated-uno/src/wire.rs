@@ -94,12 +94,7 @@ impl Wire {
             received_bytes.push(is_bit_high(8).then_some(byte));
             self.idle_from = end_cycle;
             for sender_frames in &mut self.frames {
-                while sender_frames
-                    .front()
-                    .is_some_and(|frame| frame.end_cycle() <= end_cycle)
-                {
-                    sender_frames.pop_front();
-                }
+                sender_frames.retain(|frame| frame.end_cycle() > end_cycle);
             }
         }
         received_bytes

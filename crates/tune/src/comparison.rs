@@ -4,7 +4,7 @@ use lizard_kinematics::Check;
 use lizard_robot::CheckedGait;
 use serde::Serialize;
 
-use crate::judge::{BuiltGait, Judge};
+use crate::scorer::{BuiltGait, Scorer};
 use crate::variation::compute_quantiles;
 
 /// The speeds of the given gait and of the tuned gait on the same random robots.
@@ -48,24 +48,24 @@ pub struct GaitPerformance {
 }
 
 impl Comparison {
-    /// Simulates both gaits on the judge's robots, at paces at which their fastest servos reach `rate` (deg/s).
+    /// Simulates both gaits on the scorer's robots, at paces at which their fastest servos reach `rate` (deg/s).
     pub(crate) fn simulate(
-        judge: &Judge,
+        scorer: &Scorer,
         rate: f64,
         gait: &CheckedGait,
         tuned_gait: &BuiltGait,
     ) -> Self {
         // At another pace the gait covers the same distance, so only the period changes.
         let period_factor = gait.audit().peak_speed.speed / rate;
-        let (given, given_speeds) = GaitPerformance::simulate(judge, gait, period_factor);
-        let (tuned, tuned_speeds) = GaitPerformance::simulate(judge, tuned_gait.gait(), 1.0);
+        let (given, given_speeds) = GaitPerformance::simulate(scorer, gait, period_factor);
+        let (tuned, tuned_speeds) = GaitPerformance::simulate(scorer, tuned_gait.gait(), 1.0);
         let faster_count = tuned_speeds
             .iter()
             .zip(&given_speeds)
             .filter(|(tuned, given)| tuned > given)
             .count();
         Self {
-            unit: judge.goal().speed_unit(),
+            unit: scorer.goal().speed_unit(),
             rate,
             gait: given,
             tuned,
@@ -88,20 +88,20 @@ impl Comparison {
 
 impl GaitPerformance {
     /// Simulates a gait whose period is multiplied by `period_factor`; also returns the speed on each robot.
-    fn simulate(judge: &Judge, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
+    fn simulate(scorer: &Scorer, gait: &CheckedGait, period_factor: f64) -> (Self, Vec<f64>) {
         let period = gait.period() * period_factor;
         let audit = gait.audit();
         let margins = [audit.leg, audit.type2, audit.type1].into_iter();
         let min_margin = margins.min_by(|a, b| a.value.total_cmp(&b.value));
         let min_margin = min_margin.unwrap_or(audit.leg);
-        let speeds = judge.compute_speeds(gait, period);
+        let speeds = scorer.compute_speeds(gait, period);
         let performance = Self {
             name: gait.name().to_owned(),
             period,
             rate: audit.peak_speed.speed / period_factor,
             margin: (Check::name(min_margin.check), min_margin.value),
-            predicted: judge.goal().progress(&judge.simulate_ideal_cycle(gait)) / period,
-            sg90: judge.compute_nominal_speed(gait, period),
+            predicted: scorer.goal().progress(&scorer.simulate_ideal_cycle(gait)) / period,
+            sg90: scorer.compute_nominal_speed(gait, period),
             speeds: compute_quantiles(speeds.clone(), [0.05, 0.5, 0.95]),
         };
         (performance, speeds)

@@ -1,7 +1,7 @@
 //! The goal of a gait: to walk straight, or to turn on the spot.
 
 use lizard_robot::servo::LEG_NAMES;
-use lizard_robot::{CheckedGait, Ground, Travel};
+use lizard_robot::{CheckedGait, GroundContact, Travel};
 use thiserror::Error;
 
 /// Smallest distance per cycle that counts as a movement.
@@ -17,17 +17,17 @@ fn is_front(servo: usize) -> bool {
     LEG_NAMES[servo].ends_with('F')
 }
 
-/// The error of a gait without a goal, with the gait's name.
+/// The reason for which a gait has no goal. Each variant holds the gait's name.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum GoalError {
     /// Two feet pull against the other two, so the movement depends on unknown differences between the pads.
     #[error(
         "the direction of the gait `{0}` is undecided, since two feet pull against the other two; tune another gait"
     )]
-    Undecided(String),
+    Undetermined(String),
     /// The gait stands, or returns the robot to its start in each cycle.
     #[error("the gait `{0}` does not move the robot; tune another gait")]
-    Nowhere(String),
+    Stationary(String),
     /// The gait walks along a curve.
     #[error(
         "the gait `{0}` walks along a curve; tune a straight gait or a turn on the spot, and derive an arc from the \
@@ -39,8 +39,8 @@ pub enum GoalError {
 /// The direction of a gait's movement, with a sign: positive for forward and for a turn to the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Goal {
-    /// Straight forward or backward.
-    Ahead(f64),
+    /// A walk straight forward or backward.
+    Straight(f64),
     /// A turn on the spot.
     Turn(f64),
 }
@@ -51,65 +51,60 @@ impl Goal {
     /// # Errors
     /// Fails if the gait stands or walks along a curve, or if its movement depends on unknown differences between the
     /// pads.
-    pub fn from_gait(gait: &CheckedGait, ground: &Ground) -> Result<Self, GoalError> {
+    pub fn from_gait(gait: &CheckedGait, ground: &GroundContact) -> Result<Self, GoalError> {
         let gait_name = || gait.name().to_owned();
         let movement = gait.predict(&ground.with_rigid_drive());
         let (Some(forward), Some(turn)) = (movement.forward, movement.turn) else {
-            return Err(GoalError::Undecided(gait_name()));
+            return Err(GoalError::Undetermined(gait_name()));
         };
         match (forward.abs() >= MIN_DISTANCE_MM, turn.abs() >= MIN_TURN_DEG) {
-            (true, false) => Ok(Self::Ahead(forward.signum())),
+            (true, false) => Ok(Self::Straight(forward.signum())),
             (false, true) => Ok(Self::Turn(turn.signum())),
-            (false, false) => Err(GoalError::Nowhere(gait_name())),
+            (false, false) => Err(GoalError::Stationary(gait_name())),
             (true, true) => Err(GoalError::Arc(gait_name())),
         }
     }
 
-    /// The movement's component towards this goal, mm or deg.
+    /// Returns the movement's component towards this goal, mm or deg.
     pub fn progress(self, movement: &Travel) -> f64 {
         match self {
-            Self::Ahead(sign) => sign * movement.forward,
+            Self::Straight(sign) => sign * movement.forward,
             Self::Turn(sign) => sign * movement.turn,
         }
     }
 
-    /// True if the movement has almost no other component than that towards this goal.
+    /// True if the movement has almost no component other than that towards this goal.
     pub fn matches_direction(self, movement: &Travel) -> bool {
         match self {
-            Self::Ahead(_) => {
+            Self::Straight(_) => {
                 movement.turn.abs() < MIN_TURN_DEG && movement.left.abs() < MIN_DISTANCE_MM
             }
             Self::Turn(_) => movement.forward.hypot(movement.left) < MIN_DISTANCE_MM,
         }
     }
 
-    /// Sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if the leg moves forward.
+    /// Returns the sign of a leg's stroke: 1 if the leg moves backward in stance, -1 if the leg moves forward.
     pub fn stroke_sign(self, servo: usize) -> f64 {
         match self {
-            Self::Ahead(sign) => sign,
+            Self::Straight(sign) => sign,
             // In a turn to the left, the left feet push forward.
-            Self::Turn(sign) => {
-                if is_left(servo) {
-                    -sign
-                } else {
-                    sign
-                }
-            }
+            Self::Turn(sign) if is_left(servo) => -sign,
+            Self::Turn(sign) => sign,
         }
     }
 
-    /// Index of a leg's pair: 0 for the pair that contains LH, else 1.
+    /// Returns the index of a leg's pair: 0 for the pair that contains the left hind leg (LH), otherwise 1.
     pub fn pair_index(self, servo: usize) -> usize {
         match self {
-            Self::Ahead(_) => usize::from(is_front(servo)),
+            Self::Straight(_) => usize::from(is_front(servo)),
             Self::Turn(_) => usize::from(is_front(servo) == is_left(servo)),
         }
     }
 
-    /// Unit of the speed towards this goal.
+    /// Returns the unit of the speed towards this goal.
     pub const fn speed_unit(self) -> &'static str {
         match self {
-            Self::Ahead(_) => "mm/s",
+            Self::Straight(_) => "mm/s",
             Self::Turn(_) => "deg/s",
         }
     }
@@ -122,15 +117,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn from_gait_returns_the_direction_of_movement() {
+    fn a_goal_has_the_direction_of_its_gaits_movement() {
         let robot =
             Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
         let find_goal = |name: &str| {
             let gait = robot.gait(name).expect("paper.toml has the gait");
             Goal::from_gait(gait, robot.ground()).map_err(|error| error.to_string())
         };
-        assert_eq!(find_goal("walk"), Ok(Goal::Ahead(1.0)));
-        assert_eq!(find_goal("back"), Ok(Goal::Ahead(-1.0)));
+        assert_eq!(find_goal("walk"), Ok(Goal::Straight(1.0)));
+        assert_eq!(find_goal("back"), Ok(Goal::Straight(-1.0)));
         assert_eq!(find_goal("left"), Ok(Goal::Turn(1.0)));
         assert_eq!(find_goal("right"), Ok(Goal::Turn(-1.0)));
         for (name, reason) in [

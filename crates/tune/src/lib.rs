@@ -1,10 +1,10 @@
 //! Searches for a gait that walks faster than a given gait at the same servo speed.
 //!
 //! Feet that are not lifted push against each other, so the speed of a gait is hard to predict. Therefore this crate
-//! searches. A [`Tuning`] holds the given gait. A [`Search`] proposes parameters of one [`GaitKind`] and learns from
-//! their scores. [`Tuning::score`] computes the speed that the gait exceeds on 95 % of some random robots and floors
-//! ([`Variation`]). [`Tuning::build_best`] builds the best gait, and [`Tuning::compare`] simulates the best and the
-//! given gait on robots that the search has not used.
+//! uses a search. A [`Tuning`] holds the given gait. A [`Search`] proposes parameters of one [`GaitKind`] and learns
+//! from their scores. [`Tuning::score`] computes the speed that the gait exceeds on 95 % of some random robots and
+//! floors ([`Variation`]). [`Tuning::build_best`] builds the best gait, and [`Tuning::compare`] simulates the best and
+//! the given gait on robots that the search has not used.
 //!
 //! The crate starts no threads, accesses no files and prints nothing: `lizard tune` scores the trials of a round on all
 //! cores, and the web page scores them sequentially in a worker. All random numbers come from one seed in a fixed
@@ -17,20 +17,21 @@
 //! `lizard_robot::Robot`.
 //!
 //! # Units
-//! mm, degrees and seconds. Every array has the servo order A1, A2, A3, A4, which is the leg order LF, RF, RH, LH.
+//! mm, degrees and seconds. Every array has the servo order A1, A2, A3, A4, which is the leg order left front, right
+//! front, right hind, left hind.
 
 mod comparison;
 mod goal;
-mod judge;
 mod plan;
+mod scorer;
 mod search;
 mod tuning;
 mod variation;
 
 pub use comparison::{Comparison, GaitPerformance};
 pub use goal::Goal;
-pub use judge::BuiltGait;
 pub use plan::GaitKind;
+pub use scorer::BuiltGait;
 pub use search::{Search, trial_count};
 pub use tuning::{ScoredParameters, Tuning, TuningError};
 pub use variation::{

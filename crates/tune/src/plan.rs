@@ -43,7 +43,7 @@ const MAX_PAIR_REDUCTION: f64 = 0.5;
 /// Longest cycle that robot.toml allows, s.
 pub const MAX_PERIOD_S: f64 = 60.0;
 
-/// The limits of the search: the goal and the largest amplitude.
+/// The goal of the search, and the largest amplitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSpace {
     /// The goal of the gait: straight or a turn, and its direction.
@@ -59,10 +59,7 @@ pub fn plan_gait(kind: GaitKind, space: SearchSpace, name: &str, parameters: &[f
         goal,
         max_amplitude,
     } = space;
-    let parameter = |i: usize| {
-        let parameter = parameters.get(i).copied().unwrap_or_default();
-        parameter.clamp(0.0, 1.0)
-    };
+    let parameter = |i: usize| parameters.get(i).map_or(0.0, |value| value.clamp(0.0, 1.0));
     let scale = |i: usize, (low, high): (f64, f64)| low + (high - low) * parameter(i);
     let (duty, start, amplitude_index) = match kind {
         GaitKind::Wave => {
@@ -70,12 +67,12 @@ pub fn plan_gait(kind: GaitKind, space: SearchSpace, name: &str, parameters: &[f
             // The two legs of a pair are half a cycle apart. In a straight gait, the pairs are the hind legs and the
             // front legs.
             let [lf, rf] = match goal {
-                Goal::Ahead(_) => [lag, (lag + 0.5) % 1.0],
+                Goal::Straight(_) => [lag, (lag + 0.5) % 1.0],
                 Goal::Turn(_) => [(lag + 0.5) % 1.0, lag],
             };
             // In a turn, the pairs are LH and RF, and LF and RH; therefore RH takes the value `rf`.
             let starts = match goal {
-                Goal::Ahead(_) => [lf, rf, 0.5, 0.0],
+                Goal::Straight(_) => [lf, rf, 0.5, 0.0],
                 Goal::Turn(_) => [lf, 0.5, rf, 0.0],
             };
             let starts = starts.map(|start| round_to_decimals(start, 2));
@@ -83,7 +80,7 @@ pub fn plan_gait(kind: GaitKind, space: SearchSpace, name: &str, parameters: &[f
         }
         GaitKind::Held => (
             DUTY_RANGE.0,
-            find_swing_ranks(parameter(0)).map(|rank| rank as f64 / 4.0),
+            swing_ranks_at(parameter(0)).map(|rank| rank as f64 / 4.0),
             1,
         ),
     };
@@ -107,9 +104,9 @@ fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     (value * scale).round() / scale
 }
 
-/// Selects one of the 24 orders of four legs by `position`, 0 to 1. Returns each leg's rank in this order, 0 to 3, in
-/// servo order.
-fn find_swing_ranks(position: f64) -> [usize; 4] {
+/// Returns each leg's rank, 0 to 3, in one of the 24 orders of four legs, which `position`, 0 to 1, selects; in servo
+/// order.
+fn swing_ranks_at(position: f64) -> [usize; 4] {
     let mut remaining_legs = vec![3, 0, 2, 1];
     let mut order_index = ((position * 24.0) as usize).min(23);
     let mut ranks = [0; 4];
@@ -134,10 +131,10 @@ mod tests {
     #[test]
     fn each_of_the_24_swing_orders_has_its_own_parameter_range() {
         let mut orders: Vec<[usize; 4]> = (0..24)
-            .map(|n| find_swing_ranks((f64::from(n) + 0.5) / 24.0))
+            .map(|n| swing_ranks_at((f64::from(n) + 0.5) / 24.0))
             .collect();
         assert_eq!(orders[0], [1, 3, 2, 0]);
-        assert_eq!(find_swing_ranks(1.0), orders[23]);
+        assert_eq!(swing_ranks_at(1.0), orders[23]);
         orders.sort_unstable();
         orders.dedup();
         assert_eq!(orders.len(), 24);
@@ -156,7 +153,7 @@ mod tests {
         assert_eq!(
             format_table(
                 GaitKind::Wave,
-                Goal::Ahead(1.0),
+                Goal::Straight(1.0),
                 "x",
                 1.5,
                 &[0.5, 0.25, 0.375, 0.5]
@@ -174,7 +171,7 @@ mod tests {
     #[test]
     fn the_two_legs_of_a_pair_are_half_a_cycle_apart() {
         for (goal, partners) in [
-            (Goal::Ahead(1.0), [1, 0, 3, 2]),
+            (Goal::Straight(1.0), [1, 0, 3, 2]),
             (Goal::Turn(-1.0), [2, 3, 0, 1]),
         ] {
             let bars = plan_gait(

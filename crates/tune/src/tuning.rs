@@ -1,12 +1,12 @@
 //! The task of finding a faster gait than a given gait, for a robot on a floor.
 
-use lizard_robot::{CheckedGait, Ground, Robot};
+use lizard_robot::{CheckedGait, GroundContact, Robot};
 use thiserror::Error;
 
 use crate::comparison::Comparison;
 use crate::goal::{Goal, GoalError};
-use crate::judge::{BuiltGait, Judge};
 use crate::plan::{GaitKind, SearchSpace, plan_gait};
+use crate::scorer::{BuiltGait, Scorer};
 use crate::search::Search;
 
 /// Number of random robots in the score of a gait.
@@ -16,7 +16,7 @@ const COMPARISON_SEED_OFFSET: u64 = 1 << 40;
 /// Smallest allowed servo speed, deg/s.
 const MIN_RATE: f64 = 10.0;
 
-/// The error of an impossible tuning task.
+/// The error for an impossible tuning task.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum TuningError {
     /// The gait neither walks straight nor turns on the spot.
@@ -50,14 +50,14 @@ pub struct ScoredParameters {
 #[derive(Debug, Clone)]
 pub struct Tuning {
     robot: Robot,
-    ground: Ground,
+    ground: GroundContact,
     gait: CheckedGait,
     /// Name of the tuned gait.
     tuned_gait_name: String,
     /// Largest servo speed, deg/s.
     rate: f64,
     space: SearchSpace,
-    judge: Judge,
+    scorer: Scorer,
     seed: u64,
 }
 
@@ -70,7 +70,7 @@ impl Tuning {
     /// Fails if the gait neither walks straight nor turns on the spot, or if the rate is out of range.
     pub fn new(
         robot: &Robot,
-        ground: &Ground,
+        ground: &GroundContact,
         gait: &CheckedGait,
         rate: Option<f64>,
         name: &str,
@@ -89,7 +89,7 @@ impl Tuning {
                 goal,
                 max_amplitude,
             },
-            judge: Judge::new(robot, ground, goal, SCORING_ROBOT_COUNT, seed),
+            scorer: Scorer::new(robot, ground, goal, SCORING_ROBOT_COUNT, seed),
             seed,
         })
     }
@@ -116,7 +116,7 @@ impl Tuning {
     /// violates a limit of the robot, or if its movement has a component in another direction than the goal's. The call
     /// takes between 0.01 s and 1 s.
     pub fn score(&self, kind: GaitKind, parameters: &[f64]) -> Option<f64> {
-        self.judge.score(self.build(kind, parameters)?.gait())
+        self.scorer.score(self.build(kind, parameters)?.gait())
     }
 
     /// Builds the best-scored gait whose movement does not depend on unknown differences between the pads. Returns
@@ -126,14 +126,14 @@ impl Tuning {
         candidates
             .iter()
             .filter_map(|candidate| self.build(candidate.kind, &candidate.parameters))
-            .find(|candidate| candidate.gait().predict(&self.ground).is_decided())
+            .find(|candidate| candidate.gait().predict(&self.ground).is_determined())
     }
 
     /// Compares the tuned gait with the given gait on random robots that the search has not used.
     pub fn compare(&self, tuned_gait: &BuiltGait, robot_count: usize) -> Comparison {
         let seed = self.seed.wrapping_add(COMPARISON_SEED_OFFSET);
-        let judge = Judge::new(&self.robot, &self.ground, self.goal(), robot_count, seed);
-        Comparison::simulate(&judge, self.rate, &self.gait, tuned_gait)
+        let scorer = Scorer::new(&self.robot, &self.ground, self.goal(), robot_count, seed);
+        Comparison::simulate(&scorer, self.rate, &self.gait, tuned_gait)
     }
 
     fn build(&self, kind: GaitKind, parameters: &[f64]) -> Option<BuiltGait> {

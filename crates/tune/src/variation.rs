@@ -2,9 +2,9 @@
 
 use fastrand::Rng;
 use lizard_robot::{
-    Body, CheckedGait, Drive, DriveKind, Feet, Ground, Robot, Stance, Strut, Travel, Walker,
+    Body, CheckedGait, Drive, DriveKind, Feet, GroundContact, Robot, Stance, Strut, Travel, Walker,
 };
-use lizard_twin::{FRAME_S, ServoModel};
+use lizard_twin::{FRAME_PERIOD_S, ServoModel};
 
 /// Number of the firmware's phase steps in a cycle.
 const PHASES_PER_CYCLE: f64 = 65536.0;
@@ -38,7 +38,7 @@ pub const PLAY_SPREAD_TEXT: &str = "play of the legs 0 to 1 deg more";
 /// A robot and a floor that differ randomly from those in robot.toml.
 #[derive(Debug, Clone, Copy)]
 pub struct Variation {
-    ground: Ground,
+    ground: GroundContact,
     /// Factor on each pad's load.
     pad_factors: [f64; 4],
     /// Factor on the ground's ratio of backward to forward friction.
@@ -46,35 +46,36 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Draws a random robot and floor around `ground`, determined by the seed.
-    pub fn draw(ground: &Ground, seed: u64) -> Self {
+    /// Creates a random robot and floor around `ground`, determined by the seed.
+    pub fn sample(ground: &GroundContact, seed: u64) -> Self {
         let mut rng = Rng::with_seed(seed);
-        let mut draw_between = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
+        let mut sample_in = |(low, high): (f64, f64)| low + (high - low) * rng.f64();
         let feet = ground.feet;
-        let ground = Ground {
+        let ground = GroundContact {
             feet: Feet {
                 mount_angle: feet.mount_angle
-                    + draw_between((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG)),
-                hip_forward: feet.hip_forward + draw_between((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM)),
+                    + sample_in((-MAX_MOUNT_SHIFT_DEG, MAX_MOUNT_SHIFT_DEG)),
+                hip_forward: feet.hip_forward + sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM)),
                 hip_side: {
-                    let shift = draw_between((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
+                    let shift = sample_in((-MAX_HIP_SHIFT_MM, MAX_HIP_SHIFT_MM));
                     feet.hip_side.map(|side| side + shift)
                 },
                 ..feet
             },
             body: Body {
-                centre_of_mass: ground.body.centre_of_mass.map(|position| {
-                    position + draw_between((-MAX_MASS_SHIFT_MM, MAX_MASS_SHIFT_MM))
-                }),
+                centre_of_mass: ground
+                    .body
+                    .centre_of_mass
+                    .map(|position| position + sample_in((-MAX_MASS_SHIFT_MM, MAX_MASS_SHIFT_MM))),
                 ..ground.body
             },
-            friction_coefficient: ground.friction_coefficient * draw_between(FRICTION_FACTORS),
+            friction_coefficient: ground.friction_coefficient * sample_in(FRICTION_FACTORS),
             drive: Drive {
                 kind: match ground.drive.kind {
                     DriveKind::Rigid => DriveKind::Rigid,
                     DriveKind::Strut(strut) => DriveKind::Strut(Strut {
-                        preload: strut.preload * draw_between(SPRING_FACTORS),
-                        spring_rate: strut.spring_rate * draw_between(SPRING_FACTORS),
+                        preload: strut.preload * sample_in(SPRING_FACTORS),
+                        spring_rate: strut.spring_rate * sample_in(SPRING_FACTORS),
                         ..strut
                     }),
                 },
@@ -82,17 +83,15 @@ impl Variation {
             },
             ..*ground
         };
-        let (pad_factors, ratio_factor) = (
-            std::array::from_fn(|_| draw_between(PAD_FACTORS)),
-            draw_between(PAD_FACTORS),
-        );
+        let pad_factors = std::array::from_fn(|_| sample_in(PAD_FACTORS));
+        let ratio_factor = sample_in(PAD_FACTORS);
         let stance = Stance {
-            stiffness: ground.stance.stiffness * draw_between(LEAF_FACTORS),
-            twist: ground.stance.twist + ground.stance.twist_error * draw_between((-1.0, 1.0)),
+            stiffness: ground.stance.stiffness * sample_in(LEAF_FACTORS),
+            twist: ground.stance.twist + ground.stance.twist_error * sample_in((-1.0, 1.0)),
             ..ground.stance
         };
         Self {
-            ground: Ground { stance, ..ground },
+            ground: GroundContact { stance, ..ground },
             pad_factors,
             ratio_factor,
         }
@@ -108,7 +107,7 @@ impl Variation {
     }
 
     /// Creates a robot and a floor without variation.
-    pub fn nominal(ground: &Ground) -> Self {
+    pub fn nominal(ground: &GroundContact) -> Self {
         Self {
             ground: *ground,
             pad_factors: [1.0; 4],
@@ -125,11 +124,11 @@ impl Variation {
             let mut walker =
                 Walker::with_unevenness(self.ground, sweeps, self.pad_factors, self.ratio_factor);
             let mut run_cycle = || {
-                let start_place = walker.place();
+                let start_pose = walker.body_pose();
                 for (_, phase) in gait.frames().skip(1) {
-                    walker.drive(compute_targets(phase).map(Some), FRAME_S, &motors);
+                    walker.drive(compute_targets(phase).map(Some), FRAME_PERIOD_S, &motors);
                 }
-                walker.place().travel_from(start_place)
+                walker.body_pose().travel_from(start_pose)
             };
             run_cycle();
             return run_cycle();
@@ -163,11 +162,11 @@ impl Variation {
                 walker.move_to(sweeps);
             }
         }
-        let start_place = walker.place();
+        let start_pose = walker.body_pose();
         for (_, phase) in gait.frames() {
             walker.move_to(move_servos(phase));
         }
-        walker.place().travel_from(start_place)
+        walker.body_pose().travel_from(start_pose)
     }
 }
 
@@ -194,7 +193,7 @@ mod tests {
     fn simulate_walks(robot_toml: &str, robot_count: u64) -> Vec<Travel> {
         let robot = Robot::parse(robot_toml).expect("the robot file is valid");
         let walk = robot.gait("walk").expect("the robot has the gait");
-        let variations = (0..robot_count).map(|seed| Variation::draw(robot.ground(), seed));
+        let variations = (0..robot_count).map(|seed| Variation::sample(robot.ground(), seed));
         variations
             .map(|variation| variation.simulate_cycle(&robot, walk, ServoModel::SG90))
             .collect()
@@ -231,7 +230,7 @@ mod tests {
     fn added_play_leaves_all_other_values_unchanged() {
         let robot = Robot::parse(PAPER).expect("paper.toml is valid");
         for seed in 0..50 {
-            let variation = Variation::draw(robot.ground(), seed);
+            let variation = Variation::sample(robot.ground(), seed);
             let with_play = variation.with_play(seed);
             let play = with_play.ground.drive.play;
             assert!(

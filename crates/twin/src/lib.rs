@@ -1,4 +1,4 @@
-//! Simulated twin of the robot: the movement of body, legs and feet that a board's servo pulses cause.
+//! A digital twin of the robot: the movement of body, legs and feet that a board's servo pulses cause.
 //!
 //! The four pulses of a frame set the servos' targets ([`ServoModel`]), the servos turn the linkage, struts or springs
 //! pull the legs, and the contact model (`lizard_contact`) computes the body's movement over the floor.
@@ -11,22 +11,22 @@
 //! sufficient.
 //!
 //! # Units
-//! mm, degrees, seconds and microseconds, as stated at each value; a heading is in radians. Every array has the servo
-//! order A1, A2, A3, A4, which is the leg order LF, RF, RH, LH. Points on the floor are (forward, left) relative to the
-//! robot's initial place. Points of a [`Shape`] are in the chassis frame of `lizard_kinematics`: x to the robot's
-//! right, y forward.
+//! mm, degrees, seconds and microseconds, as each item's documentation states; a heading is in radians. Every array has
+//! the servo order A1, A2, A3, A4, which is the leg order left front, right front, right hind, left hind. Points on the
+//! floor are (forward, left) relative to the robot's start. Points of a [`Shape`] are in the chassis frame of
+//! `lizard_kinematics`: x to the robot's right, y forward.
 
 mod servo;
 mod shape;
 mod state;
-mod tally;
+mod totals;
 mod twin;
 
 pub use servo::{ServoModel, UnloadedServo};
 pub use shape::Shape;
 pub use state::State;
-pub use tally::Tally;
+pub use totals::Totals;
 pub use twin::Twin;
 
 /// Time from one frame to the next, s.
-pub const FRAME_S: f64 = 1.0 / lizard_robot::FRAMES_PER_SECOND;
+pub const FRAME_PERIOD_S: f64 = 1.0 / lizard_robot::FRAMES_PER_SECOND;

@@ -3,7 +3,7 @@
 
 use lizard_robot::{Motors, Robot};
 
-use crate::FRAME_S;
+use crate::FRAME_PERIOD_S;
 
 /// A model of the robot's servos.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ impl UnloadedServo {
     /// `us_per_degree` is the servo's gain.
     pub fn compute_end_sweep(&self, start: f64, target: f64, us_per_degree: f64) -> f64 {
         let half_band = self.dead_band_us / 2.0 / us_per_degree.abs();
-        let max_step = self.max_rate_deg_per_s * FRAME_S;
+        let max_step = self.max_rate_deg_per_s * FRAME_PERIOD_S;
         let end = start.clamp(target - half_band, target + half_band);
         start + (end - start).clamp(-max_step, max_step)
     }

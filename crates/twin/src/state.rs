@@ -1,6 +1,6 @@
 //! The twin's state after a frame.
 
-use lizard_contact::Place;
+use lizard_contact::BodyPose;
 use lizard_kinematics::{Check, Margins};
 
 /// The robot's state after a frame.
@@ -11,7 +11,7 @@ pub struct State {
     /// True for each servo that had a pulse in this frame.
     pub has_pulse: [bool; 4],
     /// Position and heading of the body on the floor.
-    pub place: Place,
+    pub body_pose: BodyPose,
     /// Actual servo angles, deg, chassis frame.
     pub angles: [f64; 4],
     /// Servo speeds, deg/s, counter-clockwise positive.

@@ -1,14 +1,14 @@
 //! Simulates a robot on a floor, frame by frame, from its servo pulses.
 
-use lizard_contact::{FORWARD_TURN_SIGN, Ground, Place, Walker};
+use lizard_contact::{BodyPose, FORWARD_TURN_SIGN, GroundContact, Walker};
 use lizard_kinematics::wrap;
 use lizard_robot::{CheckedGait, Robot};
 
-use crate::FRAME_S;
+use crate::FRAME_PERIOD_S;
 use crate::servo::ServoModel;
 use crate::shape::Shape;
 use crate::state::State;
-use crate::tally::Tally;
+use crate::totals::Totals;
 
 /// A simulated robot on a floor, with the state of its servos and legs.
 #[derive(Debug, Clone)]
@@ -61,7 +61,7 @@ impl Twin {
             ServoModel::Motors(motors) => {
                 let forward_targets =
                     std::array::from_fn(|i| targets[i].map(|target| FORWARD_TURN_SIGN[i] * target));
-                let slip = self.walker.drive(forward_targets, FRAME_S, &motors);
+                let slip = self.walker.drive(forward_targets, FRAME_PERIOD_S, &motors);
                 let servo_sweeps = self.walker.servo_sweeps();
                 self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
                 slip
@@ -86,21 +86,21 @@ impl Twin {
         self.frame_count += 1;
         let angles = self.angles();
         let solution = self.robot.lizard().solve(&angles.into()).ok();
-        let place = self.walker.place();
+        let body_pose = self.walker.body_pose();
         let ground = self.walker.ground();
         let mean_load = ground.body.mean_load();
         State {
             frame: self.frame_count,
             has_pulse: targets.map(|target| target.is_some()),
-            place,
+            body_pose,
             angles,
-            rates: std::array::from_fn(|i| (self.sweeps[i] - previous_sweeps[i]) / FRAME_S),
+            rates: std::array::from_fn(|i| (self.sweeps[i] - previous_sweeps[i]) / FRAME_PERIOD_S),
             errors,
             lags: self.walker.lags(),
             feet: ground
                 .feet
                 .positions(self.walker.leg_sweeps())
-                .map(|foot| place.to_floor(foot)),
+                .map(|foot| body_pose.to_floor(foot)),
             slips: slip.slid_distances,
             loads: slip.loads.map(|fraction| fraction * mean_load),
             margins: solution.map(|solution| solution.margins),
@@ -129,28 +129,28 @@ impl Twin {
     }
 
     /// The current model of floor, pads and leg drive.
-    pub fn ground(&self) -> &Ground {
+    pub fn ground(&self) -> &GroundContact {
         self.walker.ground()
     }
 
     /// Changes the floor, the pads and the leg drive from the next frame on.
-    pub fn set_ground(&mut self, ground: Ground) {
+    pub fn set_ground(&mut self, ground: GroundContact) {
         self.walker.set_ground(ground);
     }
 
     /// Simulates two cycles of a gait at its nominal rate from neutral, with the current ground and servos, and returns
-    /// the tally of the second cycle. This twin does not move.
-    pub fn simulate_cycle(&self, gait: &CheckedGait) -> Tally {
+    /// the totals of the second cycle. This twin does not move.
+    pub fn simulate_cycle(&self, gait: &CheckedGait) -> Totals {
         let mut twin = Self::new(&self.robot, self.servo_model);
         twin.set_ground(*self.ground());
-        let mut tally = Tally::new(Place::START);
+        let mut totals = Totals::new(BodyPose::START);
         for _ in 0..2 {
-            tally = Tally::new(twin.walker.place());
+            totals = Totals::new(twin.walker.body_pose());
             for (_, phase) in gait.frames() {
-                tally.add(&twin.simulate_angles(gait.table_angles(phase)));
+                totals.add(&twin.simulate_angles(gait.table_angles(phase)));
             }
         }
-        tally
+        totals
     }
 
     /// The servo model.
@@ -163,9 +163,9 @@ impl Twin {
         self.servo_model = servo_model;
     }
 
-    /// Moves the robot to another place on the floor.
-    pub fn set_place(&mut self, place: Place) {
-        self.walker.set_place(place);
+    /// Moves the robot to another pose on the floor.
+    pub fn set_body_pose(&mut self, body_pose: BodyPose) {
+        self.walker.set_body_pose(body_pose);
     }
 
     /// The leg sweeps without lag, deg, foot forward positive.

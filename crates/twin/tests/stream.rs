@@ -1,7 +1,7 @@
 //! Tests of the twin. The frames of a gait, simulated one by one, move the robot as predicted for the gait.
 
-use lizard_robot::{CheckedGait, Drive, DriveKind, Ground, Place, Robot};
-use lizard_twin::{ServoModel, Tally, Twin, UnloadedServo};
+use lizard_robot::{BodyPose, CheckedGait, Drive, DriveKind, GroundContact, Robot};
+use lizard_twin::{ServoModel, Totals, Twin, UnloadedServo};
 
 fn paper_robot() -> Robot {
     Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
@@ -13,35 +13,31 @@ fn compute_pulse_widths(robot: &Robot, gait: &CheckedGait, phase: u16) -> [Optio
     std::array::from_fn(|i| Some(robot.servos()[i].pulse(angles[i])))
 }
 
-/// Simulates four cycles of a gait, and returns the tally of the last cycle.
+/// Simulates four cycles of a gait, and returns the totals of the last cycle.
 fn simulate_last_of_four_cycles(
     robot: &Robot,
     name: &str,
     model: ServoModel,
-    ground: &Ground,
-) -> Tally {
+    ground: &GroundContact,
+) -> Totals {
     let gait = robot.gait(name).expect("paper.toml has the gait");
     let mut twin = Twin::new(robot, model);
     twin.set_ground(*ground);
-    let mut tally = Tally::new(Place::START);
+    let mut totals = Totals::new(BodyPose::START);
     for _ in 0..4 {
-        let start = twin.simulate_pulses(compute_pulse_widths(
-            robot,
-            gait,
-            gait.frames().next().expect("a gait has a frame").1,
-        ));
-        tally = Tally::new(start.place);
+        let start = twin.simulate_pulses(compute_pulse_widths(robot, gait, 0));
+        totals = Totals::new(start.body_pose);
         for (_, phase) in gait.frames().skip(1) {
-            tally.add(&twin.simulate_pulses(compute_pulse_widths(robot, gait, phase)));
+            totals.add(&twin.simulate_pulses(compute_pulse_widths(robot, gait, phase)));
         }
     }
-    tally
+    totals
 }
 
 #[test]
 fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
     let robot = paper_robot();
-    let ground_with_springs = Ground {
+    let ground_with_springs = GroundContact {
         drive: Drive {
             kind: DriveKind::Strut(robot.strut_with_spring(0.5, 0.4)),
             play: 0.0,
@@ -50,9 +46,9 @@ fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
     };
     for ground in [*robot.ground(), ground_with_springs] {
         for gait in robot.gaits().iter().filter(|gait| gait.name() != "look") {
-            let tally =
+            let totals =
                 simulate_last_of_four_cycles(&robot, gait.name(), ServoModel::Ideal, &ground);
-            let (travel, expected) = (tally.travel(), gait.simulate_cycle(&ground).travel);
+            let (travel, expected) = (totals.travel(), gait.simulate_cycle(&ground).travel);
             let name = gait.name();
             assert!(
                 (travel.forward - expected.forward).abs() < 0.35,
@@ -62,7 +58,10 @@ fn a_robot_with_ideal_servos_moves_as_predicted_for_the_gait() {
                 (travel.turn - expected.turn).abs() < 0.2,
                 "{name}: expected {expected:?}, got {travel:?}"
             );
-            assert!((tally.duration_s() - gait.period()).abs() < 0.011, "{name}");
+            assert!(
+                (totals.duration_s() - gait.period()).abs() < 0.011,
+                "{name}"
+            );
         }
     }
 }
@@ -89,12 +88,12 @@ fn servos_that_are_too_slow_for_a_gait_shorten_the_stride() {
         max_rate_deg_per_s: 120.0,
         dead_band_us: 0.0,
     });
-    let tally = simulate_last_of_four_cycles(&robot, "walk", slow_model, robot.ground());
+    let totals = simulate_last_of_four_cycles(&robot, "walk", slow_model, robot.ground());
     assert!(
-        tally.max_rate <= 120.0 + 1e-9 && tally.max_error > 5.0,
-        "{tally:?}"
+        totals.max_rate <= 120.0 + 1e-9 && totals.max_error > 5.0,
+        "{totals:?}"
     );
-    assert!(tally.travel().forward < 25.0, "{tally:?}");
+    assert!(totals.travel().forward < 25.0, "{totals:?}");
 }
 
 #[test]
@@ -120,9 +119,9 @@ fn a_robot_without_pulses_does_not_move() {
     for (_, phase) in walk.frames().take(20) {
         twin.simulate_pulses(compute_pulse_widths(&robot, walk, phase));
     }
-    let state_before = (twin.angles(), twin.simulate_pulses([None; 4]).place);
+    let state_before = (twin.angles(), twin.simulate_pulses([None; 4]).body_pose);
     let state_after = twin.simulate_pulses([None; 4]);
-    assert_eq!((state_after.angles, state_after.place), state_before);
+    assert_eq!((state_after.angles, state_after.body_pose), state_before);
     assert_eq!(
         (state_after.has_pulse, state_after.slips, state_after.frame),
         ([false; 4], [0.0; 4], 22)
@@ -141,7 +140,8 @@ fn simulate_angles_moves_the_robot_like_the_equivalent_pulses() {
         for i in 0..4 {
             assert!((pulse_state.angles[i] - angle_state.angles[i]).abs() < 1e-9);
         }
-        let forward_positions = [pulse_state.place, angle_state.place].map(|place| place.forward);
+        let forward_positions =
+            [pulse_state.body_pose, angle_state.body_pose].map(|body_pose| body_pose.forward);
         assert!(
             (forward_positions[0] - forward_positions[1]).abs() < 1e-6,
             "forward positions {forward_positions:?} mm"

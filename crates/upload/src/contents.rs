@@ -67,7 +67,7 @@ impl FlashContents {
         let pages = image.pages();
         let is_in_flash = |page: &&Page| flash[page.range()] == page.bytes;
         let code_pages = pages.iter().filter(|page| page.address < ROBOT_ADDRESS);
-        let program = match Mark::find(flash) {
+        let program = match Mark::read(flash) {
             Some(mark) => Program::Lizard {
                 mark,
                 is_different: !code_pages.clone().all(|page| is_in_flash(&page)),

@@ -12,8 +12,8 @@ use lizard_core::numbers::section::START_ADDRESS;
 pub const PAGE_BYTES: usize = 128;
 /// The address of a UNO's boot loader.
 pub const BOOT_ADDRESS: usize = 0x7e00;
-/// The address of a Nano's boot section, which has 2 KB according to the fuses in Arduino's boards.txt. The chip starts
-/// there, even if the boot loader is shorter.
+/// The address of a Nano's boot section, which is 2 KB long according to the fuses in Arduino's boards.txt. The chip
+/// starts there, even if the boot loader is shorter.
 pub const NANO_BOOT_ADDRESS: usize = 0x7800;
 /// The value of an erased flash byte.
 pub const BLANK: u8 = 0xff;

@@ -3,7 +3,7 @@
 //! After a reset by its button or by the DTR line of its USB serial converter, the chip starts in the boot loader. The
 //! boot loader blinks, then listens for about a second, and starts the program in flash if no command arrives. One or a
 //! few invalid bytes make it start the program at once; then only another reset starts the boot loader again. Commands
-//! and answers have no checksums, so written pages must be read back.
+//! and responses have no checksums, so written pages must be read back.
 //!
 //! There are two kinds of boot loader ([`LoaderKind`]). Only the baud rate at which a board answers shows its kind.
 //!
@@ -15,7 +15,7 @@ use std::time::Duration;
 use crate::board::{Board, BoardError};
 use crate::image::{BOOT_ADDRESS, NANO_BOOT_ADDRESS, PAGE_BYTES};
 
-// Answers, the end of a command, and commands, with their codes in AVR061.
+// Responses, the end of a command, and commands, with their codes in AVR061.
 const OK: u8 = 0x10;
 const IN_SYNC: u8 = 0x14;
 const CRC_EOP: u8 = 0x20;
@@ -27,21 +27,22 @@ const READ_PAGE: u8 = 0x74;
 const READ_SIGNATURE: u8 = 0x75;
 /// The memory type in commands that read or write a page.
 const FLASH: u8 = b'F';
-/// Largest number of calls (requests to synchronise) after one reset.
-const MAX_CALLS: usize = 5;
-/// Largest number of stray bytes before the answer to a call: about as many as the line carries in [`CALL_TIME`].
+/// Largest number of requests to synchronise after one reset.
+const MAX_SYNC_REQUESTS: usize = 5;
+/// Largest number of stray bytes before the response to a sync request: about as many as the line carries in
+/// [`SYNC_TIME_LIMIT`].
 const MAX_STRAY_BYTES: usize = 1300;
 
 /// Time after a reset in which the loader blinks and does not listen. Bytes sent meanwhile overflow its receiver, and a
 /// partial command makes it start the program.
 const BLINK_TIME: Duration = Duration::from_millis(400);
-/// Time limit for each byte of the answer to a call.
-const CALL_TIME: Duration = Duration::from_millis(110);
-/// Time after the first answer in which late answers to earlier calls are discarded.
+/// Time limit for each byte of the response to a sync request.
+const SYNC_TIME_LIMIT: Duration = Duration::from_millis(110);
+/// Time after the first response in which late responses to earlier sync requests are discarded.
 const DRAIN_TIME: Duration = Duration::from_millis(40);
-/// Time limit for the answer to any other command. Writing a page takes about 20 ms, but on a busy machine the answer
-/// may arrive a second later.
-const ANSWER_TIME: Duration = Duration::from_secs(2);
+/// Time limit for the response to any other command. Writing a page takes about 20 ms, but on a busy machine the
+/// response may arrive a second later.
+const RESPONSE_TIME_LIMIT: Duration = Duration::from_secs(2);
 
 /// A kind of boot loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,10 +75,10 @@ impl LoaderKind {
 /// The error of a failed boot loader command.
 #[derive(Debug, thiserror::Error)]
 pub enum LoaderError {
-    /// No answer, or an incomplete one, within the time limit.
+    /// No response, or an incomplete one, within the time limit.
     #[error("the board does not answer")]
     Silent,
-    /// An answer in the wrong format.
+    /// A response in the wrong format.
     #[error("the board's answers are garbled")]
     Garbled,
     /// The connection failed.
@@ -95,7 +96,7 @@ impl LoaderError {
 impl From<BoardError> for LoaderError {
     fn from(error: BoardError) -> Self {
         match error {
-            // A command that could not be sent gets no answer.
+            // A command that could not be sent gets no response.
             BoardError::Busy => Self::Silent,
             error => Self::Board(error),
         }
@@ -109,7 +110,7 @@ pub struct Loader<B> {
 }
 
 impl<B: Board> Loader<B> {
-    /// Creates a client; sends nothing before [`Loader::reset_and_call`].
+    /// Creates a client; sends nothing before [`Loader::reset_and_sync`].
     pub fn new(board: B) -> Self {
         Self { board }
     }
@@ -119,15 +120,15 @@ impl<B: Board> Loader<B> {
         self.board
     }
 
-    /// Resets the board and calls its boot loader until it answers.
+    /// Resets the board and sends sync requests to its boot loader until it answers.
     ///
     /// # Errors
     /// Returns [`LoaderError::Silent`] if no loader answers, and another [`LoaderError`] if the connection fails.
-    pub async fn reset_and_call(&mut self, kind: LoaderKind) -> Result<(), LoaderError> {
+    pub async fn reset_and_sync(&mut self, kind: LoaderKind) -> Result<(), LoaderError> {
         self.board.reset(kind.baud()).await?;
         // The last output of the old program also arrives in this time.
         self.board.discard(BLINK_TIME).await?;
-        for _ in 0..MAX_CALLS {
+        for _ in 0..MAX_SYNC_REQUESTS {
             self.board.write(&[GET_SYNC, CRC_EOP]).await?;
             if self.wait_for_sync().await? {
                 return Ok(self.board.discard(DRAIN_TIME).await?);
@@ -187,15 +188,15 @@ impl<B: Board> Loader<B> {
         self.send_command(&[LOAD_ADDRESS, low, high], &mut []).await
     }
 
-    /// Sends a command, and fills `answer` with the bytes between [`IN_SYNC`] and [`OK`].
-    async fn send_command(&mut self, bytes: &[u8], answer: &mut [u8]) -> Result<(), LoaderError> {
+    /// Sends a command, and fills `response` with the bytes between [`IN_SYNC`] and [`OK`].
+    async fn send_command(&mut self, bytes: &[u8], response: &mut [u8]) -> Result<(), LoaderError> {
         self.board.write(&[bytes, &[CRC_EOP]].concat()).await?;
-        let mut received = vec![0; answer.len() + 2];
-        let count = self.board.read(&mut received, ANSWER_TIME).await?;
+        let mut received = vec![0; response.len() + 2];
+        let count = self.board.read(&mut received, RESPONSE_TIME_LIMIT).await?;
         match received.as_slice() {
             _ if count < received.len() => Err(LoaderError::Silent),
             [IN_SYNC, content @ .., OK] => {
-                answer.copy_from_slice(content);
+                response.copy_from_slice(content);
                 Ok(())
             }
             _ => Err(LoaderError::Garbled),
@@ -208,7 +209,7 @@ impl<B: Board> Loader<B> {
         let mut previous_byte = 0;
         for _ in 0..MAX_STRAY_BYTES {
             let mut byte = [0];
-            if self.board.read(&mut byte, CALL_TIME).await? == 0 {
+            if self.board.read(&mut byte, SYNC_TIME_LIMIT).await? == 0 {
                 return Ok(false);
             }
             if [previous_byte, byte[0]] == [IN_SYNC, OK] {

@@ -1,7 +1,7 @@
 //! A board's model, and the flash that it leaves free for an image.
 //!
-//! An Arduino Nano has the UNO's chip and runs the UNO's firmware. However, its boot section has 2 KB (high fuse 0xDA
-//! in Arduino's boards.txt) instead of 512 bytes, and the chip starts at the first byte of the boot section. Code
+//! An Arduino Nano has the UNO's chip and runs the UNO's firmware. However, its boot section is 2 KB long (high fuse
+//! 0xDA in Arduino's boards.txt) instead of 512 bytes, and the chip starts at the first byte of the boot section. Code
 //! written there would be started as a boot loader, and only a programmer wired to the pins could repair the board.
 //! Boot loaders do not report the fuses. An old Nano is recognised by its baud rate; a newer Nano answers like a UNO,
 //! and only its USB chip may distinguish it.

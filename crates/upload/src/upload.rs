@@ -54,9 +54,9 @@ pub enum Event<'a> {
     Retry {
         /// The error of the last attempt.
         error: &'a LoaderError,
-        /// The boot loader that was called.
-        called_kind: LoaderKind,
-        /// The boot loader that is called next.
+        /// The boot loader that was tried.
+        tried_kind: LoaderKind,
+        /// The boot loader that is tried next.
         next_kind: LoaderKind,
     },
 }
@@ -194,7 +194,7 @@ pub async fn upload<B: Board>(
         };
         (upload.report)(Event::Retry {
             error: &error,
-            called_kind: kind,
+            tried_kind: kind,
             next_kind,
         });
     }
@@ -206,7 +206,7 @@ pub async fn upload<B: Board>(
     })
 }
 
-/// Resets a board, calls its boot loader, starts the program in flash, and returns the kind of the boot loader.
+/// Resets a board, contacts its boot loader, starts the program in flash, and returns the kind of the boot loader.
 ///
 /// # Errors
 /// Fails if no boot loader answers, the chip is not an ATmega328P, or the connection fails.
@@ -216,7 +216,7 @@ pub async fn identify<B: Board>(loader: &mut Loader<B>) -> Result<LoaderKind, Up
         flash_state: FlashState::Unchanged,
     };
     for &kind in Target::default().loaders() {
-        match loader.reset_and_call(kind).await {
+        match loader.reset_and_sync(kind).await {
             Ok(()) => {
                 let chip = Chip(loader.read_signature().await.map_err(connection_error)?);
                 let _ = loader.leave().await;
@@ -269,7 +269,7 @@ impl<B: Board> Upload<'_, B> {
         kind: LoaderKind,
         is_page_written: &mut [bool],
     ) -> Result<(), AttemptError> {
-        self.loader.reset_and_call(kind).await?;
+        self.loader.reset_and_sync(kind).await?;
         self.has_answered = true;
         let chip = Chip(self.loader.read_signature().await?);
         if chip != Chip::ATMEGA328P {

@@ -130,14 +130,14 @@ impl AnalysedVideo {
                 .filter_map(|frame| {
                     Some(PathPoint {
                         seconds: 0.0,
-                        place: frame.find_place(scene, self.camera.has_camera_moved)?,
+                        pose: frame.find_body_pose(scene, self.camera.has_camera_moved)?,
                     })
                 })
                 .collect();
             unwrap_headings(&mut points);
             let travels: Vec<Travel> = points
                 .windows(2)
-                .map(|pair| pair[1].place.travel_from(pair[0].place))
+                .map(|pair| pair[1].pose.travel_from(pair[0].pose))
                 .collect();
             travel_components(&travels)
                 .map(|values| values.iter().sum::<f64>() / values.len().max(1) as f64)

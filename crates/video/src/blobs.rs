@@ -10,7 +10,7 @@ use crate::frame::{Frame, Pixel};
 const HALF_WINDOW_FRACTION: f64 = 1.0 / 24.0;
 /// Largest grey of a dark pixel, percent of its window's mean.
 const MAX_DARK_PERCENT: u32 = 88;
-/// Smallest width and height of a candidate blob, px: two pixels for each square of a tag.
+/// Smallest width and height of a candidate blob, px: two pixels for each cell of a tag.
 const MIN_SIDE_PX: usize = 16;
 /// Smallest distance of the two other corners from the longest diagonal, as a fraction of the diagonal.
 const MIN_CORNER_DISTANCE_FRACTION: f64 = 0.15;
@@ -97,9 +97,9 @@ fn find_dark_pixels(frame: &Frame, half_window: usize) -> Vec<bool> {
                 .wrapping_sub(integral_image[below + left])
                 .wrapping_sub(integral_image[above + right])
                 .wrapping_add(integral_image[above + left]);
-            let window_pixels = ((right - left) * (bottom - top)) as u32;
+            let window_area = ((right - left) * (bottom - top)) as u32;
             is_dark.push(
-                u64::from(*grey) * u64::from(window_pixels) * 100
+                u64::from(*grey) * u64::from(window_area) * 100
                     < u64::from(window_sum) * u64::from(MAX_DARK_PERCENT),
             );
         }
@@ -107,34 +107,32 @@ fn find_dark_pixels(frame: &Frame, half_window: usize) -> Vec<bool> {
     is_dark
 }
 
-/// Finds the corners of a blob; `None` if the blob is small, touches the frame's border, or is no quadrilateral.
+/// Finds the corners of a blob; `None` if the blob is small, touches the frame's border, or is not a quadrilateral.
 fn find_corners(blob: &[usize], width: usize, height: usize) -> Option<Quad> {
     if blob.len() < MIN_SIDE_PX * MIN_SIDE_PX / 4 {
         return None;
     }
     let to_pixel = |index: usize| [(index % width) as f64, (index / width) as f64];
-    let (mut low, mut high) = ([f64::INFINITY; 2], [0.0f64; 2]);
+    let (mut min, mut max) = ([f64::INFINITY; 2], [0.0f64; 2]);
     for &index in blob {
         let pixel = to_pixel(index);
         for i in 0..2 {
-            low[i] = low[i].min(pixel[i]);
-            high[i] = high[i].max(pixel[i]);
+            min[i] = min[i].min(pixel[i]);
+            max[i] = max[i].max(pixel[i]);
         }
     }
-    let is_inside = low[0] > 0.0
-        && low[1] > 0.0
-        && high[0] < (width - 1) as f64
-        && high[1] < (height - 1) as f64;
-    let is_large = (0..2).all(|i| high[i] - low[i] >= MIN_SIDE_PX as f64);
+    let is_inside =
+        min[0] > 0.0 && min[1] > 0.0 && max[0] < (width - 1) as f64 && max[1] < (height - 1) as f64;
+    let is_large = (0..2).all(|i| max[i] - min[i] >= MIN_SIDE_PX as f64);
     if !is_inside || !is_large {
         return None;
     }
-    let farthest_by = |measure: &dyn Fn(Pixel) -> f64| {
-        let pairs = blob.iter().map(|&index| (measure(to_pixel(index)), index));
+    let farthest_by = |distance: &dyn Fn(Pixel) -> f64| {
+        let pairs = blob.iter().map(|&index| (distance(to_pixel(index)), index));
         pairs.max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let distance_from = |[x, y]: Pixel| move |[u, v]: Pixel| (u - x).hypot(v - y);
-    let centre = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
+    let centre = [(min[0] + max[0]) / 2.0, (min[1] + max[1]) / 2.0];
     let a = to_pixel(farthest_by(&distance_from(centre))?.1);
     let (diagonal, c) = farthest_by(&distance_from(a))?;
     let c = to_pixel(c);

@@ -10,7 +10,7 @@ use crate::homography::Homography;
 
 /// Position and direction of a camera: the rotation vector from the floor's axes to the camera's axes, rad, and the
 /// floor's origin in the camera's axes, mm.
-pub(crate) type Pose = [f64; 6];
+pub(crate) type CameraPose = [f64; 6];
 
 /// A camera model with its pose.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +45,7 @@ impl Camera {
         ]
     }
 
-    /// Returns the direction away from the floor, in the camera's axes: right, down, ahead.
+    /// Returns the direction away from the floor, in the camera's axes: right, down, forward.
     pub(crate) fn up_direction(&self) -> Vector3<f64> {
         self.rotation.column(2).into_owned()
     }
@@ -69,11 +69,11 @@ fn principal_point(frame_size: [usize; 2]) -> Pixel {
 }
 
 /// Returns the pose of a camera whose image of the floor has this homography; `None` if the homography is degenerate.
-pub(crate) fn pose_from_homography(
+pub(crate) fn camera_pose_from_homography(
     homography: &Homography,
     focal_length: f64,
     frame_size: [usize; 2],
-) -> Option<Pose> {
+) -> Option<CameraPose> {
     let [cx, cy] = principal_point(frame_size);
     let calibration = Matrix3::new(focal_length, 0.0, cx, 0.0, focal_length, cy, 0.0, 0.0, 1.0);
     let columns = calibration.try_inverse()? * homography.0;

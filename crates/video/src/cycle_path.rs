@@ -1,33 +1,31 @@
 //! The mean path within a cycle, compared with the predicted path.
 //!
-//! Frames are taken at any phase, and the path between two frames is not a straight line. Therefore the place in each
-//! frame is compared with the predicted place at the same phase. The differences change slowly within a cycle, so they
+//! Frames are taken at any phase, and the path between two frames is not a straight line. Therefore the pose in each
+//! frame is compared with the predicted pose at the same phase. The differences change slowly within a cycle, so they
 //! are averaged over bins of the phase.
-
-use lizard_contact::Travel;
 
 use crate::cycles::Cycles;
 use crate::gait::Gait;
 use crate::mean::{self, Mean, WalkValues};
 use crate::path::PathPoint;
-use crate::walk::{Deviation, Walk};
+use crate::walk::{Deviation, Walk, components};
 
 /// Largest number of bins of the phase; each bin should have at least one frame of every cycle.
-const MAX_BINS: usize = 24;
+const MAX_BIN_COUNT: usize = 24;
 
 /// A point of the mean path within a cycle, relative to the cycle's start: forward and left, mm, and turn, deg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CyclePoint {
     /// Phase, 0 to 1: the centre of the bin over which the point is averaged.
     pub phase: f64,
-    /// The measured place.
+    /// The measured pose.
     pub measured: [Mean; 3],
-    /// The predicted place.
+    /// The predicted pose.
     pub predicted: [f64; 3],
 }
 
 impl CyclePoint {
-    /// Returns the measured minus the predicted place, in standard errors: forward, left, turn.
+    /// Returns the measured minus the predicted pose, in standard errors: forward, left, turn.
     pub fn standardised_differences(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let mean = self.measured[axis];
@@ -43,18 +41,18 @@ pub(crate) fn compute_deviations(
     gait: &Gait,
 ) -> Vec<Deviation> {
     let mut deviations = Vec::new();
-    for (cycle, pair) in cycles.starts.windows(2).enumerate() {
+    for (cycle_index, pair) in cycles.starts.windows(2).enumerate() {
         let (start, end) = (pair[0], pair[1].seconds);
         let is_inside = |point: &&PathPoint| (start.seconds..end).contains(&point.seconds);
         for point in path.iter().filter(is_inside) {
             let phase = (point.seconds - start.seconds) / (end - start.seconds);
             let [measured, predicted] = [
-                point.place.travel_from(start.place),
-                gait.place_at(phase).travel(),
+                point.pose.travel_from(start.pose),
+                gait.pose_at(phase).travel(),
             ]
             .map(components);
             deviations.push(Deviation {
-                cycle,
+                cycle_index,
                 phase,
                 offset: [0, 1, 2].map(|axis| measured[axis] - predicted[axis]),
             });
@@ -68,7 +66,7 @@ pub(crate) fn compute_points(walks: &[Walk], gait: &Gait) -> Vec<CyclePoint> {
     let frames_per_cycle = walks
         .iter()
         .map(|walk| walk.deviations.len() / walk.cycles.travels.len());
-    let bin_count = frames_per_cycle.min().unwrap_or(0).clamp(1, MAX_BINS);
+    let bin_count = frames_per_cycle.min().unwrap_or(0).clamp(1, MAX_BIN_COUNT);
     let mut points: Vec<CyclePoint> = (0..bin_count)
         .filter_map(|bin_index| compute_point(walks, gait, bin_index, bin_count))
         .collect();
@@ -103,11 +101,11 @@ fn compute_point(
     bin_count: usize,
 ) -> Option<CyclePoint> {
     let phase = (bin_index as f64 + 0.5) / bin_count as f64;
-    let predicted = components(gait.place_at(phase).travel());
+    let predicted = components(gait.pose_at(phase).travel());
     let rate = gait.rate_at(phase);
     let compute_mean = |axis: usize| {
         let walk_values = |walk: &Walk| {
-            let cycles = mean_by_cycle(walk, bin_index, bin_count, axis);
+            let cycles = means_by_cycle(walk, bin_index, bin_count, axis);
             // The errors that all cycles have in common are those of the clock, the scale and the camera.
             let clock_error = rate[axis] * walk.cycles.start_error / walk.cycles.period.value;
             let scale_error = if axis < 2 {
@@ -138,14 +136,14 @@ fn compute_point(
 }
 
 /// Computes the mean deviation in a bin of the phase for each cycle that has a frame in that bin.
-fn mean_by_cycle(walk: &Walk, bin_index: usize, bin_count: usize, axis: usize) -> Vec<f64> {
+fn means_by_cycle(walk: &Walk, bin_index: usize, bin_count: usize, axis: usize) -> Vec<f64> {
     let is_in_bin =
         |deviation: &&Deviation| (deviation.phase * bin_count as f64) as usize == bin_index;
-    let cycle_mean = |cycle: usize| {
+    let cycle_mean = |index: usize| {
         let values = walk
             .deviations
             .iter()
-            .filter(|deviation| deviation.cycle == cycle);
+            .filter(|deviation| deviation.cycle_index == index);
         let values: Vec<f64> = values
             .filter(is_in_bin)
             .map(|deviation| deviation.offset[axis])
@@ -155,8 +153,4 @@ fn mean_by_cycle(walk: &Walk, bin_index: usize, bin_count: usize, axis: usize) -
     (0..walk.cycles.travels.len())
         .filter_map(cycle_mean)
         .collect()
-}
-
-fn components(travel: Travel) -> [f64; 3] {
-    [travel.forward, travel.left, travel.turn]
 }

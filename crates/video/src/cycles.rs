@@ -2,13 +2,13 @@
 //!
 //! A distance per cycle means little without the phase at which a cycle starts: the body sways, so the forward
 //! direction depends on the phase. A clock error of half a percent causes the same relative error in every cycle.
-//! Therefore both phase and clock are fitted (`clock.rs`). Since frames are some time apart, cycles are measured
+//! Therefore both phase and clock are fitted (`cycle_timing.rs`). Since frames are some time apart, cycles are measured
 //! between calm phases, at which the robot moves evenly. The displacement from the start of a cycle to its calm phase
 //! then converts the result to a cycle that is measured from its start.
 
-use lizard_contact::{Place, Travel};
+use lizard_contact::{BodyPose, Travel};
 
-use crate::clock::{Clock, Movements};
+use crate::cycle_timing::{CycleTiming, Movements};
 use crate::estimate::Estimate;
 use crate::gait::{Gait, HALF_WINDOW, MIN_MOVEMENT, movement_in_mm, movement_length};
 use crate::path::{self, PathPoint};
@@ -34,7 +34,7 @@ pub(crate) struct Cycles {
     pub boundaries: Vec<f64>,
     /// The movement of each cycle.
     pub travels: Vec<Travel>,
-    /// Time and place of the start of each cycle, and of the last cycle's end.
+    /// Time and pose of the start of each cycle, and of the last cycle's end.
     pub starts: Vec<PathPoint>,
     /// Standard error of the times in `starts`, s.
     pub start_error: f64,
@@ -48,7 +48,7 @@ pub(crate) struct Cycles {
 pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, VideoError> {
     let (walk, [begin, end]) = select_even_walk(path, gait)?;
     let movements = Movements::from_path(walk, gait.period);
-    let Clock { start, period } = movements.fit_clock(gait)?;
+    let CycleTiming { start, period } = movements.fit_timing(gait)?;
     if let Some(seconds) = movements.find_change(period.value) {
         let seconds = seconds - path[0].seconds;
         return Err(VideoError::MovementChanges { seconds });
@@ -59,8 +59,8 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Vid
     let times = (first..).map(|i| start.value + (i as f64 + calm_phase) * period.value);
     let half_window = HALF_WINDOW * gait.period;
     let calm_point_at = |seconds: f64| {
-        let place = path::smoothed_place_at(path, seconds, half_window)?;
-        Some(PathPoint { seconds, place })
+        let pose = path::smoothed_pose_at(path, seconds, half_window)?;
+        Some(PathPoint { seconds, pose })
     };
     let calm_points: Vec<PathPoint> = times
         .take_while(|&time| time <= end)
@@ -74,15 +74,15 @@ pub(crate) fn find_cycles(path: &[PathPoint], gait: &Gait) -> Result<Cycles, Vid
     }
     let start_to_calm =
         mean_displacement_to_calm(walk, &calm_points, calm_phase, period.value, gait)
-            .unwrap_or_else(|| gait.place_at(calm_phase));
+            .unwrap_or_else(|| gait.pose_at(calm_phase));
     let calm_to_start = path::inverse(start_to_calm);
     let cycle_travel = |pair: &[PathPoint]| {
-        let cycle = path::travel_to_place(pair[1].place.travel_from(pair[0].place));
+        let cycle = path::pose_from_travel(pair[1].pose.travel_from(pair[0].pose));
         path::compose(path::compose(start_to_calm, cycle), calm_to_start).travel()
     };
     let cycle_start = |point: &PathPoint| PathPoint {
         seconds: point.seconds - calm_phase * period.value,
-        place: path::compose(point.place, calm_to_start),
+        pose: path::compose(point.pose, calm_to_start),
     };
     Ok(Cycles {
         period,
@@ -132,41 +132,41 @@ fn mean_displacement_to_calm(
     calm_phase: f64,
     period: f64,
     gait: &Gait,
-) -> Option<Place> {
-    let displacements: Vec<Place> = calm_points
+) -> Option<BodyPose> {
+    let displacements: Vec<BodyPose> = calm_points
         .iter()
         .filter_map(|point| {
             let start_seconds = point.seconds - calm_phase * period;
-            let start = place_at_start(path, start_seconds, period, gait)?;
-            Some(path::travel_to_place(point.place.travel_from(start)))
+            let start = pose_at_start(path, start_seconds, period, gait)?;
+            Some(path::pose_from_travel(point.pose.travel_from(start)))
         })
         .collect();
-    let mean_coordinate = |coordinate: fn(&Place) -> f64| {
+    let mean_coordinate = |coordinate: fn(&BodyPose) -> f64| {
         displacements.iter().map(coordinate).sum::<f64>() / displacements.len() as f64
     };
-    (!displacements.is_empty()).then(|| Place {
+    (!displacements.is_empty()).then(|| BodyPose {
         forward: mean_coordinate(|displacement| displacement.forward),
         left: mean_coordinate(|displacement| displacement.left),
         heading: mean_coordinate(|displacement| displacement.heading),
     })
 }
 
-/// Computes the place at the start of a cycle: shifts the places in the frames before and after the start to that time
+/// Computes the pose at the start of a cycle: shifts the poses in the frames before and after the start to that time
 /// by the predicted movement, then interpolates. Without the prediction, interpolation would be wrong for a gait that
 /// starts with a jerk. `None` if there is no frame before or after the start.
-fn place_at_start(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<Place> {
+fn pose_at_start(path: &[PathPoint], seconds: f64, period: f64, gait: &Gait) -> Option<BodyPose> {
     let next_index = path.partition_point(|point| point.seconds < seconds);
     let (a, b) = (path.get(next_index.checked_sub(1)?)?, path.get(next_index)?);
-    let shifted_place = |point: &PathPoint| {
+    let shifted_pose = |point: &PathPoint| {
         let phase = 1.0 + (point.seconds - seconds) / period;
         let displacement =
-            path::travel_to_place(gait.place_at(phase).travel_from(gait.place_at(1.0)));
-        path::compose(point.place, path::inverse(displacement))
+            path::pose_from_travel(gait.pose_at(phase).travel_from(gait.pose_at(1.0)));
+        path::compose(point.pose, path::inverse(displacement))
     };
     let fraction = (seconds - a.seconds) / (b.seconds - a.seconds);
     Some(path::interpolate(
-        shifted_place(a),
-        shifted_place(b),
+        shifted_pose(a),
+        shifted_pose(b),
         fraction,
     ))
 }
@@ -176,8 +176,8 @@ fn find_even_walk(path: &[PathPoint], gait: &Gait) -> Result<[f64; 2], VideoErro
     let travels: Vec<(f64, Travel)> = path
         .iter()
         .filter_map(|point| {
-            let later_place = path::interpolate_at(path, point.seconds + gait.period)?;
-            Some((point.seconds, later_place.travel_from(point.place)))
+            let later_pose = path::interpolate_at(path, point.seconds + gait.period)?;
+            Some((point.seconds, later_pose.travel_from(point.pose)))
         })
         .collect();
     let movement_lengths: Vec<f64> = travels

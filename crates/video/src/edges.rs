@@ -6,14 +6,14 @@
 
 use crate::blobs::Quad;
 use crate::frame::{Frame, Pixel};
-use crate::sheet::SQUARES_PER_SIDE;
+use crate::sheet::CELLS_PER_SIDE;
 
 /// Fraction of an edge's length that is ignored next to each corner, because the adjacent edge is too near.
 const END_FRACTION: f64 = 0.12;
 /// Distance up to which grey is sampled on either side of an edge, px, if the tag is large enough.
 const MAX_SAMPLING_DISTANCE: f64 = 4.0;
-/// Largest sampling distance in a small tag, as a fraction of a square's width. The code begins one square inside the
-/// edge, and the first corners have an error of a pixel.
+/// Largest sampling distance in a small tag, as a fraction of a cell's width. The code begins one cell inside the edge,
+/// and the first corners have an error of a pixel.
 const MAX_SAMPLING_FRACTION: f64 = 0.6;
 /// Distance between samples across an edge, px.
 const SAMPLE_SPACING: f64 = 0.5;
@@ -24,9 +24,9 @@ const MAX_EDGE_DEVIATION: f64 = 0.7;
 /// Number of iterations; each fits the lines again, starting from the improved corners.
 const ITERATION_COUNT: usize = 3;
 
-/// The corners of a black square to sub-pixel accuracy.
+/// The outline of a tag: a black square, found to sub-pixel accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Square {
+pub(crate) struct TagOutline {
     /// The corners, clockwise as seen in the frame.
     pub corners: Quad,
     /// The grey level halfway between black and white.
@@ -41,27 +41,27 @@ struct Line {
 
 /// Refines the corners of a quadrilateral; `None` unless its four edges are straight, long enough, black inside and
 /// white outside.
-pub(crate) fn refine(frame: &Frame, quad: Quad) -> Option<Square> {
-    let mut square = Square {
+pub(crate) fn refine_quad(frame: &Frame, quad: Quad) -> Option<TagOutline> {
+    let mut outline = TagOutline {
         corners: quad,
         mid_grey: 0.0,
     };
     for _ in 0..ITERATION_COUNT {
-        let corners = square.corners;
+        let corners = outline.corners;
         let edges: [Option<(Line, f64)>; 4] =
             std::array::from_fn(|i| fit_edge(frame, corners[i], corners[(i + 1) % 4]));
         let mut lines = Vec::with_capacity(4);
-        square.mid_grey = 0.0;
+        outline.mid_grey = 0.0;
         for edge in edges {
             let (line, mid_grey) = edge?;
             lines.push(line);
-            square.mid_grey += mid_grey / 4.0;
+            outline.mid_grey += mid_grey / 4.0;
         }
         for i in 0..4 {
-            square.corners[i] = intersect(&lines[(i + 3) % 4], &lines[i])?;
+            outline.corners[i] = intersect(&lines[(i + 3) % 4], &lines[i])?;
         }
     }
-    Some(square)
+    Some(outline)
 }
 
 /// Fits a line to the edge between two corners, and returns it with the grey halfway between black and white. `None` if
@@ -70,7 +70,7 @@ fn fit_edge(frame: &Frame, from: Pixel, to: Pixel) -> Option<(Line, f64)> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
     let sampling_distance =
-        MAX_SAMPLING_DISTANCE.min(MAX_SAMPLING_FRACTION * length / SQUARES_PER_SIDE as f64);
+        MAX_SAMPLING_DISTANCE.min(MAX_SAMPLING_FRACTION * length / CELLS_PER_SIDE as f64);
     if !(2.0 * SAMPLE_SPACING..1e4).contains(&sampling_distance) {
         return None;
     }

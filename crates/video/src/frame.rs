@@ -25,11 +25,12 @@ impl Frame {
     /// Converts a coloured frame to grey. `pixels` has four bytes per pixel: red, green, blue, and an ignored one.
     /// `None` if the length of `pixels` is not `4 * width * height`, or is zero.
     pub fn from_rgba(width: usize, height: usize, pixels: &[u8]) -> Option<Self> {
-        let (pixels, rest) = pixels.as_chunks::<4>();
+        let (pixels, remainder) = pixels.as_chunks::<4>();
         let grey = pixels
             .iter()
             .map(|&[red, green, blue, _]| luminance(red, green, blue));
-        rest.is_empty()
+        remainder
+            .is_empty()
             .then(|| Self::new(width, height, grey.collect()))?
     }
 

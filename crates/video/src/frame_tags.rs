@@ -1,25 +1,28 @@
-//! The tags detected in a frame, and the robot's place that follows from them.
+//! The tags detected in a frame, and the robot's pose that follows from them.
 
-use lizard_contact::Place;
+use lizard_contact::BodyPose;
 
 use crate::camera::Camera;
 use crate::frame::Pixel;
 use crate::scene::{FloorCorners, Scene};
 use crate::sheet::{CODES, DECK_TAG_ID};
 
+/// The corners of a frame's tags, indexed by the tags' ids.
+pub(crate) type TagCorners = [Option<[Pixel; 4]>; CODES.len()];
+
 /// The tags detected in a frame.
 #[derive(Debug, Clone)]
 pub(crate) struct FrameTags {
     /// Time of the frame, s.
     pub seconds: f64,
-    /// The corners of each visible tag, indexed by the tag's id.
-    pub tags: [Option<[Pixel; 4]>; CODES.len()],
+    /// The corners of the visible tags.
+    pub corners: TagCorners,
 }
 
 impl FrameTags {
-    /// The corners of the floor tags, if all are visible.
+    /// Returns the corners of the floor tags; `None` unless all are visible.
     pub(crate) fn floor_corners(&self) -> Option<FloorCorners> {
-        let [a, b, c, d, _] = self.tags;
+        let [a, b, c, d, _] = self.corners;
         Some([a?, b?, c?, d?])
     }
 
@@ -28,13 +31,13 @@ impl FrameTags {
     pub(crate) fn find_camera(&self, scene: &Scene, has_camera_moved: bool) -> Option<Camera> {
         match has_camera_moved {
             false => Some(scene.camera()),
-            true => Some(scene.camera_at(&scene.find_pose(&self.floor_corners()?)?)),
+            true => Some(scene.camera_at(&scene.find_camera_pose(&self.floor_corners()?)?)),
         }
     }
 
-    /// Finds the robot's place; `None` if the required tags are not visible or do not determine it.
-    pub(crate) fn find_place(&self, scene: &Scene, has_camera_moved: bool) -> Option<Place> {
+    /// Finds the robot's pose; `None` if the required tags are not visible or do not determine it.
+    pub(crate) fn find_body_pose(&self, scene: &Scene, has_camera_moved: bool) -> Option<BodyPose> {
         let camera = self.find_camera(scene, has_camera_moved)?;
-        scene.find_place(&camera, self.tags[DECK_TAG_ID].as_ref()?)
+        scene.find_body_pose(&camera, self.corners[DECK_TAG_ID].as_ref()?)
     }
 }

@@ -1,14 +1,15 @@
 //! A predicted gait with which a path is compared.
 
-use lizard_contact::{Place, Travel};
+use lizard_contact::{BodyPose, Travel};
 
+use crate::least_squares::squared_norm;
 use crate::path;
 
 /// Distance of the robot's legs from its centre, mm; a turn of 1 rad counts as this distance.
 const TURN_LEVER_ARM: f64 = 60.0;
 /// Smallest movement per cycle of a robot that counts as moving, mm.
 pub(crate) const MIN_MOVEMENT: f64 = 3.0;
-/// Half of the time window whose frames determine the place at a calm phase, cycles.
+/// Half of the time window whose frames determine the pose at a calm phase, cycles.
 pub(crate) const HALF_WINDOW: f64 = 0.08;
 
 /// A predicted gait.
@@ -16,8 +17,8 @@ pub(crate) const HALF_WINDOW: f64 = 0.08;
 pub struct Gait {
     /// Duration of a cycle at the pace in the video, s.
     pub period: f64,
-    /// The places along a cycle at even intervals, relative to its start. The last place is the end of the cycle.
-    pub path: Vec<Place>,
+    /// The poses along a cycle at equal intervals, relative to its start. The last pose is the end of the cycle.
+    pub path: Vec<BodyPose>,
 }
 
 impl Gait {
@@ -28,17 +29,17 @@ impl Gait {
         movement_length(movement_in_mm(displacement)) / self.period
     }
 
-    /// Returns the place at a phase, relative to the start of cycle 0.
-    pub(crate) fn place_at(&self, phase: f64) -> Place {
+    /// Returns the pose at a phase, relative to the start of cycle 0.
+    pub(crate) fn pose_at(&self, phase: f64) -> BodyPose {
         let count = self.path.len() - 1;
         let position = phase.rem_euclid(1.0) * count as f64;
         let i = (position as usize).min(count - 1);
         let (a, b, fraction) = (self.path[i], self.path[i + 1], position - i as f64);
-        let mut place = path::interpolate(a, b, fraction);
+        let mut pose = path::interpolate(a, b, fraction);
         for _ in 0..phase.floor().max(0.0) as usize {
-            place = path::compose(self.path[count], place);
+            pose = path::compose(self.path[count], pose);
         }
-        place
+        pose
     }
 
     /// Finds the phase around which the predicted movement changes least: there, interpolation between frames is most
@@ -77,8 +78,8 @@ impl Gait {
     pub(crate) fn movement_between(&self, from: f64, to: f64) -> [f64; 3] {
         let whole_cycles = from.floor();
         movement_in_mm(
-            self.place_at(to - whole_cycles)
-                .travel_from(self.place_at(from - whole_cycles)),
+            self.pose_at(to - whole_cycles)
+                .travel_from(self.pose_at(from - whole_cycles)),
         )
     }
 }
@@ -94,9 +95,5 @@ pub(crate) fn movement_in_mm(travel: Travel) -> [f64; 3] {
 
 /// Returns the length of a movement, mm.
 pub(crate) fn movement_length(movement: [f64; 3]) -> f64 {
-    movement
-        .iter()
-        .map(|value| value * value)
-        .sum::<f64>()
-        .sqrt()
+    squared_norm(&movement).sqrt()
 }

@@ -12,12 +12,12 @@ impl Homography {
     pub(crate) fn from_points(from: &[[f64; 2]], to: &[[f64; 2]]) -> Option<Self> {
         let rows = 2 * from.len().min(to.len());
         let mut matrix = DMatrix::zeros(rows, 8);
-        let mut right_side = DVector::zeros(rows);
+        let mut right_hand_side = DVector::zeros(rows);
         // The points are scaled to at most 1, so that the columns are of similar size.
         let scale = from
             .iter()
             .flatten()
-            .fold(1e-9f64, |largest, value| largest.max(value.abs()));
+            .fold(1e-9f64, |max, value| max.max(value.abs()));
         for (i, (&[x, y], &[u, v])) in from.iter().zip(to).enumerate() {
             let [x, y] = [x / scale, y / scale];
             for (j, (row, target)) in [
@@ -34,13 +34,13 @@ impl Homography {
                 {
                     matrix[(2 * i + j, column)] = value;
                 }
-                right_side[2 * i + j] = target;
+                right_hand_side[2 * i + j] = target;
             }
         }
         let solution = if rows == 8 {
-            matrix.lu().solve(&right_side)?
+            matrix.lu().solve(&right_hand_side)?
         } else {
-            matrix.svd(true, true).solve(&right_side, 1e-12).ok()?
+            matrix.svd(true, true).solve(&right_hand_side, 1e-12).ok()?
         };
         let h = &solution;
         let map = Matrix3::new(h[0], h[1], h[2], h[3], h[4], h[5], h[6], h[7], 1.0);

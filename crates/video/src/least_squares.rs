@@ -20,7 +20,6 @@ pub(crate) struct Fit {
 
 /// Finds the parameters that minimise the residuals; `None` if a parameter has no influence or a result is not finite.
 pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Option<Fit> {
-    let squared_norm = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
     let mut parameters = start.to_vec();
     let mut current_residuals = residuals(&parameters);
     let mut sum_of_squares = squared_norm(&current_residuals);
@@ -63,6 +62,11 @@ pub(crate) fn fit(start: &[f64], residuals: impl Fn(&[f64]) -> Vec<f64>) -> Opti
         covariance,
         sum_of_squares,
     })
+}
+
+/// Returns the sum of the squared values.
+pub(crate) fn squared_norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
 }
 
 /// Computes the derivatives of the residuals with respect to the parameters, from central differences.

@@ -1,12 +1,12 @@
 //! Measures the robot's motion in a video: how far it moves in a cycle, and how accurate the result is.
 //!
 //! A camera looks down on the robot from any direction. Tags on the floor show the camera's pose, and a tag at a known
-//! height on the robot's deck shows the robot's place. [`sheet`] defines the printed sheet of tags.
+//! height on the robot's deck shows the robot's pose. [`sheet`] defines the printed sheet of tags.
 //! - [`Video::add_frame`] detects the tags in each frame (`tags.rs`).
 //! - [`Video::analyse`] finds the camera (`scene.rs`) and the robot's path (`path.rs`).
 //! - [`AnalysedVideo::find_walks`] finds the walks between the robot's rests (`walks.rs`).
 //! - [`AnalysedVideo::match_gait`] finds the gait of a walk (`gait_match.rs`).
-//! - [`AnalysedVideo::measure`] computes a walk's cycles (`cycles.rs`, `clock.rs`), their mean with its error
+//! - [`AnalysedVideo::measure`] computes a walk's cycles (`cycles.rs`, `cycle_timing.rs`), their mean with its error
 //!   (`mean.rs`), and the path within a cycle (`cycle_path.rs`).
 //!
 //! Two other measurements use the same tags: [`MeasuredSlide`] measures the friction of the pads, and [`MeasuredServo`]
@@ -22,8 +22,8 @@
 mod analysed_video;
 mod blobs;
 mod camera;
-mod clock;
 mod cycle_path;
+mod cycle_timing;
 mod cycles;
 #[cfg(feature = "decode")]
 mod decode;

@@ -1,8 +1,9 @@
 //! A servo measured in a video: the angle by which it turns for its pulses, its rate, and the small steps that it
 //! ignores.
 //!
-//! The servo gets the steps of [`crate::servo_commands`] at even intervals, but the time of the first step in the video
-//! is unknown. This time is found from the angles at which the horn rests, which must depend linearly on the commands.
+//! The servo gets the steps of [`crate::servo_commands`] at equal intervals, but the time of the first step in the
+//! video is unknown. This time is found from the angles at which the horn rests, which must depend linearly on the
+//! commands.
 
 use crate::estimate::Estimate;
 use crate::least_squares;
@@ -247,7 +248,7 @@ struct HornPath {
 
 impl HornPath {
     fn new(path: &[PathPoint]) -> Self {
-        let timed_angle = |point: &PathPoint| (point.seconds, point.place.heading.to_degrees());
+        let timed_angle = |point: &PathPoint| (point.seconds, point.pose.heading.to_degrees());
         let angles: Vec<_> = path.iter().map(timed_angle).collect();
         let mut prefix_sums = vec![0.0];
         for (i, (_, angle)) in angles.iter().enumerate() {
@@ -337,9 +338,9 @@ impl HornPath {
     ) -> Option<(f64, f64)> {
         let (first, last) = (self.angles.first()?.0, self.angles.last()?.0);
         let end = last - interval * (commands.len() as f64 - 1.0 + REST_FRACTIONS[0]);
-        let try_count =
+        let step_count =
             ((end - first + interval) / (SEARCH_STEP_FRACTION * interval)).max(0.0) as usize;
-        (0..=try_count)
+        (0..=step_count)
             .map(|i| first - interval + i as f64 * SEARCH_STEP_FRACTION * interval)
             .filter_map(|first_command_seconds| {
                 Some((

@@ -161,8 +161,8 @@ impl MeasuredSlide {
                     seconds: point.seconds,
                     tilt: up_direction.x.hypot(up_direction.y).atan2(up_direction.z),
                     downhill: [-up_direction.x, -up_direction.y],
-                    position: [point.place.forward, point.place.left],
-                    heading: point.place.heading,
+                    position: [point.pose.forward, point.pose.left],
+                    heading: point.pose.heading,
                 }
             })
             .collect();

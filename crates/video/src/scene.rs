@@ -1,22 +1,22 @@
-//! The scene: the camera's focal length and pose and the places of the strips, computed from the tags' corners.
+//! The scene: the camera's focal length and the poses of camera and strips, computed from the tags' corners.
 //!
-//! The first strip defines the coordinate axes of the floor. The place of the second strip adds three unknowns. Light
+//! The first strip defines the coordinate axes of the floor. The pose of the second strip adds three unknowns. Light
 //! and ink spread, so every black square is larger or smaller than designed by the same small length. This length is
 //! one more unknown; the distance between a strip's tags distinguishes it from the scale. From the floor tags alone, a
 //! camera that looks nearly straight down cannot distinguish its focal length from its distance. The deck tag can,
 //! because its height is known.
 
-use lizard_contact::Place;
+use lizard_contact::BodyPose;
 use nalgebra::DMatrix;
 
-use crate::camera::{Camera, Pose, pose_from_homography};
+use crate::camera::{Camera, CameraPose, camera_pose_from_homography};
 use crate::frame::Pixel;
 use crate::homography::Homography;
 use crate::least_squares::{self, Fit};
 use crate::sheet::{self, DECK_TAG_ID, FLOOR_TAG_COUNT, TAGS_PER_STRIP};
 use crate::video_error::VideoError;
 
-/// Number of parameters that all views have in common: focal length, ink spread, and the second strip's place.
+/// Number of parameters that all views have in common: focal length, ink spread, and the second strip's pose.
 pub(crate) const SHARED_PARAMETER_COUNT: usize = 5;
 /// Number of parameters of a camera's pose.
 pub(crate) const POSE_PARAMETER_COUNT: usize = 6;
@@ -39,7 +39,7 @@ pub(crate) type FloorCorners = [[Pixel; 4]; FLOOR_TAG_COUNT];
 pub(crate) struct View {
     /// The corners of the floor tags.
     pub floor_corners: FloorCorners,
-    /// The corners of the deck tag at each of its places.
+    /// The corners of the deck tag at each of its poses.
     pub deck_corners: Vec<[Pixel; 4]>,
 }
 
@@ -137,8 +137,8 @@ impl Scene {
 
     /// Finds the camera's pose from a frame's floor tags; `None` if no pose fits them, for example because a tag is
     /// partly covered.
-    pub(crate) fn find_pose(&self, floor_corners: &FloorCorners) -> Option<Pose> {
-        let start = estimate_pose(floor_corners, &self.dimensions, self.focal_length())?;
+    pub(crate) fn find_camera_pose(&self, floor_corners: &FloorCorners) -> Option<CameraPose> {
+        let start = estimate_camera_pose(floor_corners, &self.dimensions, self.focal_length())?;
         let model = |pose: &[f64]| {
             let camera = self.camera_at(pose);
             floor_residuals(&self.parameters, &camera, &self.dimensions, floor_corners)
@@ -152,51 +152,29 @@ impl Scene {
         fit.parameters.try_into().ok()
     }
 
-    /// Finds the robot's place from the corners of its deck tag; `None` if they do not determine it.
-    pub(crate) fn find_place(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<Place> {
-        let start = estimate_deck_place(camera, corners, self.dimensions.deck_height)?;
-        let model = |place: &[f64]| {
-            deck_residuals(
-                &self.parameters,
-                camera,
-                &self.dimensions,
-                place,
-                self.dimensions.deck_height,
-                corners,
-            )
+    /// Finds the robot's pose from the corners of its deck tag; `None` if they do not determine it.
+    pub(crate) fn find_body_pose(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<BodyPose> {
+        let start = estimate_deck_pose(camera, corners, self.dimensions.deck_height)?;
+        let model = |pose: &[f64]| {
+            deck_residuals(&self.parameters, camera, &self.dimensions, pose, corners)
         };
-        let [forward, left, heading]: [f64; 3] = least_squares::fit(&start, model)?
-            .parameters
-            .try_into()
-            .ok()?;
-        Some(Place {
-            forward,
-            left,
-            heading,
-        })
+        let fit = least_squares::fit(&start, model)?;
+        Some(to_body_pose(&fit.parameters))
     }
 
     /// Finds the deck tag's height, mm, from its size in the frame; `None` if its corners do not determine it.
     pub(crate) fn find_deck_height(&self, camera: &Camera, corners: &[Pixel; 4]) -> Option<f64> {
-        let [forward, left, heading] =
-            estimate_deck_place(camera, corners, self.dimensions.deck_height)?;
+        let given_height = self.dimensions.deck_height;
+        let [forward, left, heading] = estimate_deck_pose(camera, corners, given_height)?;
         let model = |parameters: &[f64]| {
-            deck_residuals(
-                &self.parameters,
-                camera,
-                &self.dimensions,
-                parameters,
-                parameters[3],
-                corners,
-            )
+            let dimensions = Dimensions {
+                deck_height: parameters[3],
+                ..self.dimensions
+            };
+            deck_residuals(&self.parameters, camera, &dimensions, parameters, corners)
         };
-        Some(
-            least_squares::fit(
-                &[forward, left, heading, self.dimensions.deck_height],
-                model,
-            )?
-            .parameters[3],
-        )
+        let fit = least_squares::fit(&[forward, left, heading, given_height], model)?;
+        Some(fit.parameters[3])
     }
 
     /// Returns the centres of the floor tags on the floor, mm.
@@ -218,12 +196,16 @@ fn strip_to_floor(shared: &[f64], print_scale: f64, id: usize, point: [f64; 2]) 
     if sheet::strip_index(id) == 0 {
         return point;
     }
-    let strip = Place {
-        forward: shared[2],
-        left: shared[3],
-        heading: shared[4],
-    };
-    strip.to_floor(point)
+    to_body_pose(&shared[2..]).to_floor(point)
+}
+
+/// Converts the parameters of a pose on the floor, which may be followed by other parameters.
+fn to_body_pose(parameters: &[f64]) -> BodyPose {
+    BodyPose {
+        forward: parameters[0],
+        left: parameters[1],
+        heading: parameters[2],
+    }
 }
 
 /// Returns the corners of a printed tag, including the ink spread, relative to its centre, in designed mm.
@@ -254,40 +236,31 @@ fn floor_residuals(
 }
 
 /// Computes the errors of the deck tag's corners, divided by their standard deviation. `parameters` starts with the
-/// tag's place.
+/// tag's pose.
 fn deck_residuals(
     shared: &[f64],
     camera: &Camera,
     dimensions: &Dimensions,
     parameters: &[f64],
-    deck_height: f64,
     corners: &[Pixel; 4],
 ) -> Vec<f64> {
-    let place = Place {
-        forward: parameters[0],
-        left: parameters[1],
-        heading: parameters[2],
-    };
+    let pose = to_body_pose(parameters);
     let points = printed_corners(shared, dimensions.print_scale, DECK_TAG_ID);
     let pairs = points.iter().zip(corners);
     pairs
         .flat_map(|(&[x, y], corner)| {
-            // The tag's upper edge faces ahead, so its left edge is on the left.
+            // The tag's upper edge faces forward, so its left edge is on the left.
             let floor_point =
-                place.to_floor([dimensions.print_scale * y, -dimensions.print_scale * x]);
-            let image = camera.project(floor_point, deck_height);
+                pose.to_floor([dimensions.print_scale * y, -dimensions.print_scale * x]);
+            let image = camera.project(floor_point, dimensions.deck_height);
             [0, 1].map(|i| (image[i] - corner[i]) / DECK_SIGMA)
         })
         .collect()
 }
 
-/// Estimates the deck tag's place from the intersections of the rays through its corners with the plane at its height;
+/// Estimates the deck tag's pose from the intersections of the rays through its corners with the plane at its height;
 /// `None` if they do not intersect.
-fn estimate_deck_place(
-    camera: &Camera,
-    corners: &[Pixel; 4],
-    deck_height: f64,
-) -> Option<[f64; 3]> {
+fn estimate_deck_pose(camera: &Camera, corners: &[Pixel; 4], deck_height: f64) -> Option<[f64; 3]> {
     // The corners of any square in that plane give the homography from the frame to the plane.
     let square = [
         [-100.0, -100.0],
@@ -308,12 +281,12 @@ fn estimate_deck_place(
 }
 
 /// Estimates the camera's pose from the first strip; `None` if the strip's tags do not determine it.
-fn estimate_pose(
+fn estimate_camera_pose(
     floor_corners: &FloorCorners,
     dimensions: &Dimensions,
     focal_length: f64,
-) -> Option<Pose> {
-    pose_from_homography(
+) -> Option<CameraPose> {
+    camera_pose_from_homography(
         &strip_homography(floor_corners, dimensions, 0)?,
         focal_length,
         dimensions.frame_size,
@@ -365,21 +338,11 @@ fn compute_residuals(
         })
         .collect();
     for (view, camera) in views.iter().zip(&cameras) {
-        all_residuals.extend(floor_residuals(
-            shared,
-            camera,
-            dimensions,
-            &view.floor_corners,
-        ));
+        let corners = &view.floor_corners;
+        all_residuals.extend(floor_residuals(shared, camera, dimensions, corners));
         for corners in view.deck_corners.iter().filter(|_| includes_deck_tags) {
-            all_residuals.extend(deck_residuals(
-                shared,
-                camera,
-                dimensions,
-                next_parameters(3),
-                dimensions.deck_height,
-                corners,
-            ));
+            let pose = next_parameters(3);
+            all_residuals.extend(deck_residuals(shared, camera, dimensions, pose, corners));
         }
     }
     all_residuals
@@ -402,20 +365,20 @@ fn fit_parameters(views: &[View], dimensions: &Dimensions, focal_length: f64) ->
         (centres[0][1] + centres[1][1]) / 2.0,
         heading,
     ];
-    let mut deck_places = Vec::new();
+    let mut deck_poses = Vec::new();
     for view in views {
-        let pose = estimate_pose(&view.floor_corners, dimensions, focal_length)?;
+        let pose = estimate_camera_pose(&view.floor_corners, dimensions, focal_length)?;
         let camera = Camera::new(focal_length, dimensions.frame_size, &pose);
         start.extend(pose);
         for corners in &view.deck_corners {
-            deck_places.extend(estimate_deck_place(
+            deck_poses.extend(estimate_deck_pose(
                 &camera,
                 corners,
                 dimensions.deck_height,
             )?);
         }
     }
-    start.extend(deck_places);
+    start.extend(deck_poses);
     least_squares::fit(&start, |parameters| {
         compute_residuals(parameters, views, dimensions, true)
     })

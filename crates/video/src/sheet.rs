@@ -10,10 +10,10 @@
 /// A point of the sheet or of a tag, mm: to the right, and up.
 pub type Point = [f64; 2];
 
-/// The number of squares along an edge of a tag: six squares of the code between two black ones.
-pub const SQUARES_PER_SIDE: usize = 8;
+/// The number of cells along an edge of a tag: six cells of the code between two black ones.
+pub const CELLS_PER_SIDE: usize = 8;
 
-/// The code of each tag, indexed by the tag's id: 36 bits, row by row from the top left square, 1 for white.
+/// The code of each tag, indexed by the tag's id: 36 bits, row by row from the top left cell, 1 for white.
 pub const CODES: [u64; 5] = [
     0xd_5d62_8584,
     0xd_97f1_8b49,
@@ -30,13 +30,13 @@ pub const TAGS_PER_STRIP: usize = 2;
 pub const FLOOR_TAG_COUNT: usize = STRIP_COUNT * TAGS_PER_STRIP;
 /// The id of the tag on the deck.
 pub const DECK_TAG_ID: usize = FLOOR_TAG_COUNT;
-/// Edge of a tag on the floor, mm.
+/// Edge length of a tag on the floor, mm.
 pub const FLOOR_TAG_EDGE: f64 = 50.0;
-/// Edge of the deck's tag, mm. The tag must fit on an Arduino UNO, which is 53 mm wide.
+/// Edge length of the deck's tag, mm. The tag must fit on an Arduino UNO, which is 53 mm wide.
 pub const DECK_TAG_EDGE: f64 = 36.0;
 /// Distance between the centres of a strip's tags, mm.
 pub const TAG_SPACING: f64 = 200.0;
-/// Length and width of a strip, mm. The white margin around its tags is wider than one of their squares.
+/// Length and width of a strip, mm. The white margin around its tags is wider than one of their cells.
 pub const STRIP_SIZE: [f64; 2] = [266.0, 66.0];
 /// Width and length of the deck's card, mm. The tag is at its lower edge; its upper edge faces the robot's head.
 pub const CARD_SIZE: [f64; 2] = [50.0, 60.0];
@@ -58,7 +58,7 @@ pub fn centre_on_strip(id: usize) -> Point {
     [end * TAG_SPACING / 2.0, 0.0]
 }
 
-/// Returns the edge of a tag, mm.
+/// Returns the edge length of a tag, mm.
 pub fn tag_edge(id: usize) -> f64 {
     if id == DECK_TAG_ID {
         DECK_TAG_EDGE
@@ -73,11 +73,11 @@ pub fn tag_corners(edge: f64) -> [Point; 4] {
     [[-half, half], [half, half], [half, -half], [-half, -half]]
 }
 
-/// True if a square of a tag is white. Row 0 is at the top, column 0 on the left.
+/// True if a cell of a tag is white. Row 0 is at the top, column 0 on the left.
 pub fn is_white(id: usize, row: usize, column: usize) -> bool {
-    let code_range = 1..SQUARES_PER_SIDE - 1;
+    let code_range = 1..CELLS_PER_SIDE - 1;
     let is_inside = code_range.contains(&row) && code_range.contains(&column);
-    let code_side = SQUARES_PER_SIDE - 2;
+    let code_side = CELLS_PER_SIDE - 2;
     is_inside
         && CODES[id] >> (code_side * code_side - 1 - ((row - 1) * code_side + column - 1)) & 1 == 1
 }
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn any_two_tags_in_any_orientation_differ_in_at_least_eleven_squares() {
+    fn any_two_tags_in_any_orientation_differ_in_at_least_eleven_cells() {
         for (a, first_code) in CODES.into_iter().enumerate() {
             assert_eq!(rotated_codes(a)[0], first_code);
             for b in 0..CODES.len() {
@@ -117,15 +117,15 @@ mod tests {
     }
 
     #[test]
-    fn every_tag_has_a_white_margin_wider_than_one_of_its_squares() {
+    fn every_tag_has_a_white_margin_wider_than_one_of_its_cells() {
         for id in 0..FLOOR_TAG_COUNT {
             let [x, y] = centre_on_strip(id).map(f64::abs);
-            let square = FLOOR_TAG_EDGE / SQUARES_PER_SIDE as f64;
-            let half = FLOOR_TAG_EDGE / 2.0 + square;
+            let cell = FLOOR_TAG_EDGE / CELLS_PER_SIDE as f64;
+            let half = FLOOR_TAG_EDGE / 2.0 + cell;
             assert!(x + half < STRIP_SIZE[0] / 2.0 && y + half < STRIP_SIZE[1] / 2.0);
         }
         const {
-            assert!(CARD_MARGIN > DECK_TAG_EDGE / SQUARES_PER_SIDE as f64);
+            assert!(CARD_MARGIN > DECK_TAG_EDGE / CELLS_PER_SIDE as f64);
             assert!(DECK_TAG_EDGE + 2.0 * CARD_MARGIN <= CARD_SIZE[0]);
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::analysed_video::{AnalysedVideo, CameraEstimate};
 use crate::frame::{Frame, Pixel};
-use crate::frame_tags::FrameTags;
+use crate::frame_tags::{FrameTags, TagCorners};
 use crate::gait::Gait;
 use crate::measured_gait::MeasuredGait;
 use crate::path::{PathPoint, unwrap_headings};
@@ -46,9 +46,6 @@ pub struct Video {
     frames_since_full_search: usize,
 }
 
-/// The corners of a frame's tags, indexed by the tags' ids.
-type TagCorners = [Option<[Pixel; 4]>; CODES.len()];
-
 impl Video {
     /// Finds the tags of a frame without adding the frame to the video. If the last frame showed all tags, only the
     /// surroundings of their last positions are searched, which takes a fraction of the time. If a tag is missing
@@ -58,7 +55,7 @@ impl Video {
         self.frames_since_full_search = (self.frames_since_full_search + 1) % FULL_SEARCH_INTERVAL;
         let last_corners = self.last_corners.iter().enumerate();
         let nearby_tags =
-            last_corners.map(|(id, corners)| tags::find_near(frame, id, corners.as_ref()?));
+            last_corners.map(|(id, corners)| tags::find_tag_near(frame, id, corners.as_ref()?));
         let tags = match self.frames_since_full_search {
             0 => None,
             _ => nearby_tags.collect::<Option<Vec<Tag>>>(),
@@ -91,17 +88,17 @@ impl Video {
             }
             Some(_) => {}
         }
-        let mut tags = [None; CODES.len()];
+        let mut corners = [None; CODES.len()];
         for tag in self.find_tags(frame) {
-            if tags[tag.id].replace(tag.corners).is_some() {
+            if corners[tag.id].replace(tag.corners).is_some() {
                 return Err(VideoError::DuplicateTag {
                     id: tag.id,
                     frame_number,
                 });
             }
         }
-        self.frames.push(FrameTags { seconds, tags });
-        Ok(tags)
+        self.frames.push(FrameTags { seconds, corners });
+        Ok(corners)
     }
 
     /// Measures a gait that the robot walks during the video.
@@ -130,16 +127,16 @@ impl Video {
         let mut path: Vec<PathPoint> = Vec::with_capacity(self.frames.len());
         let mut heights = Vec::with_capacity(self.frames.len());
         for frame in &self.frames {
-            if let Some(place) = frame.find_place(&scene, has_camera_moved) {
+            if let Some(pose) = frame.find_body_pose(&scene, has_camera_moved) {
                 frames.push(frame.clone());
                 path.push(PathPoint {
                     seconds: frame.seconds,
-                    place,
+                    pose,
                 });
             }
             if let (Some(camera), Some(corners)) = (
                 frame.find_camera(&scene, has_camera_moved),
-                frame.tags[DECK_TAG_ID],
+                frame.corners[DECK_TAG_ID],
             ) {
                 heights.extend(scene.find_deck_height(&camera, &corners));
             }
@@ -177,7 +174,7 @@ impl Video {
         let count_frames_with = |id: usize| {
             self.frames
                 .iter()
-                .filter(|frame| frame.tags[id].is_some())
+                .filter(|frame| frame.corners[id].is_some())
                 .count()
         };
         if frame_count == 0 {
@@ -206,7 +203,7 @@ impl Video {
             let visible_tags: Vec<_> = self
                 .frames
                 .iter()
-                .filter_map(|frame| frame.tags[id])
+                .filter_map(|frame| frame.corners[id])
                 .collect();
             std::array::from_fn(|corner| {
                 [0, 1].map(|i| {
@@ -227,7 +224,7 @@ impl Video {
                 .any(|distance| distance > MIN_CAMERA_SHIFT)
         };
         let shows_camera_shift = |frame: &&FrameTags| {
-            let tags = (0..FLOOR_TAG_COUNT).filter_map(|id| Some((id, frame.tags[id]?)));
+            let tags = (0..FLOOR_TAG_COUNT).filter_map(|id| Some((id, frame.corners[id]?)));
             tags.filter(|(id, tag)| is_displaced(tag, &usual_corners[*id]))
                 .count()
                 > 1
@@ -240,7 +237,7 @@ impl Video {
         let complete_views: Vec<(FloorCorners, [Pixel; 4])> = self
             .frames
             .iter()
-            .filter_map(|frame| Some((frame.floor_corners()?, frame.tags[DECK_TAG_ID]?)))
+            .filter_map(|frame| Some((frame.floor_corners()?, frame.corners[DECK_TAG_ID]?)))
             .collect();
         let evenly_spaced_indices = |count: usize| {
             let sample_count = SAMPLE_COUNT.min(count).max(1);
@@ -248,15 +245,15 @@ impl Video {
                 .map(move |i| i * count.saturating_sub(1) / sample_count.saturating_sub(1).max(1))
         };
         if !has_camera_moved {
-            let decks: Vec<_> = self
+            let deck_corners: Vec<_> = self
                 .frames
                 .iter()
-                .filter_map(|frame| frame.tags[DECK_TAG_ID])
+                .filter_map(|frame| frame.corners[DECK_TAG_ID])
                 .collect();
             return Ok(vec![View {
                 floor_corners: self.find_usual_floor_corners(),
-                deck_corners: evenly_spaced_indices(decks.len())
-                    .map(|i| decks[i])
+                deck_corners: evenly_spaced_indices(deck_corners.len())
+                    .map(|i| deck_corners[i])
                     .collect(),
             }]);
         }
@@ -282,7 +279,7 @@ impl Video {
             .collect())
     }
 
-    /// Checks that the robot stays in the area in which the floor tags give valid places.
+    /// Checks that the robot stays in the area in which the floor tags give valid poses.
     fn check_distance(&self, scene: &Scene, path: &[PathPoint]) -> Result<(), VideoError> {
         let tags = scene.floor_tag_centres();
         let centre =
@@ -294,7 +291,7 @@ impl Video {
             .fold(0.0, f64::max)
             + MAX_TAG_DISTANCE;
         for point in path {
-            let distance = distance_from_centre([point.place.forward, point.place.left]);
+            let distance = distance_from_centre([point.pose.forward, point.pose.left]);
             if distance > max_distance {
                 let seconds = point.seconds - self.frames[0].seconds;
                 return Err(VideoError::TooFarFromStrips { distance, seconds });
@@ -304,7 +301,7 @@ impl Video {
     }
 }
 
-/// Computes the mean of the middle half of the values; there must be at least one value.
+/// Computes the mean of the middle half of the values; there must be at least one.
 fn interquartile_mean(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let quarter = values.len() / 4;

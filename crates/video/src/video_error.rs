@@ -98,7 +98,7 @@ pub enum VideoError {
         /// Given height, mm.
         height: f64,
     },
-    /// The robot leaves the area in which the floor tags give valid places.
+    /// The robot leaves the area in which the floor tags give valid poses.
     #[error(
         "{seconds:.1} s after the start, the robot or horn is {distance:.0} mm from the centre of the strips, too far \
          for the tags to locate it: move the strips, or record fewer cycles"

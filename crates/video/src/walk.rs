@@ -31,11 +31,11 @@ impl Walk {
     }
 }
 
-/// The measured minus the predicted place in a frame, both relative to the start of the cycle.
+/// The measured minus the predicted pose in a frame, both relative to the start of the cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Deviation {
     /// Index of the cycle in the walk.
-    pub cycle: usize,
+    pub cycle_index: usize,
     /// Phase of the frame, 0 to 1.
     pub phase: f64,
     /// Forward and left, mm, and turn, deg.
@@ -44,10 +44,13 @@ pub(crate) struct Deviation {
 
 /// Returns the forward, left and turn components of every cycle: mm, mm, deg.
 pub(crate) fn travel_components(travels: &[Travel]) -> [Vec<f64>; 3] {
-    let components: [fn(&Travel) -> f64; 3] = [
-        |travel| travel.forward,
-        |travel| travel.left,
-        |travel| travel.turn,
-    ];
-    components.map(|component| travels.iter().map(component).collect())
+    [0, 1, 2].map(|axis| {
+        let travels = travels.iter();
+        travels.map(|travel| components(*travel)[axis]).collect()
+    })
+}
+
+/// Returns the forward, left and turn components of a movement: mm, mm, deg.
+pub(crate) fn components(travel: Travel) -> [f64; 3] {
+    [travel.forward, travel.left, travel.turn]
 }

@@ -7,7 +7,7 @@ use crate::path::PathPoint;
 
 /// Smallest duration of a rest, s.
 const MIN_REST: f64 = 0.8;
-/// Largest root-mean-square distance of a rest's places from their mean, mm. The error of a tag's place is smaller.
+/// Largest root-mean-square distance of a rest's poses from their mean, mm. The error of a tag's pose is smaller.
 const MAX_REST_DEVIATION: f64 = 0.5;
 /// Smallest number of frames of a rest.
 const MIN_FRAMES: usize = 3;
@@ -70,7 +70,7 @@ fn longest_standstill(gait: &Gait) -> f64 {
     let seconds_at = |i: usize| i as f64 * gait.period / count as f64;
     let point_at = |i: usize| PathPoint {
         seconds: seconds_at(i),
-        place: gait.place_at(i as f64 / count as f64),
+        pose: gait.pose_at(i as f64 / count as f64),
     };
     let path: Vec<PathPoint> = (0..2 * count).map(point_at).collect();
     let standstill_from = |first: usize| {
@@ -81,12 +81,12 @@ fn longest_standstill(gait: &Gait) -> f64 {
     (0..count).map(standstill_from).fold(0.0, f64::max)
 }
 
-/// True if the places scatter no more than while a robot rests.
+/// True if the poses scatter no more than while a robot rests.
 fn is_still(path: &[PathPoint]) -> bool {
     let count = path.len() as f64;
     let movements: Vec<[f64; 3]> = path
         .iter()
-        .map(|point| movement_in_mm(point.place.travel_from(path[0].place)))
+        .map(|point| movement_in_mm(point.pose.travel_from(path[0].pose)))
         .collect();
     let mean =
         [0, 1, 2].map(|axis| movements.iter().map(|movement| movement[axis]).sum::<f64>() / count);
@@ -98,9 +98,9 @@ fn is_still(path: &[PathPoint]) -> bool {
             < MAX_REST_DEVIATION
 }
 
-/// True if the robot moves away from its first place.
+/// True if the robot moves away from its first pose.
 fn moves_away(path: &[PathPoint]) -> bool {
-    let start = path[0].place;
+    let start = path[0].pose;
     path.iter()
-        .any(|point| movement_length(movement_in_mm(point.place.travel_from(start))) > MIN_MOVEMENT)
+        .any(|point| movement_length(movement_in_mm(point.pose.travel_from(start))) > MIN_MOVEMENT)
 }

@@ -19,7 +19,7 @@ pub enum Activity {
     Saving,
     /// The program has just started.
     Starting,
-    /// The robot answers a question.
+    /// The robot answers a request.
     Talking,
     /// The robot performs its routine while its contacts close and open.
     Patrolling,

@@ -6,12 +6,12 @@ use std::time::{Duration, Instant};
 use fastrand::Rng;
 use lizard_host::patrol::PATROL;
 use lizard_host::session::Session;
-use lizard_host::sim::tour;
+use lizard_host::sim::gait_choice;
 use lizard_robot::{Robot, to_command};
 use simulated_uno::{Radio, RadioLink, Uno, Wire};
 
+use super::random_commands;
 use super::record::{MS, Record, Span};
-use super::setup;
 
 /// Average number of bytes on the wire per byte that loses its stop bit.
 const BYTES_PER_GARBLED_BYTE: u16 = 300;
@@ -130,13 +130,13 @@ impl<'a> Drive<'a> {
 
     /// Returns a random line for the person to send.
     fn random_line(&mut self) -> String {
-        let gaits = tour::list_moving_gaits(self.robot);
+        let gaits = gait_choice::list_moving_gaits(self.robot);
         let gait = self.rng.choice(&gaits).unwrap_or(&"stand");
         let gait = to_command(gait);
         match self.rng.u8(..24) {
-            0 | 1 => setup::random_pose(&mut self.rng, self.robot),
+            0 | 1 => random_commands::random_pose(&mut self.rng, self.robot),
             2 | 3 => format!("speed {}", self.rng.u8(10..=100)),
-            4 => setup::random_trim(&mut self.rng),
+            4 => random_commands::random_trim(&mut self.rng),
             5 | 6 => "stand".to_owned(),
             7 => "rest".to_owned(),
             8 | 9 => PATROL.to_owned(),

@@ -10,11 +10,11 @@
 mod activity;
 mod campaign;
 mod drive;
+mod random_commands;
 pub mod record;
 mod rule_checks;
 pub mod scenario;
 mod scenario_run;
-mod setup;
 pub mod step;
 
 pub use activity::Activity;

@@ -76,7 +76,7 @@ pub struct ReceivedLine {
 impl ReceivedLine {
     /// True if the line commands the robot to move, to stop or to rest.
     fn is_motion_command(&self) -> bool {
-        let affects_motion = matches!(self.effect, Effect::Moves | Effect::Freezes | Effect::Rests);
+        let affects_motion = matches!(self.effect, Effect::Motion | Effect::Freeze | Effect::Rest);
         affects_motion && self.text != super::scenario::REFUSED_POSE
     }
 }
@@ -122,8 +122,8 @@ pub struct Record {
 }
 
 impl Record {
-    /// Finds the servos' pulses among the edges and adds them to the record.
-    pub(super) fn find_pulses(&mut self, pins: [Pin; 4]) {
+    /// Collects the servos' pulses from the edges and adds them to the record.
+    pub(super) fn collect_pulses(&mut self, pins: [Pin; 4]) {
         // Cycles after a reset within which the chip releases its pins.
         const RELEASE_CYCLES: u64 = MS / 10;
         for (servo, pin) in pins.into_iter().enumerate() {
@@ -212,13 +212,13 @@ impl Record {
     /// True if the board has found the sender's baud rate by this cycle. The board has then answered a line since the
     /// person began to drive by radio, and since the last reset that made the board forget the rate.
     #[must_use]
-    pub fn has_found_rate(&self, cycle: u64) -> bool {
+    pub fn has_found_baud_rate(&self, cycle: u64) -> bool {
         let radio_start = self.radio_spans.first().map_or(cycle, |link| link.start);
-        let forgets_rate = |start: &&ResetEvent| {
+        let forgets_baud_rate = |start: &&ResetEvent| {
             let is_reset = matches!(start.cause, ResetCause::PowerOn | ResetCause::External);
             is_reset && start.cycle < cycle
         };
-        let start = self.starts.iter().rev().find(forgets_rate);
+        let start = self.starts.iter().rev().find(forgets_baud_rate);
         let search_start = start.map_or(radio_start, |start| start.cycle.max(radio_start));
         let mut lines = self.printed_lines.iter();
         lines.any(|line| line.is_answer() && (search_start..cycle).contains(&line.cycle))

@@ -11,9 +11,9 @@ use simulated_uno::{Pin, ResetCause, State};
 
 use crate::{CYCLES_PER_US, FRAME_CYCLES};
 
+use super::random_commands::LARGE_SCALE;
 use super::record::{Exchange, MS, Record, Span};
 use super::scenario::Scenario;
-use super::setup::LARGE_SCALE;
 
 /// The LED's pin, D13.
 const LED_PIN: Pin = Pin::d(13);
@@ -136,7 +136,7 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
         let is_command = received.is_command;
         add(received.cycle, Event::LineReceived { is_command });
         let is_saved = received.text == "save" && record.is_saved(received.cycle);
-        if received.text == "save" || received.effect == Effect::Calibrates {
+        if received.text == "save" || received.effect == Effect::CalibrationChange {
             add(received.cycle, Event::CalibrationChanged { is_saved });
         }
     }
@@ -181,8 +181,8 @@ pub fn collect_events(record: &Record) -> Vec<(Time, Event<'_>)> {
         events.push((to_time(write.cycle), Event::ByteWritten));
     }
     // Some rules have time limits, which may expire between other events.
-    let tick_cycles = (0..record.end_cycle).step_by(100 * MS as usize);
-    events.extend(tick_cycles.map(|cycle| (to_time(cycle), Event::TimePasses)));
+    let check_cycles = (0..record.end_cycle).step_by(100 * MS as usize);
+    events.extend(check_cycles.map(|cycle| (to_time(cycle), Event::TimePasses)));
     events.push((to_time(record.end_cycle), Event::TimePasses));
     events.sort_by_key(|(time, _)| *time);
     events
@@ -368,19 +368,19 @@ fn check_stops_are_answered(record: &Record) -> Result<(), String> {
             .iter()
             .find(is_stop_answer)
             .map(|line| line.cycle);
-        let due_cycle_for = |link: &Span| {
+        let find_deadline = |link: &Span| {
             let start = link.start.max(*stop);
-            let due_cycle = start
-                + if record.has_found_rate(start) {
+            let deadline = start
+                + if record.has_found_baud_rate(start) {
                     ANSWER_CYCLES
                 } else {
                     RATE_SEARCH_CYCLES
                 };
-            let is_undisturbed = !record.is_disturbed(start.saturating_sub(300 * MS), due_cycle);
-            (link.end >= due_cycle && is_undisturbed).then_some(due_cycle)
+            let is_undisturbed = !record.is_disturbed(start.saturating_sub(300 * MS), deadline);
+            (link.end >= deadline && is_undisturbed).then_some(deadline)
         };
-        let due_cycle = record.radio_spans.iter().find_map(due_cycle_for);
-        if due_cycle.is_some_and(|due_cycle| answer_cycle.is_none_or(|cycle| cycle > due_cycle)) {
+        let deadline = record.radio_spans.iter().find_map(find_deadline);
+        if deadline.is_some_and(|deadline| answer_cycle.is_none_or(|cycle| cycle > deadline)) {
             return Err(format!(
                 "no answer to the stop first sent at {} ms",
                 stop / MS

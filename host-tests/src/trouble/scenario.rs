@@ -7,13 +7,13 @@ use std::fmt;
 use fastrand::Rng;
 use lizard_core::numbers::rate::BaudRate;
 use lizard_host::patrol::PATROL;
-use lizard_host::sim::tour;
+use lizard_host::sim::gait_choice;
 use lizard_robot::{Robot, to_command};
 use simulated_uno::RadioLink;
 
 use super::activity::Activity;
+use super::random_commands;
 use super::record::MS;
-use super::setup;
 use super::step::Step;
 
 /// A pose beyond every servo's travel, which is always refused.
@@ -115,11 +115,11 @@ impl<'a> Script<'a> {
     }
 
     fn random_pose(&mut self) -> String {
-        setup::random_pose(self.rng, self.robot)
+        random_commands::random_pose(self.rng, self.robot)
     }
 
     fn random_gait(&mut self) -> String {
-        let gaits = tour::list_moving_gaits(self.robot);
+        let gaits = gait_choice::list_moving_gaits(self.robot);
         let name = self.rng.choice(&gaits);
         name.map_or("stand".into(), |name| to_command(name))
     }
@@ -130,7 +130,7 @@ impl<'a> Script<'a> {
         if !is_at_power_on {
             self.wait(600);
             self.steps
-                .extend(setup::random_settings(self.rng, self.robot));
+                .extend(random_commands::random_settings(self.rng, self.robot));
             if self.rng.bool() {
                 let pose = self.random_pose();
                 self.say(pose);
@@ -195,7 +195,7 @@ impl<'a> Script<'a> {
             }
             _ => {}
         }
-        let line = setup::random_trim(self.rng);
+        let line = random_commands::random_trim(self.rng);
         self.say(line);
         self.wait(100);
         self.send("save");

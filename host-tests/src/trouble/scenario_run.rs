@@ -16,11 +16,11 @@ use super::scenario::Scenario;
 use super::step::Step;
 
 /// The longest wait for an answer, ms.
-const TIMEOUT_MS: u64 = 400;
+const ANSWER_TIMEOUT_MS: u64 = 400;
 
 /// Number of `status` lines after which [`ScenarioRun::ask_until_answered`] ends. A board with another baud rate needs
 /// up to five lines to find the sender's rate.
-const MAX_QUESTIONS: u32 = 12;
+const MAX_STATUS_REQUESTS: u32 = 12;
 
 /// The voltage of a good supply, mV.
 const GOOD_MV: f64 = 5_000.0;
@@ -35,7 +35,7 @@ const BROWN_OUT_MV: f64 = 2_725.0;
 const RECEIVED_BYTE_CYCLES: u64 = 1_389;
 
 /// Cycles for which a servo counts as having pulses after the start of its last pulse.
-const RECENT_CYCLES: u64 = 25 * CYCLES_PER_MS;
+const RECENT_PULSE_CYCLES: u64 = 25 * CYCLES_PER_MS;
 
 /// The state of a running scenario: the board, the drive by radio if there is one, and the record so far.
 struct ScenarioRun<'a> {
@@ -147,12 +147,12 @@ impl ScenarioRun<'_> {
         self.record.sent_lines.push((now, line.to_owned()));
     }
 
-    /// Sends `status` until the robot answers, at most [`MAX_QUESTIONS`] times.
+    /// Sends `status` until the robot answers, at most [`MAX_STATUS_REQUESTS`] times.
     fn ask_until_answered(&mut self) {
-        for _ in 0..MAX_QUESTIONS {
+        for _ in 0..MAX_STATUS_REQUESTS {
             let old_line_count = self.record.printed_lines.len();
             self.send("status");
-            self.run_to(self.uno.cycle() + TIMEOUT_MS * CYCLES_PER_MS);
+            self.run_to(self.uno.cycle() + ANSWER_TIMEOUT_MS * CYCLES_PER_MS);
             let new_lines = &self.record.printed_lines[old_line_count..];
             if new_lines
                 .iter()
@@ -187,14 +187,14 @@ impl ScenarioRun<'_> {
         }
     }
 
-    /// Sends a line, waits up to [`TIMEOUT_MS`] for its answer and records both. Returns the answer.
+    /// Sends a line, waits up to [`ANSWER_TIMEOUT_MS`] for its answer and records both. Returns the answer.
     fn say(&mut self, line: &str) -> Option<String> {
         let sent_cycle = self.uno.cycle();
         self.record_events();
         let old_line_count = self.record.printed_lines.len();
         self.send(line);
         let mut answer = None;
-        let end_cycle = sent_cycle + TIMEOUT_MS * CYCLES_PER_MS;
+        let end_cycle = sent_cycle + ANSWER_TIMEOUT_MS * CYCLES_PER_MS;
         while answer.is_none() && self.uno.cycle() < end_cycle && self.is_alive() {
             self.run_to(self.uno.cycle() + CYCLES_PER_MS);
             let new_lines = &self.record.printed_lines[old_line_count..];
@@ -282,7 +282,7 @@ impl ScenarioRun<'_> {
             }
         }
         if self.is_supply_weak {
-            let recent_start = self.uno.cycle().saturating_sub(RECENT_CYCLES);
+            let recent_start = self.uno.cycle().saturating_sub(RECENT_PULSE_CYCLES);
             let active_servo_count = self
                 .latest_pulse_cycles
                 .iter()
@@ -321,7 +321,7 @@ impl ScenarioRun<'_> {
                 value => line_bytes.push(value),
             }
         }
-        record.find_pulses(self.pins);
+        record.collect_pulses(self.pins);
         record
     }
 }

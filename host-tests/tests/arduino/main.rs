@@ -2,7 +2,7 @@
 //! the Arduino IDE. The examples run on the simulated UNO, and their edges must match those of the Rust crate
 //! `servo-pulses`.
 
-use lizard_host_tests::{FirmwareBench, root};
+use lizard_host_tests::{FirmwareBench, decode_text, pulse_widths, root};
 use servo_pulses::{CYCLES_PER_US, frame_cycles};
 use simulated_uno::{CYCLES_PER_MS, Edge, FREQUENCY, Fidelity, Pin, State, Uno};
 
@@ -41,13 +41,9 @@ fn record_widths_in_flood(uno: &mut Uno, pins: &[u8]) -> Vec<Vec<u64>> {
     assert_eq!(*uno.state(), State::Alive);
     let echoed_count = uno.transmitted().len();
     assert!(echoed_count > 100_000, "{echoed_count} bytes echoed");
-    let collect_widths = |pin: &u8| {
-        uno.pulses(Pin::arduino(*pin))
-            .iter()
-            .map(|pulse| pulse.width)
-            .collect()
-    };
-    pins.iter().map(collect_widths).collect()
+    pins.iter()
+        .map(|pin| pulse_widths(uno, Pin::arduino(*pin)))
+        .collect()
 }
 
 /// Returns the difference between the longest and the shortest width.
@@ -91,7 +87,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
             "not all widths are {expected_cycles} cycles: {widths:?}"
         );
     }
-    assert_eq!(uno.overruns(), 0);
+    assert_eq!(uno.overrun_count(), 0);
     let readme = std::fs::read_to_string(root().join("arduino/ServoPulses/README.md"));
     let readme = readme.expect("the README exists");
     for row in [
@@ -110,7 +106,7 @@ fn a_flood_of_serial_bytes_changes_no_width_by_a_cycle() {
 
 /// Returns the cycles per second spent in the handlers of Timer1's compare matches.
 fn handler_cycles_per_second(uno: &Uno) -> u64 {
-    let handlers = uno.interrupts().into_iter();
+    let handlers = uno.interrupt_stats().into_iter();
     let cycles = handlers
         .filter(|handler| [11, 12].contains(&handler.vector))
         .map(|handler| handler.cycles);
@@ -192,14 +188,10 @@ fn every_change_of_a_width_is_atomic_and_no_pulse_is_cut() {
 fn angles_and_widths_match_the_servo_library() {
     let mut uno = load_sketch("Ask");
     assert!(uno.run_until_line(100 * CYCLES_PER_MS));
-    let transmitted = uno.take_transmitted();
-    let printed_bytes: Vec<u8> = transmitted.iter().map(|byte| byte.byte).collect();
+    let printed_text = decode_text(&uno.take_transmitted());
     // For each of eight servos, the sketch prints the servo's index plus `attached()`, which is 1. For a ninth servo
     // and for pin 20, the sketch prints 255.
-    assert_eq!(
-        String::from_utf8_lossy(&printed_bytes),
-        "12345678255255\r\n"
-    );
+    assert_eq!(printed_text, "12345678255255\r\n");
     for (written_value, angle, width_us) in [
         (0, 0, 1000),
         (1, 1, 1005),
@@ -220,11 +212,7 @@ fn angles_and_widths_match_the_servo_library() {
         uno.run_ms(50);
         uno.take_edges();
         uno.run_ms(50);
-        let widths: Vec<u64> = uno
-            .pulses(Pin::d(2))
-            .iter()
-            .map(|pulse| pulse.width)
-            .collect();
+        let widths = pulse_widths(&uno, Pin::d(2));
         assert!(!widths.is_empty());
         assert!(
             widths

@@ -43,7 +43,7 @@ fn flood_and_check_pulses(mut next_bytes: impl FnMut(&mut Rng) -> Vec<u8>) -> Fi
     let reset_count = bench.uno.reset_events().len();
     assert_eq!(reset_count, 1, "the board was reset after power-on");
     // Waits for the bytes that are still queued in the sender and in the robot.
-    while bench.uno.bytes_unsent() > 0 {
+    while bench.uno.unsent_byte_count() > 0 {
         bench.run_ms(1000);
     }
     end_flood(&mut bench);

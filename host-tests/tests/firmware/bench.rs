@@ -73,9 +73,9 @@ fn each_frame_has_one_pulse_of_each_servo() {
     let mut frames = bench.run_for_frames(10);
     frames.extend(bench.run_for_frames(5));
     assert_eq!(frames.len(), 15);
-    let first_widths = frames[0].widths();
+    let first_widths = frames[0].expect_all_widths();
     for (n, frame) in frames.iter().enumerate() {
-        for (servo, width) in frame.widths().into_iter().enumerate() {
+        for (servo, width) in frame.expect_all_widths().into_iter().enumerate() {
             // One microsecond per frame, 200 us per servo; the loops react within 40 cycles.
             let expected = first_widths[0] + 16 * n as u64 + 3200 * servo as u64;
             let error = width.abs_diff(expected);

@@ -5,7 +5,7 @@ use lizard_host_tests::{CYCLES_PER_US, robot};
 use simulated_uno::{CYCLES_PER_MS, EepromOperation, Fidelity, PowerCut, Pulse, State};
 
 use crate::measurements::{
-    assert_within_slew_limit, assert_within_slew_limit_with, measure_widths, power_cycle,
+    assert_within_slew_limit, assert_within_slew_limit_for_scales, measure_widths, power_cycle,
     read_calibration, recorded_pulses, run_and_record_pulses, servo_slew_limit,
 };
 use crate::reference_run::{ReferenceRun, SLOT_CYCLES};
@@ -93,7 +93,7 @@ fn a_new_scale_or_direction_changes_the_pulses_within_half_a_second() {
         bench.run_ms(500);
         let mut scales = robot().servos().each_ref().map(|servo| servo.us_per_degree);
         scales[0] = scale;
-        assert_within_slew_limit_with(&recorded_pulses(&bench), scales);
+        assert_within_slew_limit_for_scales(&recorded_pulses(&bench), scales);
         let expected_width = calibrated_width(0.0, -scale.copysign(a1_us_per_degree()), 5.0);
         let reversed_width = measure_widths(&mut bench)[0];
         assert_near(reversed_width, expected_width, "in the other direction");
@@ -294,9 +294,9 @@ fn at_power_on_the_servos_wake_one_by_one_in_the_pose_of_the_last_rest() {
             assert_eq!(pulses[servo][0].width, rest_widths[servo]);
             if servo > 0 {
                 let interval = pulses[servo][0].start - pulses[servo - 1][0].start;
-                let tenth = 5 * FRAME_CYCLES + SLOT_CYCLES;
+                let expected_interval = 5 * FRAME_CYCLES + SLOT_CYCLES;
                 assert_eq!(
-                    interval, tenth,
+                    interval, expected_interval,
                     "the servos do not wake a tenth of a second apart"
                 );
             }

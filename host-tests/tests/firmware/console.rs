@@ -48,7 +48,7 @@ fn cr_and_lf_and_crlf_each_end_one_line() {
 }
 
 #[test]
-fn letter_case_and_blanks_do_not_matter() {
+fn letter_case_and_whitespace_do_not_matter() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     assert_eq!(bench.say("  StaNd\t "), "ok stand");
     // The test uses the gait with the most words in its name.

@@ -95,9 +95,9 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
         let frame_count = (bench.uno.cycle() - first_cycle(first_rise)) / FRAME_CYCLES;
         let sent_frames = group_frames(&bench.uno.edges(), pins, first_rise, frame_count);
         let (received, count) = (bench.uno.received_by_uno(), sent_frames.len());
-        let commands = core_run::play(*robot().firmware(), &received, first_rise, count);
+        let host_run = core_run::play(*robot().firmware(), &received, first_rise, count);
         let mut distinct_widths = std::collections::HashSet::new();
-        for (n, (frame, expected)) in sent_frames.iter().zip(&commands.widths).enumerate() {
+        for (n, (frame, expected)) in sent_frames.iter().zip(&host_run.widths).enumerate() {
             let widths = frame.widths.map(|width| width.unwrap_or(0));
             let expected = expected.map(u64::from);
             assert_eq!(
@@ -118,7 +118,7 @@ fn random_commands_give_the_same_widths_and_answers_on_the_avr_and_on_the_host()
         // because the frame of a report also depends on the free space in the serial buffer.
         let is_answer = |line: &&str| !line.starts_with('#');
         let to_comparable = |line: &'_ str| to_comparable_line(line, fidelity);
-        let expected = commands.text.lines().filter(is_answer).map(to_comparable);
+        let expected = host_run.text.lines().filter(is_answer).map(to_comparable);
         let expected: Vec<String> = expected.collect();
         let lines = bench.lines().iter().map(|line| line.text.as_str());
         let answers: Vec<String> = lines.filter(is_answer).map(to_comparable).collect();

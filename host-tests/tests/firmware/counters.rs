@@ -16,8 +16,8 @@ fn each_overrun_of_the_receiver_is_counted() {
         bench.uno.run_cycles(2_000);
         bench.uno.block_interrupts(8_000);
         bench.run_ms(20);
-        assert!(bench.uno.overruns() > overruns_before);
-        overruns_before = bench.uno.overruns();
+        assert!(bench.uno.overrun_count() > overruns_before);
+        overruns_before = bench.uno.overrun_count();
         bench.uno.send(b"\n");
         bench.run_ms(20);
         let lost_count = Status::read(&mut bench).number("rx_lost");
@@ -26,7 +26,7 @@ fn each_overrun_of_the_receiver_is_counted() {
 }
 
 #[test]
-fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() {
+fn a_counter_read_during_a_carry_has_its_old_or_new_value() {
     run_in_both_simulations(|fidelity| {
         let mut run = ReferenceRun::start_standing(fidelity);
         let late_address = run.variable_address("pulses::LATE_EDGES");
@@ -36,11 +36,10 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
         run.bench.run_ms(20_000);
         let start = run.run_to_next_frame();
         let (mut old_value_count, mut new_value_count) = (0, 0);
-        // The main loop reads the count about `read_lead` cycles before it writes the last part of the answer, which
-        // is `answer_delay` cycles after the line arrives. Interrupts for ticks and edges lengthen `answer_delay`,
-        // depending on their time in the frame. Therefore `answer_delay` is measured repeatedly, with the read aimed
-        // at a rising edge, until the delay no longer changes. Each attempt takes three frames, so that an answer is
-        // complete before the next line is sent.
+        // `status` is sent so that the main loop reads the count at a rising edge. It reads the count about `read_lead`
+        // cycles before the last part of the answer, which begins `answer_delay` cycles after the line arrives.
+        // Interrupts lengthen this delay depending on the phase of the frame, so it is measured until it no longer
+        // changes. Each attempt takes three frames, so that an answer is complete before the next line is sent.
         let rise_cycle = |n: u64| start + 3 * n * FRAME_CYCLES + SLOT_CYCLES;
         let (mut answer_delay, mut read_lead, mut attempt) = (150_000, 2_800, 0);
         loop {
@@ -50,8 +49,8 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
             if new_delay == answer_delay {
                 break;
             }
-            // At some times in the frame, a tick delays only some answers. Slightly earlier, a tick delays every
-            // answer or none.
+            // At some phases of the frame, a tick delays only some answers. Slightly earlier, a tick delays every
+            // answer or none, so the read is aimed earlier after four attempts.
             read_lead += 200 * u64::from(attempt > 4);
             answer_delay = new_delay;
             assert!(attempt < 40, "the answer delay does not converge");
@@ -59,7 +58,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
         // Stalls the main loop at different times around its read of the count, and delays A2's rising edge during
         // the stall.
         for round in 0..500 {
-            // Sending the answer takes most of a frame, and a note may come before it.
+            // Sending the answer takes most of a frame, and a `#` line may come before it.
             let rise = rise_cycle(attempt + round + 2);
             run.run_to(rise - read_lead - answer_delay - 15_000);
             run.bench.uno.poke(late_address, 255);
@@ -89,7 +88,7 @@ fn a_counter_that_carries_while_main_reads_it_is_read_as_its_old_or_new_value() 
         let covers_both_sides = old_value_count > 20 && new_value_count > 20;
         assert!(
             covers_both_sides,
-            "{counts:?}: the sweep misses a side of the read"
+            "{counts:?}: the stalls did not reach both sides of the read"
         );
     });
 }

@@ -11,9 +11,9 @@ use lizard_host::board::SimulatedBoard;
 
 use lizard_host_tests::{FRAME_CYCLES, FirmwareBench, load_named_robot, rng, robot};
 
-use simulated_uno::{CYCLES_PER_MS, Edge, Fidelity, Image, Pin};
+use simulated_uno::{CYCLES_PER_MS, Fidelity, Image, Pin};
 
-use crate::measurements::LED_PIN;
+use crate::measurements::{LED_PIN, led_edges};
 use crate::{first_moving_gait, for_each_in_parallel, pose_command, run_in_both_simulations};
 
 const MISSING_ROBOT_NOTE: &str = "# fault: no robot in the flash; write one";
@@ -182,9 +182,9 @@ fn build_invalid_sections() -> Vec<DamagedSection> {
 /// Powers on a board with this damage in its flash.
 fn boot_damaged_board(damaged: &DamagedSection, fidelity: Fidelity) -> FirmwareBench {
     let mut image: Image = FirmwareBench::image();
-    let space = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
+    let addresses = u32::from(START_ADDRESS)..u32::from(START_ADDRESS) + u32::from(REGION_BYTES);
     image
-        .replace(space, &damaged.section)
+        .replace(addresses, &damaged.section)
         .expect("the section fits");
     FirmwareBench(SimulatedBoard::with_image(image, fidelity, robot()))
 }
@@ -283,11 +283,7 @@ fn without_a_robot_the_led_flashes_eight_times_and_pauses() {
     run_in_both_simulations(|fidelity| {
         let bench = &mut boot_damaged_board(&build_missing_sections()[0], fidelity);
         bench.run_ms(8_000);
-        let edges = bench.uno.edges();
-        let led_edges: Vec<Edge> = edges
-            .into_iter()
-            .filter(|edge| edge.pin == LED_PIN)
-            .collect();
+        let led_edges = led_edges(bench);
         // The durations in frames, with true if the LED was on.
         let durations = led_edges.windows(2).map(|pair| {
             let frames = (pair[1].cycle - pair[0].cycle) as f64 / FRAME_CYCLES as f64;

@@ -39,7 +39,7 @@ fn a_byte_at_any_cycle_of_a_frame_moves_no_edge_and_is_not_lost() {
             assert_eq!(frame.all_widths(), Some(expected), "{frame:?}");
         }
         assert_eq!(
-            (run.late_edge_count(), run.read_word("serial::LOST")),
+            (run.late_edge_count(), run.read_word("serial::LOST_BYTES")),
             (0, 0)
         );
         let answer_count = (run.bench.lines().len() - line_count_before) as u64;

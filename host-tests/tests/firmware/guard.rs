@@ -373,7 +373,10 @@ fn the_robot_stops_on_an_unsafe_path_before_it_violates_a_limit() {
         // The robot can move again: the path back to neutral is safe.
         assert_eq!(bench.say("stand"), "ok stand");
         bench.run_ms(5000);
-        assert_eq!(bench.run_for_frames(1)[0].widths(), neutral_widths());
+        assert_eq!(
+            bench.run_for_frames(1)[0].expect_all_widths(),
+            neutral_widths()
+        );
         assert_eq!(Status::read(&mut bench).text("guard"), "clear");
     });
 }

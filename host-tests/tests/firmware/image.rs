@@ -125,7 +125,7 @@ fn no_interrupt_has_a_higher_priority_than_the_servos() {
     }
     let used_vectors: Vec<&str> = bench
         .uno
-        .interrupts()
+        .interrupt_stats()
         .iter()
         .map(|interrupt| simulated_uno::vector_name(interrupt.vector))
         .collect();

@@ -15,7 +15,7 @@ use crate::{FRAMES_PER_SECOND, Status, run_in_both_simulations};
 /// The button's pin in docs/gaits.md.
 const BUTTON_PIN: Pin = Pin::a(1);
 /// The obstacle switch's pin in docs/gaits.md.
-const NOSE_PIN: Pin = Pin::a(2);
+const OBSTACLE_PIN: Pin = Pin::a(2);
 
 /// The shortest time for which a contact must be closed to count for certain, ms: three frames.
 const DEBOUNCE_MS: u64 = 60;
@@ -30,7 +30,7 @@ fn patrol_robot() -> &'static Robot {
 }
 
 /// Builds the paper's robot with the patrol from docs/gaits.md, with button and obstacle switch at these pins.
-fn build_patrol_robot(button_pin: &str, nose_pin: &str) -> Robot {
+fn build_patrol_robot(button_pin: &str, obstacle_pin: &str) -> Robot {
     let read_file = |file: &str| fs::read_to_string(root().join(file)).expect(file);
     let page_text = read_file("docs/gaits.md");
     let blocks = page_text
@@ -39,7 +39,7 @@ fn build_patrol_robot(button_pin: &str, nose_pin: &str) -> Robot {
     let mut patrols = blocks.filter(|block| block.contains("[input.button]"));
     let patrol = patrols.next().expect("docs/gaits.md has a patrol");
     let patrol = patrol.replace("\"A1\"", &format!("\"{button_pin}\""));
-    let patrol = patrol.replace("\"A2\"", &format!("\"{nose_pin}\""));
+    let patrol = patrol.replace("\"A2\"", &format!("\"{obstacle_pin}\""));
     let text = format!("{}\n{patrol}", read_file("robots/paper.toml"));
     Robot::parse(&text).expect("the robot with the patrol is valid")
 }
@@ -49,7 +49,7 @@ fn boot_with_inputs(robot: &Robot, fidelity: Fidelity) -> FirmwareBench {
     let board = SimulatedBoard::boot(&FirmwareBench::elf_path(), fidelity, robot)
         .expect("the firmware prints its banner");
     let mut bench = FirmwareBench(board);
-    for pin in [BUTTON_PIN, NOSE_PIN] {
+    for pin in [BUTTON_PIN, OBSTACLE_PIN] {
         bench.uno.set_contact(pin, false);
     }
     bench.run_ms(1_000);
@@ -97,7 +97,7 @@ fn read_notes(bench: &mut FirmwareBench, first_line: usize) -> Vec<String> {
 fn predict_travel(frames: &[Frame]) -> Travel {
     let servos = patrol_robot().servos();
     let to_angles = |frame: &Frame| {
-        let widths = frame.widths();
+        let widths = frame.expect_all_widths();
         std::array::from_fn(|i| {
             servos[i].neutral + servos[i].sweep(widths[i] as f64 / CYCLES_PER_US)
         })
@@ -139,9 +139,9 @@ fn after_power_on_and_a_press_the_robot_patrols_without_a_computer() {
         );
         for _ in 0..2 {
             let line_count = bench.lines().len();
-            bench.uno.set_contact(NOSE_PIN, true);
+            bench.uno.set_contact(OBSTACLE_PIN, true);
             let mut frames = bench.run_for_frames(2 * FRAMES_PER_SECOND);
-            bench.uno.set_contact(NOSE_PIN, false);
+            bench.uno.set_contact(OBSTACLE_PIN, false);
             frames.extend(bench.run_for_frames(6 * FRAMES_PER_SECOND));
             let turn_travel = predict_travel(&frames);
             assert!(
@@ -212,7 +212,7 @@ fn stop_rest_reset_hang_or_weak_supply_end_the_patrol_and_no_press_restarts_it()
             event(&mut bench);
             let widths_before = measure_widths(&mut bench);
             let line_count = bench.lines().len();
-            for pin in [BUTTON_PIN, NOSE_PIN] {
+            for pin in [BUTTON_PIN, OBSTACLE_PIN] {
                 bench.uno.set_contact(pin, true);
                 let servo_pulses = run_and_record_pulses(&mut bench, 1_000);
                 bench.uno.set_contact(pin, false);
@@ -238,7 +238,7 @@ fn contacts_on_the_servos_ports_change_no_pulse() {
         let neutral = measure_widths(&mut bench);
         assert_eq!(bench.say("patrol"), "ok patrol");
         for frame in bench.run_for_frames(5 * FRAMES_PER_SECOND) {
-            assert_eq!(frame.widths(), neutral);
+            assert_eq!(frame.expect_all_widths(), neutral);
         }
         press(&mut bench, Pin::d(8), 100);
         bench.run_ms(2_000);

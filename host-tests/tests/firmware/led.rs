@@ -2,9 +2,8 @@
 
 use lizard_host::sim::frame::FRAME_CYCLES;
 use lizard_host_tests::FirmwareBench;
-use simulated_uno::Edge;
 
-use crate::measurements::LED_PIN;
+use crate::measurements::led_edges;
 use crate::run_in_both_simulations;
 
 #[test]
@@ -12,11 +11,7 @@ fn the_led_is_lit_at_power_on_and_changes_every_32_frames() {
     run_in_both_simulations(|fidelity| {
         let mut bench = FirmwareBench::power_on(fidelity);
         bench.run_ms(5000);
-        let edges = bench.uno.edges();
-        let led_edges: Vec<Edge> = edges
-            .into_iter()
-            .filter(|edge| edge.pin == LED_PIN)
-            .collect();
+        let led_edges = led_edges(&bench);
         assert!(
             led_edges[0].is_rising && led_edges[0].cycle < 3 * FRAME_CYCLES,
             "{:?}",

@@ -10,7 +10,7 @@
 use std::collections::HashMap;
 use std::thread;
 
-use lizard_host::sim::tour;
+use lizard_host::sim::gait_choice;
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench, Frame, robot};
 use lizard_robot::to_command;
 use simulated_uno::Fidelity;
@@ -19,10 +19,10 @@ mod bad_input;
 mod baud_rate;
 mod bench;
 mod blocked_interrupts;
+mod budgets;
 mod calibration;
 mod console;
 mod core_run;
-mod costs;
 mod counters;
 mod damaged_robot;
 mod every_cycle;
@@ -104,7 +104,7 @@ fn boot_to_stand(fidelity: Fidelity) -> FirmwareBench {
 /// Returns the command for the robot's first gait that moves. Every robot under test needs such a gait; otherwise most
 /// of these tests would run on a robot that only stands.
 fn first_moving_gait() -> String {
-    let moving_gaits = tour::list_moving_gaits(robot());
+    let moving_gaits = gait_choice::list_moving_gaits(robot());
     to_command(
         moving_gaits
             .first()
@@ -129,7 +129,7 @@ fn neutral_widths() -> [u64; 4] {
 /// Ends a flood of serial input and waits until the robot has answered the lines in its buffer.
 fn end_flood(bench: &mut FirmwareBench) {
     bench.uno.flood(b"");
-    // The buffer may hold 32 `?` lines, and each answer has a kilobyte.
+    // The buffer may hold 32 `?` lines, and each answer is a kilobyte long.
     bench.run_ms(5000);
     bench.uno.send(b"\n");
     bench.run_ms(200);
@@ -137,7 +137,7 @@ fn end_flood(bench: &mut FirmwareBench) {
 
 /// Returns the pulse widths of each frame, cycles.
 fn frame_widths(frames: &[Frame]) -> Vec<[u64; 4]> {
-    frames.iter().map(Frame::widths).collect()
+    frames.iter().map(Frame::expect_all_widths).collect()
 }
 
 /// The values of an answer to `status`, by key.
@@ -168,12 +168,12 @@ impl Status {
         text.parse().unwrap_or_else(|_| panic!("{key}={text}"))
     }
 
-    /// The values of some keys.
+    /// Returns the values of some keys.
     fn texts<const N: usize>(&self, keys: [&str; N]) -> [&str; N] {
         keys.map(|key| self.text(key))
     }
 
-    /// The values of some keys, as numbers.
+    /// Returns the values of some keys as numbers.
     fn numbers<const N: usize>(&self, keys: [&str; N]) -> [f64; N] {
         keys.map(|key| self.number(key))
     }

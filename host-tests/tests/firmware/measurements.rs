@@ -1,14 +1,14 @@
-//! Measurements that several tests share: servo pins, LED and console.
+//! Actions and measurements that several tests share: power, servo pins, LED and console.
 
 use lizard_host_tests::{CYCLES_PER_US, FirmwareBench};
-use simulated_uno::{CYCLES_PER_MS, Pin, Pulse};
+use simulated_uno::{CYCLES_PER_MS, Edge, Pin, Pulse};
 
 use crate::robot;
 
 /// The LED's pin, D13.
 pub const LED_PIN: Pin = Pin::d(13);
 
-/// Runs for `ms` milliseconds and returns the pulses of A1 to A4 from this time.
+/// Runs for `ms` milliseconds and returns the pulses of A1 to A4 during this time.
 pub fn run_and_record_pulses(bench: &mut FirmwareBench, ms: u64) -> [Vec<Pulse>; 4] {
     bench.uno.take_edges();
     bench.uno.run_ms(ms);
@@ -51,7 +51,7 @@ pub fn read_calibration(bench: &mut FirmwareBench) -> Vec<String> {
     let is_setting = |line: &String| {
         ["# A", "# boot ", "# deadman "]
             .iter()
-            .any(|start| line.starts_with(start))
+            .any(|prefix| line.starts_with(prefix))
     };
     lines.into_iter().filter(is_setting).collect()
 }
@@ -73,55 +73,55 @@ fn compute_slew_limit(us_per_degree: f64, slew_deg_per_s: f64) -> u64 {
 
 /// Asserts that no pulse width of a gait differs from the previous one by more than the slew limits allow.
 pub fn assert_gait_within_slew_limits(pulses: &[Vec<Pulse>; 4]) {
-    let speed_limits = robot().speed_limits();
-    for (servo, pulses) in robot().servos().iter().zip(pulses) {
-        let max_step = compute_slew_limit(
-            servo.us_per_degree,
-            speed_limits.slew.max(speed_limits.gait_slew),
-        );
-        assert!(pulses.len() > 1, "{pulses:?}");
-        for pair in pulses.windows(2) {
-            let step = pair[0].width.abs_diff(pair[1].width);
-            assert!(
-                step <= max_step,
-                "a step of {step} cycles exceeds {max_step}: {pair:?}"
-            );
-        }
-    }
+    let limits = robot().speed_limits();
+    assert_slew(pulses, servo_scales(), limits.slew.max(limits.gait_slew));
 }
 
 /// Asserts that no pulse width differs from the previous one by more than the slew limit allows.
 pub fn assert_within_slew_limit(pulses: &[Vec<Pulse>; 4]) {
-    let scales = robot().servos().each_ref().map(|servo| servo.us_per_degree);
-    assert_within_slew_limit_with(pulses, scales);
+    assert_within_slew_limit_for_scales(pulses, servo_scales());
 }
 
 /// Asserts that no pulse width of servos with these scales (us per degree) differs from the previous one by more than
 /// the slew limit allows.
-pub fn assert_within_slew_limit_with(pulses: &[Vec<Pulse>; 4], scales: [f64; 4]) {
+pub fn assert_within_slew_limit_for_scales(pulses: &[Vec<Pulse>; 4], scales: [f64; 4]) {
+    assert_slew(pulses, scales, robot().speed_limits().slew);
+}
+
+fn assert_slew(pulses: &[Vec<Pulse>; 4], scales: [f64; 4], slew_deg_per_s: f64) {
     for (servo, (pulses, scale)) in pulses.iter().zip(scales).enumerate() {
+        let max_step = compute_slew_limit(scale, slew_deg_per_s);
         assert!(pulses.len() > 1, "A{}: {pulses:?}", servo + 1);
         for pair in pulses.windows(2) {
             let step = pair[0].width.abs_diff(pair[1].width);
             assert!(
-                step <= compute_slew_limit(scale, robot().speed_limits().slew),
-                "A{}: {pair:?}",
+                step <= max_step,
+                "A{}: a step of {step} cycles exceeds {max_step}: {pair:?}",
                 servo + 1
             );
         }
     }
 }
 
+/// Returns the servos' scales, us per degree.
+fn servo_scales() -> [f64; 4] {
+    robot().servos().each_ref().map(|servo| servo.us_per_degree)
+}
+
+/// Returns the recorded edges of the LED's pin.
+pub fn led_edges(bench: &FirmwareBench) -> Vec<Edge> {
+    let edges = bench.uno.edges().into_iter();
+    edges.filter(|edge| edge.pin == LED_PIN).collect()
+}
+
 /// Runs for `seconds` seconds and returns the numbers of LED flashes between consecutive pauses.
 pub fn count_flashes(bench: &mut FirmwareBench, seconds: u64) -> Vec<usize> {
     bench.uno.take_edges();
     bench.uno.run_ms(1000 * seconds);
-    let edges = bench.uno.edges();
-    let edges: Vec<_> = edges.iter().filter(|edge| edge.pin == LED_PIN).collect();
     // In a flash the LED is on for 160 ms and off for 160 ms; in a pause it stays off for another second.
     let mut flash_counts = Vec::new();
     let mut current_count = None;
-    for pair in edges.windows(2) {
+    for pair in led_edges(bench).windows(2) {
         let ms = (pair[1].cycle - pair[0].cycle) / CYCLES_PER_MS;
         match (pair[0].is_rising, ms) {
             (true, 150..=170) => current_count = current_count.map(|n| n + 1),

@@ -4,7 +4,7 @@ use lizard_core::numbers::gaits::MAX_NAME_BYTES;
 use lizard_host::bench::measure_longest_step;
 use lizard_host::board::SimulatedBoard;
 
-use lizard_host::sim::tour;
+use lizard_host::sim::gait_choice;
 use lizard_host_tests::random_robot::{random_robot, with_many_gaits};
 use lizard_host_tests::{FirmwareBench, rng};
 use lizard_robot::{Robot, to_command};
@@ -55,7 +55,7 @@ fn no_frame_of_a_random_robot_is_late_or_wrong_under_any_flood() {
                 _ => {}
             }
             let robot_name = format!("robot {number}");
-            let gaits = tour::list_moving_gaits(&robot);
+            let gaits = gait_choice::list_moving_gaits(&robot);
             for flood in FLOODS {
                 let gait = gaits[rng.usize(..gaits.len())];
                 assert_frames_exact(&robot, gait, flood, &robot_name);

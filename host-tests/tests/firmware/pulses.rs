@@ -4,7 +4,7 @@ use lizard_host::sim::core_run;
 use lizard_host::sim::frame::{FRAME_CYCLES, Frame};
 use lizard_host_tests::{FirmwareBench, robot};
 use lizard_robot::Robot;
-use simulated_uno::{Edge, Fidelity, most_pins_high};
+use simulated_uno::{Edge, Fidelity, max_pins_high};
 
 use crate::{
     FRAMES_PER_SECOND, Status, boot_to_stand, end_flood, first_moving_gait, for_each_in_parallel,
@@ -38,7 +38,7 @@ fn assert_on_slot_grid(bench: &FirmwareBench, frames: &[Frame]) {
     }
     let edges = servo_edges(bench);
     assert_eq!(edges.len(), 8 * frames.len(), "too many or too few edges");
-    assert_eq!(most_pins_high(&edges), 1);
+    assert_eq!(max_pins_high(&edges), 1);
 }
 
 /// Computes the widths of these frames with the core on the host, which receives only the first `received_count` bytes.
@@ -51,13 +51,13 @@ pub fn compute_core_widths(
     frames: &[Frame],
 ) -> Vec<[u64; 4]> {
     let frames_before = ((frames[0].start - first_rise) / FRAME_CYCLES) as usize;
-    let commands = core_run::play(
+    let host_run = core_run::play(
         *robot.firmware(),
         &bench.uno.received_by_uno()[..received_count],
         first_rise,
         frames_before + frames.len(),
     );
-    commands.widths[frames_before..]
+    host_run.widths[frames_before..]
         .iter()
         .map(|widths| widths.map(u64::from))
         .collect()
@@ -77,7 +77,7 @@ fn every_width_matches_the_core() {
                 (bench, first_rise)
             };
             let is_away_from_ticks = |(bench, first_rise): &(FirmwareBench, u64)| {
-                core_run::find_undecided_lines(&bench.uno.received_by_uno(), *first_rise)
+                core_run::find_undetermined_lines(&bench.uno.received_by_uno(), *first_rise)
                     .next()
                     .is_none()
             };
@@ -91,7 +91,12 @@ fn every_width_matches_the_core() {
             let expected_widths =
                 compute_core_widths(robot(), &bench, first_rise, received_count, &frames);
             for (frame, expected) in frames.iter().zip(expected_widths) {
-                assert_eq!(frame.widths(), expected, "{}: {frame:?}", gait.name());
+                assert_eq!(
+                    frame.expect_all_widths(),
+                    expected,
+                    "{}: {frame:?}",
+                    gait.name()
+                );
             }
         }
     });
@@ -116,7 +121,7 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
             let expected_widths =
                 compute_core_widths(robot(), &bench, first_rise, received_count, &frames);
             for (frame, expected) in frames.iter().zip(expected_widths) {
-                assert_eq!(frame.widths(), expected, "{flood:?}: {frame:?}");
+                assert_eq!(frame.expect_all_widths(), expected, "{flood:?}: {frame:?}");
             }
             let changes = frames
                 .windows(2)
@@ -143,7 +148,11 @@ fn a_serial_line_saturated_in_both_directions_moves_no_edge() {
             end_flood(&mut bench);
             let status = Status::read(&mut bench);
             assert_eq!(status.number("late"), 0.0, "{flood:?}");
-            assert_eq!(bench.uno.overruns(), 0, "the receiver was not read in time");
+            assert_eq!(
+                bench.uno.overrun_count(),
+                0,
+                "the receiver was not read in time"
+            );
         }
     });
 }

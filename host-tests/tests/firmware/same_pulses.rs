@@ -84,7 +84,7 @@ fn fits_in_flash(name: &str) -> bool {
 
 /// Runs a robot for ten minutes and returns the digest and the number of all servo edges.
 fn run_and_digest(name: &str) -> (u64, u64) {
-    let frames = 600 * FRAMES_PER_SECOND;
+    let frame_count = 600 * FRAMES_PER_SECOND;
     let robot = load_named_robot(name);
     let mut uno = Uno::with_image(FirmwareBench::image_with(&robot), Fidelity::DataSheet);
     supplies::connect(&mut uno, &robot);
@@ -105,7 +105,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
     let mut command_count = 0;
     // The first command comes when all servos are awake.
     let mut next_frame = 50;
-    for frame in 0..frames {
+    for frame in 0..frame_count {
         let start = first_rise + frame * FRAME_CYCLES;
         if frame == next_frame {
             // The line is sent far from a tick, which comes 4 ms before A1's slot, and long before the next line, so
@@ -145,11 +145,7 @@ fn run_and_digest(name: &str) -> (u64, u64) {
 
 #[test]
 fn the_pulses_of_every_robot_match_its_record() {
-    // Recorded when waveforms first had 64 samples (commit d99bebe), which changed only widths: the number of edges is
-    // the same as with the last firmware that had each robot compiled in (commit e49c5b5). The large robot is the
-    // paper's robot scaled by 4/3, so its servos get the same pulses. The robot of grain.toml was recorded when its
-    // file was added. All were recorded again when `deadman` began to count only commands, which ends some gaits
-    // earlier.
+    // The large robot is the paper's robot scaled by 4/3, so its servos get the same pulses.
     let recorded = [
         ("grain", (0xa932_205f_0ec5_bed7, 187_804)),
         ("large", (0x3a1b_1df5_bc67_f514, 184_384)),

@@ -37,7 +37,7 @@ fn a_sender_that_waits_for_answers_loses_nothing_at_full_line_rate() {
         expect_ok_answer(&mut bench, "watch 0");
         let status = Status::read(&mut bench);
         assert_eq!(status.numbers(["rx_lost", "late"]), [0.0; 2]);
-        assert_eq!(bench.uno.overruns(), 0);
+        assert_eq!(bench.uno.overrun_count(), 0);
     });
 }
 
@@ -128,7 +128,7 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
     let mut bench = boot_to_stand(Fidelity::DataSheet);
     let (mut lost_before, mut overrun_count) = (0.0, 0);
     for round in 0..40u64 {
-        let overruns_before = bench.uno.overruns();
+        let overruns_before = bench.uno.overrun_count();
         bench.uno.send(b"watch ");
         bench.run_ms(2);
         bench.uno.send(b"01234");
@@ -138,7 +138,7 @@ fn bytes_kept_in_an_overrun_arrive_once_and_in_order() {
         let answer = bench.say("");
         let digits = answer.strip_prefix("ok watch ").expect(&answer);
         // The first byte may still arrive, depending on the time at which the main loop disables interrupts.
-        let was_lost = bench.uno.overruns() > overruns_before;
+        let was_lost = bench.uno.overrun_count() > overruns_before;
         assert_eq!(digits.len() < 5, was_lost, "{round}: {answer}");
         overrun_count += usize::from(was_lost);
         let mut sent_digits = b"01234".iter();

@@ -123,7 +123,11 @@ fn an_answer_is_the_same_wherever_main_stops_while_writing_it() {
         for delay_cycles in 0..4_500 {
             bench.send("stop");
             bench.uno.run_cycles(6_700);
-            assert!(bench.uno.run_until(1_000, 1, |uno| uno.bytes_unsent() == 0));
+            assert!(
+                bench
+                    .uno
+                    .run_until(1_000, 1, |uno| uno.unsent_byte_count() == 0)
+            );
             bench.uno.run_cycles(delay_cycles);
             bench.uno.stall_main(STOP_CYCLES);
             assert_eq!(

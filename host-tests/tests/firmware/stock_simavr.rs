@@ -39,36 +39,27 @@ fn write_eeprom(folder: &Path) {
     assert_eq!(bytes[0], 0xa5, "the first copy of the settings is invalid");
     fs::write(folder.join("eeprom.bin"), bytes).expect("the folder is writable");
     objcopy(
-        &[
-            "-I",
-            "binary",
-            "-O",
-            "ihex",
-            "--change-addresses",
-            "0x810000",
-            "eeprom.bin",
-            "eeprom.hex",
-        ],
+        "-I binary -O ihex --change-addresses 0x810000 eeprom.bin eeprom.hex",
         folder,
     );
 }
 
 /// Runs `avr-objcopy` in a folder.
-fn objcopy(arguments: &[&str], folder: &Path) {
+fn objcopy(arguments: &str, folder: &Path) {
     let status = Command::new("avr-objcopy")
-        .args(arguments)
+        .args(arguments.split(' '))
         .current_dir(folder)
         .status();
-    assert!(status.expect("avr-objcopy runs").success(), "{arguments:?}");
+    assert!(status.expect("avr-objcopy runs").success(), "{arguments}");
 }
 
 /// Runs simavr until its output is complete and returns the output. Ends simavr with SIGTERM, which makes simavr close
 /// its files.
-fn run_simavr(arguments: &[&str], folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
+fn run_simavr(arguments: &str, folder: &Path, is_complete: impl Fn(&str) -> bool) -> String {
     let output_path = folder.join("output.txt");
     let file = File::create(&output_path).expect("the folder is writable");
     let mut child = Command::new("simavr")
-        .args(arguments)
+        .args(arguments.split(' '))
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(file.try_clone().expect("the file can be shared"))
@@ -149,16 +140,7 @@ fn the_elf_file_walks_in_debians_simavr() {
         .expect("`make firmware` has built the firmware");
     // `traced.elf` is the same file with trace tags for four pins added to its own tags.
     objcopy(
-        &[
-            "-O",
-            "binary",
-            "-j",
-            ".mmcu",
-            "--set-section-flags",
-            ".mmcu=alloc",
-            "lizard.elf",
-            "mmcu.bin",
-        ],
+        "-O binary -j .mmcu --set-section-flags .mmcu=alloc lizard.elf mmcu.bin",
         folder,
     );
     let mut mmcu = fs::read(folder.join("mmcu.bin")).expect("avr-objcopy has written the section");
@@ -166,24 +148,11 @@ fn the_elf_file_walks_in_debians_simavr() {
     mmcu.splice(end..end, build_trace_tags(robot().firmware().pins()));
     fs::write(folder.join("mmcu.bin"), mmcu).expect("the folder is writable");
     objcopy(
-        &[
-            "--update-section",
-            ".mmcu=mmcu.bin",
-            "lizard.elf",
-            "traced.elf",
-        ],
+        "--update-section .mmcu=mmcu.bin lizard.elf traced.elf",
         folder,
     );
     let output_text = run_simavr(
-        &[
-            "-m",
-            "atmega328p",
-            "-f",
-            "16000000",
-            "traced.elf",
-            "-ee",
-            "eeprom.hex",
-        ],
+        "-m atmega328p -f 16000000 traced.elf -ee eeprom.hex",
         folder,
         // 30 000 bytes, about 20 for each edge, cover the three seconds before the gait and two of its cycles.
         |_| fs::metadata(folder.join("pins.vcd")).is_ok_and(|file| file.len() > 30_000),
@@ -243,7 +212,7 @@ fn the_hex_files_start_in_debians_simavr_and_report_its_low_voltage() {
     fs::write(folder.join("image.hex"), image.to_hex()).expect("the folder is writable");
     for file in ["firmware.hex", "image.hex"] {
         let output_text = run_simavr(
-            &["-m", "atmega328p", "-f", "16000000", file],
+            &format!("-m atmega328p -f 16000000 {file}"),
             folder,
             |output_text| output_text.contains("3.30 V"),
         );

@@ -25,7 +25,7 @@ fn interrupt_gait(
     let mut bench = boot_and_command(gait, fidelity);
     bench.uno.run_cycles(extra_cycles);
     bench.send(line);
-    while bench.uno.bytes_unsent() > 0 {
+    while bench.uno.unsent_byte_count() > 0 {
         bench.uno.run_cycles(100);
     }
     let arrival_cycle = bench.uno.cycle();
@@ -43,7 +43,7 @@ fn stop_freezes_the_robot_within_one_frame_in_any_phase_of_a_gait() {
                 let later_frames = frames
                     .iter()
                     .filter(|frame| frame.start > arrival_cycle + FRAME_CYCLES);
-                let sent_widths: Vec<_> = later_frames.map(Frame::widths).collect();
+                let sent_widths: Vec<_> = later_frames.map(Frame::expect_all_widths).collect();
                 assert!(sent_widths.len() >= 18);
                 assert!(
                     sent_widths.iter().all(|widths| *widths == sent_widths[0]),
@@ -146,7 +146,7 @@ fn servos_wake_one_after_another_a_tenth_of_a_second_apart() {
         for (servo, frame) in [a1, a2, a3, a4].into_iter().enumerate() {
             assert_eq!(frames[frame].widths[servo], Some(pose[servo]));
         }
-        assert_eq!(frames[99].widths(), neutral_widths());
+        assert_eq!(frames[99].expect_all_widths(), neutral_widths());
     });
 }
 

@@ -69,32 +69,32 @@ fn ten_minutes_of_commands_give_the_same_widths_and_lines_on_the_avr_and_on_the_
         let mut script = build_script(interval_ms);
         let (mut recording, mut lines) = record_script(&script, fidelity);
         let first_rise = recording.frames.first_start;
-        let undecided_lines: Vec<usize> =
-            core_run::find_undecided_lines(&recording.received_by_uno, first_rise).collect();
-        if !undecided_lines.is_empty() {
-            for &line in &undecided_lines {
+        let undetermined_lines: Vec<usize> =
+            core_run::find_undetermined_lines(&recording.received_by_uno, first_rise).collect();
+        if !undetermined_lines.is_empty() {
+            for &line in &undetermined_lines {
                 script.steps[line].ms += 1;
             }
             (recording, lines) = record_script(&script, fidelity);
-            let undecided_count =
-                core_run::find_undecided_lines(&recording.received_by_uno, first_rise).count();
-            assert_eq!(undecided_count, 0, "some lines still end at a tick");
+            let undetermined_count =
+                core_run::find_undetermined_lines(&recording.received_by_uno, first_rise).count();
+            assert_eq!(undetermined_count, 0, "some lines still end at a tick");
         }
         assert_eq!(recording.state, State::Alive);
         let log = &recording.frames;
         assert!(log.widths.len() > 29_900, "{} frames", log.widths.len());
-        let commands = core_run::play(
+        let host_run = core_run::play(
             *robot().firmware(),
             &recording.received_by_uno,
             log.first_start,
             log.widths.len(),
         );
-        for (n, (measured, command)) in log.widths.iter().zip(&commands.widths).enumerate() {
-            assert_eq!(measured, command, "{fidelity:?}, frame {n}");
+        for (n, (avr_widths, host_widths)) in log.widths.iter().zip(&host_run.widths).enumerate() {
+            assert_eq!(avr_widths, host_widths, "{fidelity:?}, frame {n}");
         }
         // Reports are not compared, because a report's frame also depends on the free space in the serial buffer.
         let is_report = |line: &str| line.starts_with("# t=");
-        let host_lines = commands.text.lines().filter(|line| !is_report(line));
+        let host_lines = host_run.text.lines().filter(|line| !is_report(line));
         let host_lines: Vec<&str> = host_lines.collect();
         let lines = lines.iter().map(String::as_str);
         let lines: Vec<&str> = lines.filter(|line| !is_report(line)).collect();

@@ -1,8 +1,8 @@
-//! Tests of each servo's numbers in the core (neutral angle, scale, travel and pin), and of the speed limit of moves.
+//! Tests that each servo's calibration and pin in the core, and the speed limit of moves, match the robot file.
 
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
-use lizard_robot::STEPS_PER_DEGREE;
+use lizard_robot::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
 use crate::truth::to_degrees;
 
@@ -39,7 +39,7 @@ fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {
                 );
                 pulse_count += 1;
             }
-            // More than half of all sweeps must have a pulse width.
+            // Most sweeps must give a representable pulse width, or the loop would check almost nothing.
             assert!(
                 pulse_count > 65_536 / 17 / 2,
                 "{name}: A{}: {pulse_count} pulses",
@@ -54,11 +54,11 @@ fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
     for NamedRobot { name, robot } in robots() {
         for (index, servo) in robot.servos().iter().enumerate() {
             let calibration = robot.firmware().calibration()[index];
-            let pulse_us = |sweep: i32| {
+            let width_us_at = |sweep: i32| {
                 servo.neutral_us + servo.us_per_degree * f64::from(sweep) / STEPS_PER_DEGREE
             };
             let is_in_range = |sweep: i32| {
-                let width_us = pulse_us(sweep);
+                let width_us = width_us_at(sweep);
                 servo.min_us - 1e-6 <= width_us && width_us <= servo.max_us + 1e-6
             };
             for (end, outward_step) in [(calibration.travel_min, -1), (calibration.travel_max, 1)] {
@@ -92,12 +92,13 @@ fn each_servos_travel_ends_at_the_last_step_in_its_pulse_range() {
 }
 
 #[test]
-fn a_move_is_exactly_as_fast_as_the_robot_file_allows() {
+fn the_speed_limit_of_a_move_is_that_of_the_robot_file_rounded_down() {
     for NamedRobot { name, robot } in robots() {
-        let max_speed = f64::from(robot.firmware().slew().per_frame) * 50.0 / STEPS_PER_DEGREE;
+        let step_speed = FRAMES_PER_SECOND / STEPS_PER_DEGREE;
+        let max_speed = f64::from(robot.firmware().slew().per_frame) * step_speed;
         let limit = robot.speed_limits().slew;
         assert!(
-            max_speed <= limit + 1e-6 && max_speed > limit - 50.0 / STEPS_PER_DEGREE,
+            max_speed <= limit + 1e-6 && max_speed > limit - step_speed,
             "{name}"
         );
     }

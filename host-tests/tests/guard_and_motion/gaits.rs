@@ -38,7 +38,7 @@ fn all_phases() -> impl Iterator<Item = u32> {
     (0..PHASE_COUNT).map(|phase| phase << 8)
 }
 
-/// Mirrors a pose: exchanges left and right, and negates every sweep.
+/// Mirrors a pose: swaps left and right, and negates every sweep.
 fn mirror(pose: Pose) -> Pose {
     Pose(OPPOSITE_SERVO.map(|servo| Sweep(-pose.0[servo].0)))
 }
@@ -236,7 +236,7 @@ fn a_path_moves_only_its_own_end_and_averages_to_its_centre() {
 }
 
 #[test]
-fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
+fn a_reversed_gait_runs_backward_and_a_gait_reversed_twice_forward() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
         for (original_name, reversed_name, sign) in [
@@ -264,7 +264,7 @@ fn a_reversed_gait_runs_backwards_and_a_gait_reversed_twice_forwards() {
 }
 
 #[test]
-fn a_mirrored_gait_matches_its_original_with_left_and_right_exchanged() {
+fn a_mirrored_gait_matches_its_original_with_left_and_right_swapped() {
     let mut pair_count = 0;
     for NamedRobot { name, robot } in robots() {
         for (original_name, mirrored_name) in [
@@ -283,8 +283,7 @@ fn a_mirrored_gait_matches_its_original_with_left_and_right_exchanged() {
             for phase in all_phases() {
                 let pose = mirror(original.pose(robot.firmware().waves(), phase));
                 // Halves round up for either sign, and gains are rounded, so a mirrored sweep may differ by a step.
-                let deviation =
-                    pose.largest_turn_to(&mirrored.pose(robot.firmware().waves(), phase));
+                let deviation = pose.max_turn_to(&mirrored.pose(robot.firmware().waves(), phase));
                 assert!(deviation <= 1, "{name}: {deviation} steps");
             }
         }
@@ -297,7 +296,7 @@ fn phase_wraparound_is_as_smooth_as_the_rest_of_the_cycle() {
     for (NamedRobot { name, robot }, float_gait, gait) in all_gaits() {
         let pose_at = |phase: u32| gait.pose(robot.firmware().waves(), phase % CYCLE);
         // The largest turn of a servo from one phase to the next. After the last phase, the next phase is 0.
-        let turn_from = |phase: u32| pose_at(phase).largest_turn_to(&pose_at(phase + (1 << 8)));
+        let turn_from = |phase: u32| pose_at(phase).max_turn_to(&pose_at(phase + (1 << 8)));
         let largest_turn = all_phases().step_by(7).map(turn_from).max();
         let largest_turn_at_wrap = all_phases()
             .skip(PHASE_COUNT as usize - 4)

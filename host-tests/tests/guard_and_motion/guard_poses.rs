@@ -3,9 +3,9 @@
 use fastrand::Rng;
 use lizard_core::guard::clearance::Clearance;
 use lizard_core::guard::hazard::Hazard;
+use lizard_core::numbers::integer_math::isqrt;
 use lizard_core::numbers::part::Side;
 use lizard_core::numbers::pose::Pose;
-use lizard_core::numbers::root::isqrt;
 use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_proof::LENGTH_BAND_STEPS;
@@ -79,14 +79,14 @@ impl Findings {
                 "{truth:?}"
             );
         }
-        let smallest_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
-        if hazard.is_none() != (smallest_distance >= 0.0) {
+        let min_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
+        if hazard.is_none() != (min_distance >= 0.0) {
             self.disagreement_count += 1;
-            self.max_disagreement_bands = self.max_disagreement_bands.max(smallest_distance.abs());
+            self.max_disagreement_bands = self.max_disagreement_bands.max(min_distance.abs());
         }
         assert!(
-            smallest_distance.abs() <= 1.0 || hazard.is_none() == (smallest_distance > 0.0),
-            "{pose:?} is {smallest_distance} bands from the nearest limit, but the guard reports {hazard:?}"
+            min_distance.abs() <= 1.0 || hazard.is_none() == (min_distance > 0.0),
+            "{pose:?} is {min_distance} bands from the nearest limit, but the guard reports {hazard:?}"
         );
         let Some(hazard_index) = hazard_index else {
             return;
@@ -310,8 +310,8 @@ fn the_smallest_margin_matches_kinematics() {
             let truth = ExactConditions::compute(robot, chassis_angles)
                 .expect("a safe pose closes all loops");
             let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
-            let error = to_sine(Clearance::measure(robot.firmware(), &pose).smallest_margin())
-                - smallest_margin;
+            let error =
+                to_sine(Clearance::measure(robot.firmware(), &pose).min_margin()) - smallest_margin;
             let largest_band = truth.bands[..10].iter().copied().fold(0.0, f64::max);
             assert!(
                 error.abs() <= largest_band,

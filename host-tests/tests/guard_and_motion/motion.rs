@@ -6,7 +6,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::pose::Pose;
 use lizard_host_tests::{NamedRobot, rng, robots};
 
-use crate::frames::{
+use crate::checked_robot::{
     CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
 };
 use crate::truth::random_safe_pose;
@@ -154,11 +154,11 @@ fn in_a_move_all_servos_turn_by_the_same_fraction_and_arrive_together() {
                 continue;
             }
             let end_pose = poses[poses.len() - 1];
-            assert!(end_pose.largest_turn_to(&goal) <= 1, "{}", named.name);
+            assert!(end_pose.max_turn_to(&goal) <= 1, "{}", named.name);
             arrived_count += 1;
-            let longest_turn = f64::from(Pose::NEUTRAL.largest_turn_to(&end_pose));
+            let longest_turn = f64::from(Pose::NEUTRAL.max_turn_to(&end_pose));
             for pose in &poses {
-                let fraction = 1.0 - f64::from(pose.largest_turn_to(&end_pose)) / longest_turn;
+                let fraction = 1.0 - f64::from(pose.max_turn_to(&end_pose)) / longest_turn;
                 for (sweep, end_sweep) in pose.0.iter().zip(&end_pose.0) {
                     let error = f64::from(sweep.0) - fraction * f64::from(end_sweep.0);
                     assert!(

@@ -9,7 +9,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
-use crate::frames::{CheckedRobot, settling_frames};
+use crate::checked_robot::{CheckedRobot, settling_frames};
 use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Number of random pairs of poses that are tried for each robot. Some robots have no unsafe path between safe poses.
@@ -94,10 +94,7 @@ fn the_last_safe_pose_is_held_and_the_hazard_is_reported_once() {
             checked_robot.run_frames(settling_frames(robot));
             // A fast move may cross a narrow unsafe region between two frames.
             let Some(hazard) = checked_robot.motion().hazard() else {
-                assert!(
-                    checked_robot.pose().largest_turn_to(&end_pose) <= 1,
-                    "{name}"
-                );
+                assert!(checked_robot.pose().max_turn_to(&end_pose) <= 1, "{name}");
                 continue;
             };
             held_count += 1;
@@ -166,8 +163,7 @@ fn violates_condition_ahead(
             let [start, end] = [&start_pose, &end_pose].map(|pose| f64::from(pose.0[servo].0));
             Sweep((start + fraction * (end - start)).round() as i16)
         }));
-        let is_ahead =
-            held_pose.largest_turn_to(&start_pose) <= pose.largest_turn_to(&start_pose) + 1;
+        let is_ahead = held_pose.max_turn_to(&start_pose) <= pose.max_turn_to(&start_pose) + 1;
         is_ahead
             && Clearance::measure(firmware, &pose)
                 .first_hazard(firmware)

@@ -76,7 +76,7 @@ pub struct ExactConditions {
     pub bands: [f64; 14],
 }
 
-/// The verdict on a pose, which is undecided within the band of a limit.
+/// The verdict on a pose, which is undetermined within the band of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Within every limit by more than the limit's band.
@@ -84,7 +84,7 @@ pub enum Verdict {
     /// Beyond a limit by more than the limit's band.
     Unsafe,
     /// Too close to a limit to decide.
-    Undecided,
+    Undetermined,
 }
 
 impl ExactConditions {
@@ -226,16 +226,16 @@ impl Verdict {
         let Ok(conditions) = ExactConditions::compute(robot, angles) else {
             return Self::Unsafe;
         };
-        let smallest_distance = conditions
+        let min_distance = conditions
             .distances_from_limits()
             .into_iter()
             .fold(f64::INFINITY, f64::min);
-        if smallest_distance > 1.0 {
+        if min_distance > 1.0 {
             Self::Safe
-        } else if smallest_distance < -1.0 {
+        } else if min_distance < -1.0 {
             Self::Unsafe
         } else {
-            Self::Undecided
+            Self::Undetermined
         }
     }
 }

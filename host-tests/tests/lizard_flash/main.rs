@@ -3,8 +3,8 @@
 //!
 //! `make flash-test` compiles the program and the boot loaders, and runs these tests.
 
-#[path = "../desk/mod.rs"]
-mod desk;
+#[path = "../connected_board/mod.rs"]
+mod connected_board;
 mod nano;
 mod robot_alone;
 #[path = "../shell/mod.rs"]
@@ -12,13 +12,13 @@ mod shell;
 
 use std::sync::LazyLock;
 
-use desk::{BOOT_LOADER_START, Desk, load_boot_loader};
+use connected_board::{BOOT_LOADER_START, ConnectedBoard, load_boot_loader};
 use lizard_core::memory::copies::REST_POSE_ADDRESS;
 use lizard_core::memory::record::{MEMORY_BYTES, RECORD_BYTES};
 use lizard_core::numbers::section::START_ADDRESS;
 use lizard_host::firmware::format_robot_label;
 use lizard_host::sim::frame::servo_pins;
-use lizard_host_tests::{avr_gcc, robot, root};
+use lizard_host_tests::{avr_gcc, decode_text, robot, root};
 use lizard_robot::Robot;
 use lizard_time_limit::TIME_LIMIT;
 use shell::Shell;
@@ -65,20 +65,20 @@ fn load_another_robot() -> (&'static str, Robot) {
     (name, Robot::load(&file).expect("the file is valid"))
 }
 
-/// Starts `lizard flash` on the desk's port.
-fn start_lizard_flash(desk: &Desk, arguments: &[&str]) -> Shell {
+/// Starts `lizard flash` on the board's port.
+fn start_lizard_flash(board: &ConnectedBoard, arguments: &[&str]) -> Shell {
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
-    let port = desk.port_path();
+    let port = board.port_path();
     let arguments = [&["flash", port.as_str()], arguments].concat();
     Shell::start(&lizard, &arguments, &[])
 }
 
 /// Checks that an upload did not change the EEPROM, except for the rest pose. The firmware itself may write the rest
 /// pose, for example if `lizard` on a slow machine resets the board several times.
-fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
+fn assert_eeprom_kept(board: &ConnectedBoard, expected: &[u8; MEMORY_BYTES]) {
     let rest_addresses =
         usize::from(REST_POSE_ADDRESS.0)..usize::from(REST_POSE_ADDRESS.0 + RECORD_BYTES);
-    let eeprom = desk.uno.eeprom();
+    let eeprom = board.uno.eeprom();
     let has_changed = |address: &usize| {
         eeprom[*address] != expected[*address] && !rest_addresses.contains(address)
     };
@@ -90,29 +90,23 @@ fn assert_eeprom_kept(desk: &Desk, expected: &[u8; MEMORY_BYTES]) {
 }
 
 /// Unplugs the board, and plugs it into a new port.
-fn replug(desk: &mut Desk) {
-    desk.port = Port::new().expect("a pseudo terminal can be opened");
-}
-
-/// Runs the board until `lizard` has exited. Returns the entire output of `lizard`.
-fn run_to_exit(desk: &mut Desk, shell: &Shell) -> String {
-    desk.run_until_exit(shell);
-    shell.last_screen()
+fn replug(board: &mut ConnectedBoard) {
+    board.port = Port::new().expect("a pseudo terminal can be opened");
 }
 
 /// Waits for a successful upload, and checks that the robot prints the firmware's banner. Returns the entire output of
 /// `lizard`.
-fn expect_success(desk: &mut Desk, shell: &Shell) -> String {
-    let screen = run_to_exit(desk, shell);
+fn expect_success(board: &mut ConnectedBoard, shell: &Shell) -> String {
+    let screen = board.run_until_exit(shell);
     assert!(screen.contains("\n# lizard "), "{screen}");
-    desk.assert_written(&firmware());
+    board.assert_flashed_with(&firmware());
     screen
 }
 
 /// Starts an upload to a board, and waits until the first pages of the new code are written.
-fn begin_upload(desk: &mut Desk) -> Shell {
-    let shell = start_lizard_flash(desk, &[]);
-    let is_in_time = desk.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
+fn begin_upload(board: &mut ConnectedBoard) -> Shell {
+    let shell = start_lizard_flash(board, &[]);
+    let is_in_time = board.run_until(|uno| uno.flash()[0x1000] != 0xff || shell.has_ended());
     let screen = shell.screen();
     let has_begun = is_in_time && !shell.has_ended();
     assert!(has_begun, "the upload did not begin:\n{screen}");
@@ -120,17 +114,17 @@ fn begin_upload(desk: &mut Desk) -> Shell {
 }
 
 /// Returns a board with the firmware, which was placed in its flash without an upload.
-fn prepare_board_with_firmware() -> Desk {
-    let mut desk = Desk::with_new_uno();
-    desk.uno.set_flash(0, &firmware());
-    desk
+fn prepare_board_with_firmware() -> ConnectedBoard {
+    let mut board = ConnectedBoard::with_new_uno();
+    board.uno.set_flash(0, &firmware());
+    board
 }
 
 #[test]
 fn a_blank_board_is_flashed_and_its_robot_reports_the_firmware() {
-    let mut desk = Desk::with_new_uno();
-    let shell = start_lizard_flash(&desk, &[]);
-    let screen = expect_success(&mut desk, &shell);
+    let mut board = ConnectedBoard::with_new_uno();
+    let shell = start_lizard_flash(&board, &[]);
+    let screen = expect_success(&mut board, &shell);
     assert!(screen.contains("the board has no program\n"), "{screen}");
     // The erased flash between code and robot is not written.
     assert!(screen.contains(" bytes written and verified, "), "{screen}");
@@ -138,15 +132,15 @@ fn a_blank_board_is_flashed_and_its_robot_reports_the_firmware() {
 
 #[test]
 fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
-    let mut desk = Desk::with_new_uno();
+    let mut board = ConnectedBoard::with_new_uno();
     let program = SENDER_IMAGE.flash();
-    desk.uno.set_flash(0, &program);
+    board.uno.set_flash(0, &program);
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
-    desk.uno.set_eeprom(&eeprom);
-    let shell = start_lizard_flash(&desk, &[]);
-    desk.wait_for_text(&shell, "written and verified");
-    assert_eeprom_kept(&desk, &eeprom);
-    let screen = expect_success(&mut desk, &shell);
+    board.uno.set_eeprom(&eeprom);
+    let shell = start_lizard_flash(&board, &[]);
+    board.wait_for_text(&shell, "written and verified");
+    assert_eeprom_kept(&board, &eeprom);
+    let screen = expect_success(&mut board, &shell);
     let board_text = format!(
         "the board has another program, of {} bytes\n",
         program.len()
@@ -156,9 +150,9 @@ fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
 
 #[test]
 fn a_board_that_has_the_image_stays_unchanged() {
-    let mut desk = prepare_board_with_firmware();
-    let shell = start_lizard_flash(&desk, &[]);
-    let screen = expect_success(&mut desk, &shell);
+    let mut board = prepare_board_with_firmware();
+    let shell = start_lizard_flash(&board, &[]);
+    let screen = expect_success(&mut board, &shell);
     let robot_text = format!("robot {} already", format_robot_label(robot().firmware()));
     assert!(screen.contains(&robot_text), "{screen}");
     assert!(screen.contains("nothing to write: all"), "{screen}");
@@ -166,11 +160,11 @@ fn a_board_that_has_the_image_stays_unchanged() {
 
 #[test]
 fn only_a_page_that_differs_is_written() {
-    let mut desk = prepare_board_with_firmware();
-    let old_byte = desk.uno.flash()[0x2005];
-    desk.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
-    let shell = start_lizard_flash(&desk, &[]);
-    let screen = expect_success(&mut desk, &shell);
+    let mut board = prepare_board_with_firmware();
+    let old_byte = board.uno.flash()[0x2005];
+    board.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
+    let shell = start_lizard_flash(&board, &[]);
+    let screen = expect_success(&mut board, &shell);
     let board_text = "the board has another build of lizard";
     assert!(screen.contains(board_text), "{screen}");
     // Two pages are written: the page that differs, and the page at address 0, where the chip starts.
@@ -180,39 +174,39 @@ fn only_a_page_that_differs_is_written() {
 
 #[test]
 fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
-    let mut desk = Desk::with_new_uno();
-    desk.uno.set_flash(0, &SENDER_IMAGE.flash());
-    let shell = begin_upload(&mut desk);
-    replug(&mut desk);
-    let screen = run_to_exit(&mut desk, &shell);
+    let mut board = ConnectedBoard::with_new_uno();
+    board.uno.set_flash(0, &SENDER_IMAGE.flash());
+    let shell = begin_upload(&mut board);
+    replug(&mut board);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(
         screen.contains("an incomplete program, which does nothing"),
         "{screen}"
     );
-    assert!(!desk.find_differences(&firmware()).is_empty());
+    assert!(!board.find_differing_addresses(&firmware()).is_empty());
 
     // After the board is plugged in again, it has power, but no program calls its boot loader.
-    desk.uno.power_cycle();
-    desk.uno.take_transmitted();
-    desk.uno.take_edges();
-    desk.uno.run_ms(3000);
-    assert!(desk.uno.transmitted().is_empty(), "the board sent bytes");
-    let edges = desk.uno.take_edges();
+    board.uno.power_cycle();
+    board.uno.take_transmitted();
+    board.uno.take_edges();
+    board.uno.run_ms(3000);
+    assert!(board.uno.transmitted().is_empty(), "the board sent bytes");
+    let edges = board.uno.take_edges();
     assert!(edges.is_empty(), "pins changed: {edges:?}");
     // These seconds were simulated faster than real time. A port requires real time, so the board gets a new port.
-    replug(&mut desk);
+    replug(&mut board);
 
-    let shell = start_lizard_flash(&desk, &[]);
-    expect_success(&mut desk, &shell);
+    let shell = start_lizard_flash(&board, &[]);
+    expect_success(&mut board, &shell);
 }
 
 #[test]
 fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_flashed() {
-    let mut desk = Desk::with_new_uno();
-    let shell = begin_upload(&mut desk);
-    desk.uno.reset();
-    let screen = expect_success(&mut desk, &shell);
+    let mut board = ConnectedBoard::with_new_uno();
+    let shell = begin_upload(&mut board);
+    board.uno.reset();
+    let screen = expect_success(&mut board, &shell);
     assert!(
         screen.contains("resetting the board for another attempt"),
         "{screen}"
@@ -221,10 +215,10 @@ fn a_board_whose_reset_button_is_pressed_during_an_upload_is_reset_again_and_fla
 
 #[test]
 fn a_byte_that_changes_after_its_write_is_rewritten() {
-    let mut desk = Desk::with_new_uno();
-    let shell = start_lizard_flash(&desk, &[]);
+    let mut board = ConnectedBoard::with_new_uno();
+    let shell = start_lizard_flash(&board, &[]);
     let mut has_changed = false;
-    let has_ended = desk.run_until(|uno| {
+    let has_ended = board.run_until(|uno| {
         // The byte changes long before it is read back.
         if !has_changed && uno.flash()[0x280] != 0xff {
             uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
@@ -232,29 +226,29 @@ fn a_byte_that_changes_after_its_write_is_rewritten() {
         }
         shell.has_ended()
     });
-    let screen = shell.last_screen();
+    let screen = shell.screen();
     assert!(
         has_ended,
         "waited {TIME_LIMIT} for the end of the upload:\n{screen}"
     );
     assert!(has_changed, "nothing was written:\n{screen}");
     assert!(screen.contains("\n# lizard "), "{screen}");
-    desk.assert_written(&firmware());
+    board.assert_flashed_with(&firmware());
 }
 
 #[test]
 fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
-    let mut desk = Desk::with_new_uno();
+    let mut board = ConnectedBoard::with_new_uno();
     // Replaces the boot loader with an endless loop: `rjmp .-2`.
-    desk.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
-    let shell = start_lizard_flash(&desk, &[]);
-    let screen = run_to_exit(&mut desk, &shell);
+    board.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
+    let shell = start_lizard_flash(&board, &[]);
+    let screen = board.run_until_exit(&shell);
     assert!(
         screen.contains("no boot loader answers. Is it a UNO or a Nano?"),
         "{screen}"
     );
     assert!(
-        desk.uno.flash()[..BOOT_LOADER_START]
+        board.uno.flash()[..BOOT_LOADER_START]
             .iter()
             .all(|&byte| byte == 0xff)
     );

@@ -4,30 +4,28 @@
 use super::*;
 
 /// Sends a line, runs the board for `ms` simulated milliseconds, and returns its output.
-fn send_line(desk: &mut Desk, line: &str, ms: u64) -> String {
-    desk.uno.take_transmitted();
-    desk.uno.send(line.as_bytes());
-    desk.uno.run_ms(ms);
-    let bytes = desk.uno.take_transmitted();
-    let bytes: Vec<u8> = bytes.iter().map(|byte| byte.byte).collect();
-    String::from_utf8_lossy(&bytes).into_owned()
+fn send_line(board: &mut ConnectedBoard, line: &str, ms: u64) -> String {
+    board.uno.take_transmitted();
+    board.uno.send(line.as_bytes());
+    board.uno.run_ms(ms);
+    decode_text(&board.uno.take_transmitted())
 }
 
 #[test]
 fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept() {
     let (name, other_robot) = load_another_robot();
-    let mut desk = prepare_board_with_firmware();
-    desk.uno.power_cycle();
-    assert!(send_line(&mut desk, "", 2500).contains("# lizard "));
-    assert!(send_line(&mut desk, "trim 1 3.5\n", 200).contains("ok"));
-    assert!(send_line(&mut desk, "save\n", 500).contains("ok"));
-    replug(&mut desk);
-    let eeprom_before = desk.uno.eeprom();
+    let mut board = prepare_board_with_firmware();
+    board.uno.power_cycle();
+    assert!(send_line(&mut board, "", 2500).contains("# lizard "));
+    assert!(send_line(&mut board, "trim 1 3.5\n", 200).contains("ok"));
+    assert!(send_line(&mut board, "save\n", 500).contains("ok"));
+    replug(&mut board);
+    let eeprom_before = board.uno.eeprom();
 
-    let shell = start_lizard_flash(&desk, &["--only-robot", "--robot", name]);
-    desk.wait_for_text(&shell, "written and verified");
-    assert_eeprom_kept(&desk, &eeprom_before);
-    let screen = run_to_exit(&mut desk, &shell);
+    let shell = start_lizard_flash(&board, &["--only-robot", "--robot", name]);
+    board.wait_for_text(&shell, "written and verified");
+    assert_eeprom_kept(&board, &eeprom_before);
+    let screen = board.run_until_exit(&shell);
     let [first_label, other_label] =
         [robot(), &other_robot].map(|robot| format_robot_label(robot.firmware()));
     assert!(
@@ -40,11 +38,11 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
         "{screen}"
     );
     let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 
     // Then the first robot is written again, with `--json`. Its trims are unchanged.
-    let shell = start_lizard_flash(&desk, &["--only-robot", "--json"]);
-    let screen = run_to_exit(&mut desk, &shell);
+    let shell = start_lizard_flash(&board, &["--only-robot", "--json"]);
+    let screen = board.run_until_exit(&shell);
     let (first_name, first_hash) = first_label
         .split_once(' ')
         .expect("the label has a name and a hash");
@@ -57,51 +55,51 @@ fn only_the_robot_is_written_to_a_board_with_the_firmware_and_its_trims_are_kept
         |line: &str| line.contains(r#""bytes_written":"#) && line.ends_with(&expected_end);
     assert!(json_line.is_some_and(is_expected), "{screen}");
     assert!(!screen.contains("\n# lizard"), "{screen}");
-    assert_eeprom_kept(&desk, &eeprom_before);
-    let answer = send_line(&mut desk, "cal\n", 500);
+    assert_eeprom_kept(&board, &eeprom_before);
+    let answer = send_line(&mut board, "cal\n", 500);
     assert!(answer.contains("3.5"), "{answer}");
 }
 
 #[test]
 fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
     let (name, other_robot) = load_another_robot();
-    let mut desk = prepare_board_with_firmware();
+    let mut board = prepare_board_with_firmware();
     let arguments = ["--only-robot", "--robot", name];
-    let shell = start_lizard_flash(&desk, &arguments);
+    let shell = start_lizard_flash(&board, &arguments);
     let section = other_robot.section();
     // Waits until the third page of the robot is written.
     let third_page = usize::from(START_ADDRESS) + 0x100;
-    let is_in_time = desk.run_until(|uno| {
+    let is_in_time = board.run_until(|uno| {
         let is_written = uno.flash()[third_page..third_page + 0x80] == section[0x100..0x180];
         is_written || shell.has_ended()
     });
     assert!(is_in_time && !shell.has_ended(), "{}", shell.screen());
-    replug(&mut desk);
-    let screen = run_to_exit(&mut desk, &shell);
+    replug(&mut board);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the port is gone"), "{screen}");
     assert!(screen.contains("an incomplete robot"), "{screen}");
 
     // After the board is plugged in again, the firmware reports the missing robot, and no servo moves.
-    desk.uno.power_cycle();
-    desk.uno.take_edges();
-    let output_text = send_line(&mut desk, "", 2500);
+    board.uno.power_cycle();
+    board.uno.take_edges();
+    let output_text = send_line(&mut board, "", 2500);
     assert!(
         output_text.contains("no robot in the flash"),
         "{output_text}"
     );
-    let output_text = send_line(&mut desk, "walk\n", 300);
+    let output_text = send_line(&mut board, "walk\n", 300);
     assert!(output_text.contains("err "), "{output_text}");
-    assert!(send_line(&mut desk, "status\n", 300).contains("fault=robot"));
-    let edges = desk.uno.take_edges();
+    assert!(send_line(&mut board, "status\n", 300).contains("fault=robot"));
+    let edges = board.uno.take_edges();
     let pins = servo_pins(&other_robot);
     assert!(
         !edges.iter().any(|edge| pins.contains(&edge.pin)),
         "{edges:?}"
     );
-    replug(&mut desk);
+    replug(&mut board);
 
-    let shell = start_lizard_flash(&desk, &arguments);
-    let screen = run_to_exit(&mut desk, &shell);
+    let shell = start_lizard_flash(&board, &arguments);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains(" without a robot\n"), "{screen}");
     assert!(
         screen.contains(&format!(
@@ -111,26 +109,26 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
         "{screen}"
     );
     let robot_end = usize::from(START_ADDRESS) + section.len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 }
 
 #[test]
 fn no_robot_is_written_to_a_board_with_another_program() {
-    let mut desk = prepare_board_with_firmware();
+    let mut board = prepare_board_with_firmware();
     // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section remains in flash.
-    desk.uno.set_flash(0, &SENDER_IMAGE.flash());
-    let flash_before = desk.uno.flash().to_vec();
-    let shell = start_lizard_flash(&desk, &["--only-robot"]);
-    let screen = run_to_exit(&mut desk, &shell);
+    board.uno.set_flash(0, &SENDER_IMAGE.flash());
+    let flash_before = board.uno.flash().to_vec();
+    let shell = start_lizard_flash(&board, &["--only-robot"]);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the board has another program"), "{screen}");
     assert!(screen.contains("Nothing was written"), "{screen}");
-    assert!(desk.uno.flash() == flash_before);
+    assert!(board.uno.flash() == flash_before);
 }
 
 #[test]
 fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
     let (name, other_robot) = load_another_robot();
-    let mut desk = prepare_board_with_firmware();
+    let mut board = prepare_board_with_firmware();
     let folder = tempfile::tempdir().expect("a temporary folder can be created");
     let hex_path = folder.path().join("robot.hex").display().to_string();
     let lizard = std::env::var("LIZARD").expect("`make flash-test` compiles the program");
@@ -144,14 +142,14 @@ fn avrdude_writes_the_robot_file_made_by_lizard_flash_image() {
         &hex_path,
     ];
     let shell = Shell::start(&lizard, &arguments, &[]);
-    run_to_exit(&mut desk, &shell);
+    board.run_until_exit(&shell);
     let write_option = format!("flash:w:{hex_path}:i");
-    let port = desk.port_path();
+    let port = board.port_path();
     let options = ["-D", "-c", "arduino", "-p", "atmega328p", "-b", "115200"];
     let arguments = [&options[..], &["-P", &port, "-U", &write_option]].concat();
     let shell = Shell::start("avrdude", &arguments, &[]);
-    let screen = run_to_exit(&mut desk, &shell);
+    let screen = board.run_until_exit(&shell);
     assert!(screen.contains("bytes of flash verified"), "{screen}");
     let robot_end = usize::from(START_ADDRESS) + other_robot.section().len();
-    assert!(desk.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
+    assert!(board.uno.flash()[..robot_end] == firmware_with(&other_robot)[..robot_end]);
 }

@@ -8,7 +8,7 @@ use lizard_core::numbers::gaits::GaitId;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::numbers::section::{Header, MapHeader, Numbers, Part, Region};
+use lizard_core::numbers::section::{Header, MapHeader, Numbers, Region, SectionPart};
 use lizard_core::numbers::units::{Scale, Sine, Sweep};
 use lizard_host_tests::{CYCLES_PER_US, rng};
 use lizard_robot::{Robot as FileRobot, STEPS_PER_DEGREE};
@@ -389,7 +389,7 @@ const MAP_SERVOS: [[usize; 2]; 4] = [[0, 1], [2, 3], [0, 3], [1, 2]];
 /// sweeps.
 fn read_maps(flash: Region<'_>) -> [Vec<[std::ops::RangeInclusive<i32>; 2]>; 4] {
     let numbers = read_numbers(flash);
-    let rows_part = numbers.parts[Part::Rows as usize];
+    let rows_part = numbers.parts[SectionPart::Rows as usize];
     let rows = flash.values::<[i8; 2]>(rows_part.address, rows_part.count);
     let mut next_row = 0;
     numbers.maps.map(
@@ -447,7 +447,7 @@ fn the_exact_guard_accepts_the_maps_conditions_in_every_certified_cell() {
         let robot = Robot::open(flash).expect("the section is valid");
         let calibration = robot.calibration();
         robots_with_maps_count +=
-            usize::from(read_numbers(flash).parts[Part::Rows as usize].count > 0);
+            usize::from(read_numbers(flash).parts[SectionPart::Rows as usize].count > 0);
         for (map_index, map) in read_maps(flash).into_iter().enumerate() {
             let servos = MAP_SERVOS[map_index];
             for [row, columns] in map {
@@ -519,7 +519,7 @@ fn a_pose_in_all_four_maps_is_certified_and_accepted_by_the_guard() {
                 assert_eq!(hazard, None, "{} {pose:?}", named.name);
             }
         }
-        let has_maps = read_numbers(flash).parts[Part::Rows as usize].count > 0;
+        let has_maps = read_numbers(flash).parts[SectionPart::Rows as usize].count > 0;
         assert_eq!(
             certified_count > 100,
             has_maps,

@@ -6,7 +6,7 @@ use std::fs;
 use lizard_host_tests::avr_gcc::{assemble, compile_to_object, link, ram_address, shrink};
 use lizard_host_tests::root;
 use lizard_linker::ROUTINES;
-use lizard_linker::frame::FIRST_REGISTERS;
+use lizard_linker::frame::LOWEST_REGISTERS;
 use simulated_uno::{Fidelity, Image, Uno};
 
 mod random_programs;
@@ -219,7 +219,7 @@ fn generate_frame_program(first_register: u8, locals_bytes: u8) -> String {
 
 #[test]
 fn shared_prologues_and_epilogues_restore_the_registers_and_the_stack_pointer() {
-    for first_register in FIRST_REGISTERS {
+    for first_register in LOWEST_REGISTERS {
         for locals_bytes in [0, 1, 5, 63, 64, 200, 255] {
             let image = assemble(&generate_frame_program(first_register, locals_bytes));
             let mut uno = Uno::with_image(image, Fidelity::DataSheet);

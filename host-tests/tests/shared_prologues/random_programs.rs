@@ -165,7 +165,7 @@ fn run_and_read_return_values(image: &Image) -> Vec<[u8; 4]> {
 /// Finds the functions of a random program that return other values after the linker has rewritten the program. Returns
 /// their numbers, and true if the linker rewrote a function. `None` if avr-gcc fails, because it runs out of registers
 /// or a branch target is too far away.
-fn find_differences(seed: u64) -> Option<(Vec<usize>, bool)> {
+fn find_differing_functions(seed: u64) -> Option<(Vec<usize>, bool)> {
     let object = compile_to_object(&generate_program(&mut Rng::with_seed(seed))).ok()?;
     let plain_image = link("", &object).ok()?;
     let (object, savings) = shrink(&object);
@@ -184,7 +184,7 @@ fn random_functions_with_stack_arguments_compute_the_same_results() {
     let take_seed = || Some(next_seed.fetch_add(1, Relaxed)).filter(|&seed| seed < seed_count);
     let run_worker = || -> Vec<_> {
         iter::from_fn(take_seed)
-            .filter_map(|seed| Some((seed, find_differences(seed)?)))
+            .filter_map(|seed| Some((seed, find_differing_functions(seed)?)))
             .collect()
     };
     let thread_count = thread::available_parallelism().map_or(1, usize::from);

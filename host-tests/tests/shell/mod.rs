@@ -64,18 +64,14 @@ impl Shell {
         }
     }
 
-    /// Returns the output so far.
+    /// Returns the output so far. If the command has ended, waits for its last output, which may still be in a pipe.
     pub fn screen(&self) -> String {
+        let is_complete = || self.readers.iter().all(JoinHandle::is_finished);
+        let is_current = !self.has_ended() || TIME_LIMIT.poll(is_complete);
         let screen = self.screen.lock().expect("no thread has panicked");
-        String::from_utf8_lossy(&screen).into_owned()
-    }
-
-    /// Returns the entire output of a command that has ended. Waits for the last output, which may still be in a pipe.
-    pub fn last_screen(&self) -> String {
-        let is_complete = TIME_LIMIT.poll(|| self.readers.iter().all(JoinHandle::is_finished));
-        let screen = self.screen();
+        let screen = String::from_utf8_lossy(&screen).into_owned();
         assert!(
-            is_complete,
+            is_current,
             "waited {TIME_LIMIT} for the remaining output after\n{screen}"
         );
         screen

@@ -139,11 +139,8 @@ impl fmt::Display for Action {
             }
             Self::Contact(pin, is_closed) => {
                 let contact = if *pin == BUTTON_PIN { "button" } else { "nose" };
-                write!(
-                    f,
-                    "the {contact} {}",
-                    if *is_closed { "closes" } else { "opens" }
-                )
+                let change = if *is_closed { "closes" } else { "opens" };
+                write!(f, "the {contact} {change}")
             }
             Self::HeldOutput(true) => f.write_str("no host reads the output"),
             Self::HeldOutput(false) => f.write_str("a host reads the output again"),

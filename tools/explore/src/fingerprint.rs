@@ -228,7 +228,7 @@ impl DebugReader {
         let rule = self
             .rules
             .iter()
-            .find(|(owner, field_name, _)| *field_name == field && hash(owner) == struct_hash);
+            .find(|(name, field_name, _)| *field_name == field && hash(name) == struct_hash);
         match rule {
             Some((_, _, Skip)) => self.skipped_depth = Some(self.enclosing_hashes.len()),
             Some((_, _, Round(round))) => {
@@ -285,30 +285,20 @@ mod tests {
     #[test]
     fn a_fingerprint_skips_counters_rounds_coarse_fields_and_includes_all_others() {
         let fingerprint = coarse_fingerprint(&MOTION);
-        assert_eq!(
-            coarse_fingerprint(&motion_with(|motion| motion.frame_count = 1_499)),
-            fingerprint
-        );
-        assert_eq!(
-            coarse_fingerprint(&motion_with(|motion| motion.servo_state.frames_awake = 5)),
-            fingerprint
-        );
-        assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.frame_count = 1_500)),
-            fingerprint
-        );
-        assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.servo_state.frames_awake = 6)),
-            fingerprint
-        );
-        assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.speed = 5)),
-            fingerprint
-        );
-        assert_ne!(
-            coarse_fingerprint(&motion_with(|motion| motion.list[2] = 4)),
-            fingerprint
-        );
+        type Change = fn(&mut Motion);
+        let changes: [(Change, bool); 6] = [
+            (|motion| motion.frame_count = 1_499, true),
+            (|motion| motion.servo_state.frames_awake = 5, true),
+            (|motion| motion.frame_count = 1_500, false),
+            (|motion| motion.servo_state.frames_awake = 6, false),
+            (|motion| motion.speed = 5, false),
+            (|motion| motion.list[2] = 4, false),
+        ];
+        for (change, is_equal) in changes {
+            let motion = motion_with(change);
+            let has_same_fingerprint = coarse_fingerprint(&motion) == fingerprint;
+            assert_eq!(has_same_fingerprint, is_equal, "{motion:?}");
+        }
         let exact_fingerprint = fingerprint_without_line_arrival(&MOTION);
         assert_ne!(
             fingerprint_without_line_arrival(&motion_with(|motion| motion.frame_count = 8)),
@@ -336,23 +326,23 @@ mod tests {
                 _ = write!(text, "{:?} {ram:?}", world.running_robot.main);
             }
         }
-        for (owner, field, _) in RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
-            assert!(has_field(&text, owner, field), "{owner}.{field}");
+        for (name, field, _) in RULES.iter().chain(LINE_ARRIVAL_FIELDS) {
+            assert!(has_field(&text, name, field), "{name}.{field}");
         }
     }
 
-    /// True if a struct `owner` in the `Debug` text has the field directly, not in a nested struct.
-    fn has_field(text: &str, owner: &str, field: &str) -> bool {
-        let field = format!(" {field}: ");
-        text.split(&format!("{owner} {{")).skip(1).any(|inside| {
+    /// True if a struct of this name in the `Debug` text has the field directly, not in a nested struct.
+    fn has_field(text: &str, struct_name: &str, field: &str) -> bool {
+        let (struct_start, field) = (format!("{struct_name} {{"), format!(" {field}: "));
+        text.split(&struct_start).skip(1).any(|inside| {
             let mut depth = 0;
             let own_text: String = inside
                 .chars()
-                .map_while(|letter| {
-                    depth -= i32::from(letter == '}');
-                    let own_letter = if depth == 0 { letter } else { ' ' };
-                    depth += i32::from(letter == '{');
-                    (depth >= 0).then_some(own_letter)
+                .map_while(|character| {
+                    depth -= i32::from(character == '}');
+                    let own_character = if depth == 0 { character } else { ' ' };
+                    depth += i32::from(character == '{');
+                    (depth >= 0).then_some(own_character)
                 })
                 .collect();
             own_text.contains(&field)

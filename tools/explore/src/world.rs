@@ -1,6 +1,6 @@
 //! A state of the search: the firmware, its board, and an observer that checks the robot against the rules.
 
-mod inside;
+mod checks;
 mod lines;
 
 use lizard_core::console::line::GARBLED_BYTE;
@@ -15,7 +15,7 @@ use lizard_core::virtual_board::{Eeprom, RunningRobot, compute_reading};
 use lizard_rules::{Event, MS, Observer, Rule, Time, Violation, led};
 
 use crate::action::Action;
-use crate::fingerprint::{self, Fingerprint};
+use crate::fingerprint::{Fingerprint, coarse_fingerprint};
 use crate::small_robot::{BUTTON_PIN, NOSE_PIN};
 
 /// The verdict of the rules.
@@ -62,7 +62,7 @@ impl World {
         memory.is_timed = true;
         let mut world = Self {
             running_robot: RunningRobot::with_memory(robot, memory, Restart::default()),
-            observer: Observer::new(inside::observer_limits(&robot)),
+            observer: Observer::new(checks::observer_limits(&robot)),
             now: 0,
             is_supply_weak: false,
             was_main_late: false,
@@ -78,18 +78,11 @@ impl World {
     /// Returns the state's fingerprint, which is the same for equal states.
     pub fn fingerprint(&self) -> u64 {
         let board = &self.running_robot.board;
-        let mut fingerprint =
-            Fingerprint(fingerprint::coarse_fingerprint(&self.running_robot.main));
-        fingerprint.add(fingerprint::coarse_fingerprint(
-            &self.observer.coarse_state(),
-        ));
+        let mut fingerprint = Fingerprint(coarse_fingerprint(&self.running_robot.main));
+        fingerprint.add(coarse_fingerprint(&self.observer.coarse_state()));
         let memory = board.memory.bytes();
-        for address in COPY_ADDRESSES
-            .map(|address| address.0)
-            .into_iter()
-            .chain([REST_POSE_ADDRESS.0])
-        {
-            let record = &memory[usize::from(address)..][..usize::from(RECORD_BYTES)];
+        for address in COPY_ADDRESSES.into_iter().chain([REST_POSE_ADDRESS]) {
+            let record = &memory[usize::from(address.0)..][..usize::from(RECORD_BYTES)];
             // The firmware never uses the content of an invalid record.
             let used_bytes = if record[0] == VALID_MARK {
                 record
@@ -100,9 +93,7 @@ impl World {
                 fingerprint.add(u64::from(*byte));
             }
         }
-        fingerprint.add(fingerprint::coarse_fingerprint(
-            &board.ram.peek_restart(None),
-        ));
+        fingerprint.add(coarse_fingerprint(&board.ram.peek_restart(None)));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
         let reading = board.converter.true_reading();
         let flags = [
@@ -122,13 +113,8 @@ impl World {
             self.was_main_late,
             self.checked_answer_count > 0,
         ];
-        fingerprint.add(
-            flags
-                .iter()
-                .fold(u64::from(reading.reference), |bits, flag| {
-                    bits << 1 | u64::from(*flag)
-                }),
-        );
+        let append = |bits: u64, flag: bool| bits << 1 | u64::from(flag);
+        fingerprint.add(flags.into_iter().fold(reading.reference.into(), append));
         fingerprint.0
     }
 
@@ -204,7 +190,7 @@ impl World {
             Action::Reset(cause) => self.reset(cause),
             Action::PowerLoss(torn_byte) => {
                 self.running_robot.lose_power(torn_byte);
-                self.note_restart(Cause::Power);
+                self.record_restart(Cause::Power);
             }
             Action::Contact(pin, is_closed) => self.set_contact(pin, is_closed)?,
             Action::HeldOutput(is_held) => self.running_robot.board.transmitter.is_held = is_held,
@@ -228,11 +214,11 @@ impl World {
 
     fn reset(&mut self, cause: Cause) {
         self.running_robot.reset(cause);
-        self.note_restart(cause);
+        self.record_restart(cause);
     }
 
     /// Records a restart of the program, which loses the remaining output.
-    fn note_restart(&mut self, cause: Cause) {
+    fn record_restart(&mut self, cause: Cause) {
         self.running_robot.board.transmitter.text.clear();
         self.unanswered_line = None;
         self.checked_answer_count = 0;

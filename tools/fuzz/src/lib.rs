@@ -7,14 +7,14 @@
 //! [`check_console`] and [`check_memory`] each check one input. `make fuzz` calls them with inputs that LLVM's
 //! libFuzzer generates. `make test` calls them with millions of random bytes and lines.
 
-mod board;
+mod observed_board;
 
-pub use board::Board;
+pub use observed_board::ObservedBoard;
 
 use std::sync::LazyLock;
 
 use lizard_core::memory::copies::{COPY_ADDRESSES, REST_POSE_ADDRESS};
-use lizard_core::memory::record::{Address, CONTENT_BYTES, Progress};
+use lizard_core::memory::record::{CONTENT_BYTES, Progress, RecordAddress};
 use lizard_core::memory::settings::Settings;
 use lizard_core::virtual_board::Eeprom;
 use lizard_robot::Robot;
@@ -37,7 +37,7 @@ pub fn robot() -> &'static Robot {
 /// # Panics
 /// If the robot violates a rule.
 pub fn check_console(data: &[u8]) {
-    let mut board = Board::power_on(robot(), Eeprom::blank());
+    let mut board = ObservedBoard::power_on(robot(), Eeprom::blank());
     for chunk in data.chunks(8) {
         for byte in chunk {
             board.send_byte(*byte);
@@ -70,7 +70,7 @@ pub fn check_memory(data: &[u8]) {
         memory.bytes_mut()[usize::from(address)] = patch[2];
     }
     let memory_before = memory.clone();
-    let mut board = Board::power_on(robot, memory);
+    let mut board = ObservedBoard::power_on(robot, memory);
     // After 3.5 s, the `boot` action has started, too.
     for _ in 0..175 {
         board.run_frame();
@@ -91,7 +91,7 @@ pub fn check_memory(data: &[u8]) {
 }
 
 /// Writes a record as the core does.
-fn write_record(address: Address, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
+fn write_record(address: RecordAddress, content: &[u8; CONTENT_BYTES], memory: &mut Eeprom) {
     let mut writing = address.start_write();
     while writing.advance(content, memory) == Progress::InProgress {}
 }

@@ -18,8 +18,8 @@ const isSkip = (opcode) => (opcode & 0xfc08) === 0xfc00;
 
 /**
  * Returns the loop that ends with the jump at `pc`: its flag register's address, the flag's bit, the flag's value
- * while the loop continues, and the cycles of an iteration. Returns null for a loop of another form;
- * the caller must check that the register is a flag register.
+ * while the loop continues, and the cycles of an iteration. Returns null if the loop has another form; the caller must
+ * check that the register is a flag register.
  */
 function findFlagLoop(progMem, pc) {
   const [first, second, third] = [progMem[pc - 3], progMem[pc - 2], progMem[pc - 1]];
@@ -50,8 +50,8 @@ export function skipBusyWaits(uno) {
     // A pending interrupt is served before the next iteration.
     if (cpu.nextInterrupt >= 0 && data[SREG] & SREG_I) return;
     const nextCycle = Math.min(cpu.nextClockEvent?.cycles ?? Infinity, uno.endCycle);
-    const iterations = Math.floor((nextCycle - 1 - cpu.cycles) / loop.iterationCycles);
-    if (iterations > 0) cpu.cycles += iterations * loop.iterationCycles;
+    const iterationCount = Math.floor((nextCycle - 1 - cpu.cycles) / loop.iterationCycles);
+    if (iterationCount > 0) cpu.cycles += iterationCount * loop.iterationCycles;
   };
   const jumpOpcodes = new Set([2, 3, 4].map(encodeRjmpBack));
   uno.overrideInstructions(execute, (opcode) => jumpOpcodes.has(opcode));

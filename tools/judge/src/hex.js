@@ -1,6 +1,6 @@
 /** Loads the text of an Intel HEX file into the Uint8Array `flash`. Throws an error that names the faulty line. */
 export function loadHex(text, flash) {
-  let base = 0;
+  let baseAddress = 0;
   let hasEnded = false;
   text.split(/\r?\n/).forEach((line, index) => {
     if (line === '' || hasEnded) return;
@@ -9,7 +9,7 @@ export function loadHex(text, flash) {
     const bytes = Uint8Array.from(line.slice(1).match(/../g), (pair) => parseInt(pair, 16));
     if (bytes.reduce((sum, byte) => (sum + byte) & 0xff, 0) !== 0) throw makeError('has a wrong checksum');
     if (bytes.length !== bytes[0] + 5) throw makeError('has a wrong length');
-    const address = base + (bytes[1] << 8) + bytes[2];
+    const address = baseAddress + (bytes[1] << 8) + bytes[2];
     const data = bytes.subarray(4, -1);
     switch (bytes[3]) {
       case 0:
@@ -20,10 +20,10 @@ export function loadHex(text, flash) {
         hasEnded = true;
         break;
       case 2:
-        base = ((data[0] << 8) + data[1]) << 4;
+        baseAddress = ((data[0] << 8) + data[1]) << 4;
         break;
       case 4:
-        base = ((data[0] << 8) + data[1]) * 0x10000;
+        baseAddress = ((data[0] << 8) + data[1]) * 0x10000;
         break;
       case 3:
       case 5:

@@ -5,12 +5,12 @@
 /** Returns the cycle at which a running timer sets its next flag or wraps. */
 function computeNextFlagCycle(timer) {
   const { tcnt, TOP, lastCycle, divider } = timer;
-  let ticks = TOP + 1 - tcnt;
+  let counts = TOP + 1 - tcnt;
   for (const compare of [timer.ocrA, timer.ocrB]) {
-    if (compare > tcnt && compare - tcnt < ticks) ticks = compare - tcnt;
+    if (compare > tcnt && compare - tcnt < counts) counts = compare - tcnt;
   }
   // A counter is beyond its TOP if TOP was lowered; avr8js wraps the counter at the next count.
-  return lastCycle + Math.max(ticks, 1) * divider;
+  return lastCycle + Math.max(counts, 1) * divider;
 }
 
 /** Updates the timers of an Uno only when a flag is due. */

@@ -93,10 +93,10 @@ export class Uno {
   }
 
   /** Schedules the arrival of serial bytes, each `{ cycle, byte }`. */
-  deliver(bytes) {
+  scheduleBytes(bytes) {
     const { cpu, usart } = this;
     const queue = bytes.values();
-    const deliverNext = () => {
+    const scheduleNext = () => {
       const { value } = queue.next();
       if (value === undefined) return;
       const arrive = () => {
@@ -105,10 +105,10 @@ export class Uno {
           throw new Error(`at cycle ${cpu.cycles} a byte arrives before the last one was read, but avr8js cannot simulate an overrun`);
         }
         usart.writeByte(value.byte, true);
-        deliverNext();
+        scheduleNext();
       };
       cpu.addClockEvent(arrive, value.cycle - cpu.cycles);
     };
-    deliverNext();
+    scheduleNext();
   }
 }

@@ -64,11 +64,11 @@ const PROGRAM = `
 
 /** Runs the program while 40 bytes arrive; returns the board's state and the number of executed backward jumps. */
 function runWithBytes(extraCorrections) {
-  let jumps = 0;
+  let jumpCount = 0;
   const countJumps = (board) => {
     const execute = board.executors.at(-1);
     board.executors[board.executors.length - 1] = (cpu) => {
-      jumps += 1;
+      jumpCount += 1;
       execute(cpu);
     };
   };
@@ -76,15 +76,15 @@ function runWithBytes(extraCorrections) {
   const board = makeUno([...corrections, addReceiveBuffer, ...extras], PROGRAM);
   for (let byte = 1; byte <= 40; byte++) board.cpu.addClockEvent(() => board.receive(byte), 3989 * byte);
   board.run(170_001);
-  return { ...readState(board), jumps };
+  return { ...readState(board), jumpCount };
 }
 
 test('skipping the iterations of flag loops does not change the state at a given cycle', () => {
-  const [slow, { jumps, ...fast }] = [runWithBytes([]), runWithBytes([skipBusyWaits])];
-  delete slow.jumps;
+  const [slow, { jumpCount, ...fast }] = [runWithBytes([]), runWithBytes([skipBusyWaits])];
+  delete slow.jumpCount;
   for (let byte = 1; byte <= 40; byte++) assert.ok(slow.data.slice(0x100).includes(byte), `byte ${byte} must be read`);
   assert.deepEqual(fast, slow);
-  assert.ok(jumps > 100 && jumps < 3000, `${jumps} backward jumps; without skipping, there are tens of thousands`);
+  assert.ok(jumpCount > 100 && jumpCount < 3000, `${jumpCount} backward jumps; without skipping, there are tens of thousands`);
 });
 
 test('a loop that waits for a count is not skipped', () => {

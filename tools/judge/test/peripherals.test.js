@@ -93,6 +93,6 @@ test('a watchdog reset ends the run', () => {
 
 test('a byte that would overrun the last one ends the run', () => {
   const board = makeUno(corrections, 'ldi r16, 0x10\n sts 0xc1, r16\n again: rjmp again');
-  board.deliver([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
+  board.scheduleBytes([{ cycle: 100, byte: 1 }, { cycle: 1500, byte: 2 }]);
   assert.throws(() => board.run(2000), /^Error: at cycle 150\d a byte arrives before the last one was read/);
 });

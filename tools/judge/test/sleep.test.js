@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
-import { delayInterruptAfterEnable } from '../src/corrections/interrupt-waits.js';
+import { delayInterruptAfterEnable } from '../src/corrections/interrupt-after-enable.js';
 import { simulateSleep } from '../src/corrections/sleep.js';
 import { makeFixedMessage, makeUno, runProgram } from './program.js';
 

@@ -32,6 +32,8 @@
 //!   other use of r28 and r29. LLVM computes every address on the stack from r28, so each access to an argument has a
 //!   distance beyond the space.
 
+use std::ops::Range;
+
 use object::build::elf::SymbolId;
 use object::elf;
 
@@ -48,9 +50,9 @@ const CALL_SAVED: [u8; 18] = [
 ];
 
 /// The lowest register that each pair of routines saves and restores, with all call-saved registers above it.
-pub const FIRST_REGISTERS: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
+pub const LOWEST_REGISTERS: [u8; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
-/// The pair of routines for one of [`FIRST_REGISTERS`].
+/// The pair of routines for one of [`LOWEST_REGISTERS`].
 #[derive(Debug, Clone, Copy)]
 pub struct Routines {
     /// The routine `__frame_save_K`.
@@ -62,19 +64,19 @@ pub struct Routines {
 /// The stack frame of a function that has one of the known forms.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// The index in [`FIRST_REGISTERS`] of the routines that save all registers of the function.
+    /// The index in [`LOWEST_REGISTERS`] of the routines that save all registers of the function.
     pub routine_index: usize,
     /// The size of the local variables on the stack, bytes.
     pub local_bytes: u8,
     /// The size of the prologue, bytes.
     pub prologue_size: u64,
-    /// The offset and the size of each epilogue.
-    pub epilogues: Vec<(u64, u64)>,
+    /// The offsets of each epilogue's bytes.
+    pub epilogues: Vec<Range<u64>>,
 }
 
 impl Frame {
-    /// Recognizes the frame of a function. Returns `None` if the frame has none of the known forms.
-    pub fn recognize(code: &Code) -> Option<Self> {
+    /// Recognises the frame of a function. Returns `None` if the frame has none of the known forms.
+    pub fn recognise(code: &Code) -> Option<Self> {
         let registers: Vec<u8> = code.words_from(0).map_while(pushed_register).collect();
         let is_ascending = registers.windows(2).all(|pair| pair[0] < pair[1]);
         let lowest = *registers.first()?;
@@ -92,21 +94,23 @@ impl Frame {
             return None;
         }
         let lowest = lowest.min(18);
-        let routine_index = FIRST_REGISTERS.iter().rposition(|first| *first <= lowest)?;
-        let is_saved_by_routine = |register: &u8| *register >= FIRST_REGISTERS[routine_index];
+        let routine_index = LOWEST_REGISTERS
+            .iter()
+            .rposition(|register| *register <= lowest)?;
+        let is_saved_by_routine = |register: &u8| *register >= LOWEST_REGISTERS[routine_index];
         let has_same_registers = registers.iter().eq(CALL_SAVED
             .iter()
             .filter(|register| is_saved_by_routine(register)));
         let body_start = registers.len() + reserving_count;
-        let mut epilogue_spans = Vec::new();
+        let mut epilogues = Vec::new();
         let mut index = body_start;
         // Every use of the stack pointer, every push, pop and return must belong to an epilogue.
         while let Some(instruction) = code.instructions.get(index) {
             if let Some(length) =
                 find_epilogue_length(code, index, &registers, local_bytes, has_locals)
             {
-                let start = code.instruction_offset(index);
-                epilogue_spans.push((start, code.instruction_offset(index + length) - start));
+                let end = code.instruction_offset(index + length);
+                epilogues.push(code.instruction_offset(index)..end);
                 index += length;
             } else if accesses_stack_pointer(instruction.first_word)
                 || popped_register(instruction.first_word).is_some()
@@ -124,7 +128,7 @@ impl Frame {
             routine_index,
             local_bytes,
             prologue_size: code.instruction_offset(body_start),
-            epilogues: epilogue_spans,
+            epilogues,
         })
     }
 
@@ -142,8 +146,9 @@ impl Frame {
             }],
         };
         let mut edits = vec![replacement(0, self.prologue_size, CALL, routines.save)];
-        for (offset, size) in &self.epilogues {
-            edits.push(replacement(*offset, *size, JMP, routines.restore));
+        for epilogue in &self.epilogues {
+            let size = epilogue.end - epilogue.start;
+            edits.push(replacement(epilogue.start, size, JMP, routines.restore));
         }
         edits
     }

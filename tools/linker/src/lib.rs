@@ -1,4 +1,4 @@
-//! Editor of object files that makes programs smaller before linking, with optimizations that avr-gcc has and LLVM does
+//! Editor of object files that makes programs smaller before linking, with optimisations that avr-gcc has and LLVM does
 //! not have.
 //!
 //! Flash is the scarcest resource of this firmware. A sixth of the program was copies of the same few instructions:

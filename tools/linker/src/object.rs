@@ -8,7 +8,7 @@ use object::elf;
 use crate::branch;
 use crate::code::Code;
 use crate::edit::{Edit, Edits, Reference};
-use crate::frame::{FIRST_REGISTERS, Frame, Routines};
+use crate::frame::{Frame, LOWEST_REGISTERS, Routines};
 
 mod layout;
 
@@ -86,7 +86,7 @@ impl Object<'_> {
         }
     }
 
-    /// Adds symbols for the routines of [`FIRST_REGISTERS`], which are in another object.
+    /// Adds symbols for the routines of [`LOWEST_REGISTERS`], which are in another object.
     fn add_routine_symbols(&mut self) -> Vec<Routines> {
         let mut add_undefined = |name: String| {
             let symbol = self.0.symbols.add();
@@ -94,11 +94,11 @@ impl Object<'_> {
             symbol.set_st_info(elf::STB_GLOBAL, elf::STT_NOTYPE);
             symbol.id()
         };
-        let mut add_routines = |first: &u8| Routines {
-            save: add_undefined(format!("__frame_save_{first}")),
-            restore: add_undefined(format!("__frame_restore_{first}")),
+        let mut add_routines = |register: &u8| Routines {
+            save: add_undefined(format!("__frame_save_{register}")),
+            restore: add_undefined(format!("__frame_restore_{register}")),
         };
-        FIRST_REGISTERS.iter().map(&mut add_routines).collect()
+        LOWEST_REGISTERS.iter().map(&mut add_routines).collect()
     }
 
     /// Returns the sections that contain exactly one function, in the order of the file. Leaves out interrupt handlers
@@ -160,14 +160,9 @@ impl Object<'_> {
         (symbol.section == Some(section)).then(|| symbol.st_value.wrapping_add_signed(addend))
     }
 
-    /// Returns the offsets of all reference targets in a section.
-    fn find_targets(&self, section: SectionId) -> Vec<u64> {
-        self.find_targets_without(section, None)
-    }
-
     /// Returns the offsets of all reference targets in a section. References in the code that `edit` replaces do not
     /// count.
-    fn find_targets_without(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
+    fn find_targets(&self, section: SectionId, edit: Option<&Edit>) -> Vec<u64> {
         let mut targets = Vec::new();
         for table in &self.0.sections {
             let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
@@ -185,9 +180,9 @@ impl Object<'_> {
     /// Returns the edits of each function that becomes shorter with shared prologues and epilogues.
     fn find_frame_edits(&self, routines: &[Routines]) -> Vec<(SectionId, Edits)> {
         let build_edits = |section| {
-            let frame = Frame::recognize(&self.decode(section)?)?;
+            let frame = Frame::recognise(&self.decode(section)?)?;
             let edits = frame.build_edits(routines[frame.routine_index]);
-            let edits = Edits::new(edits, &self.find_targets(section))?;
+            let edits = Edits::new(edits, &self.find_targets(section, None))?;
             (edits.saved_bytes() > 0).then_some((section, edits))
         };
         self.find_function_sections()
@@ -202,11 +197,11 @@ impl Object<'_> {
         F: Fn(&Code, &[u64], &dyn Fn(&Reference) -> Option<u64>) -> Option<Edit>,
     {
         let code = self.decode(section)?;
-        let targets = self.find_targets(section);
+        let targets = self.find_targets(section, None);
         let find_offset =
             |reference: &Reference| self.symbol_offset(section, reference.symbol, reference.addend);
         let edit = find_edit(&code, &targets, &find_offset)?;
-        let targets = self.find_targets_without(section, Some(&edit));
+        let targets = self.find_targets(section, Some(&edit));
         Edits::new(vec![edit], &targets)
     }
 

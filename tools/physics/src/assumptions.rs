@@ -156,9 +156,9 @@ pub fn format_table(
             .into_iter()
             .zip(GAITS)
             .map(|(displacement, gait)| {
-                let level = surface::get_level_displacement(walk_results, gait);
+                let level = surface::find_level_displacement(walk_results, gait);
                 let component = match level.0[0].abs() > level.0[2].abs() {
-                    true => Component::Ahead,
+                    true => Component::Forward,
                     false => Component::Turn,
                 };
                 100.0 * (component.value(displacement) / component.value(level) - 1.0)
@@ -176,10 +176,8 @@ pub fn format_table(
         .map(|(description, displacements)| (description, compute_percent_changes(displacements)))
         .collect();
     rows.sort_by(|(_, a), (_, b)| find_largest_change(b).total_cmp(&find_largest_change(a)));
-    let width = rows
-        .iter()
-        .map(|(description, _)| description.len())
-        .fold(0, usize::max);
+    let widths = rows.iter().map(|(description, _)| description.len());
+    let width = widths.max().unwrap_or(0);
     let mut text = format!("{:width$}", "");
     for gait in GAITS {
         _ = write!(text, "{gait:>10}");

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use lizard_robot::{Drive, DriveKind, Ground, Robot, Stance};
+use lizard_robot::{Drive, DriveKind, GroundContact, Robot, Stance};
 
 /// The parts that drive the legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,8 +72,8 @@ impl Case {
     };
 
     /// Returns the contact model's input: the robot on pads with equal friction in all directions, as in MuJoCo.
-    pub fn ground(self, robot: &Robot) -> Ground {
-        Ground {
+    pub fn ground(self, robot: &Robot) -> GroundContact {
+        GroundContact {
             stance: Stance {
                 stiffness: self.feet.leaf_stiffness(robot),
                 twist: self.feet.excess_length_mm(),

@@ -2,7 +2,7 @@
 //! edge when the measurement ends. Therefore both the front and the hind feet climb the edge during the measurement.
 
 use lizard_parts::Block;
-use lizard_robot::{Place, Robot, Travel};
+use lizard_robot::{BodyPose, Robot, Travel};
 
 use crate::results::Displacement;
 use crate::surface::list_gait_purposes;
@@ -22,9 +22,9 @@ pub struct Crossing {
     pub cycle_count: u32,
     /// True if all feet pass the edge before the robot has turned by `MAX_TURN_DEG`.
     pub is_crossed: bool,
-    /// The direction across the edge in which the floor rises, deg counter-clockwise from ahead.
+    /// The direction across the edge in which the floor rises, deg counter-clockwise from the forward direction.
     heading_deg: f64,
-    /// The distance between the edge and the place where the robot starts, mm.
+    /// The distance between the edge and the point where the robot starts, mm.
     distance_mm: f64,
 }
 
@@ -32,10 +32,10 @@ impl Crossing {
     /// Finds the crossing of a gait from its displacement per cycle. The measurement starts after `unmeasured_cycles`.
     pub fn find(robot: &Robot, cycle_displacement: Displacement, unmeasured_cycles: u32) -> Self {
         let feet = robot.ground().feet.positions([0.0; 4]);
-        let project_feet = |place: Place, heading_deg: f64| {
+        let project_feet = |pose: BodyPose, heading_deg: f64| {
             let (sin, cos) = heading_deg.to_radians().sin_cos();
-            let floor_feet = feet.map(|foot| place.to_floor(foot));
-            floor_feet.map(|[ahead, left]| ahead * cos + left * sin)
+            let floor_feet = feet.map(|foot| pose.to_floor(foot));
+            floor_feet.map(|[forward, left]| forward * cos + left * sin)
         };
         let Displacement([forward, left, turn]) = cycle_displacement;
         let cycle = Travel {
@@ -44,10 +44,10 @@ impl Crossing {
             turn,
         };
         let measurement_start =
-            (0..unmeasured_cycles).fold(Place::START, |place, _| place.moved_by_travel(cycle));
+            (0..unmeasured_cycles).fold(BodyPose::START, |pose, _| pose.moved_by_travel(cycle));
         let turns_on_the_spot = !matches!(
             list_gait_purposes(cycle_displacement)[..],
-            [Component::Ahead, ..]
+            [Component::Forward, ..]
         );
         let mut end = measurement_start;
         for cycle_count in 1.. {
@@ -92,8 +92,8 @@ impl Crossing {
     }
 }
 
-/// Returns the direction from one place to another, deg counter-clockwise from ahead.
-fn compute_direction(origin: Place, target: Place) -> f64 {
+/// Returns the direction from one pose to another, deg counter-clockwise from the forward direction.
+fn compute_direction(origin: BodyPose, target: BodyPose) -> f64 {
     let offset = [target.left - origin.left, target.forward - origin.forward];
     offset[0].atan2(offset[1]).to_degrees()
 }

@@ -138,12 +138,7 @@ pub fn format_expected_table(robot: &Robot) -> String {
     let mut text =
         "| trial | measured | expected | key of robot.toml |\n|---|---|---|---|\n".to_owned();
     for (trial, quantity, value, key) in rows {
-        let keys: Vec<String> = key.split(", ").map(|key| format!("`{key}`")).collect();
-        _ = writeln!(
-            text,
-            "| {trial} | {quantity} | {value} | {} |",
-            keys.join(", ")
-        );
+        _ = writeln!(text, "| {trial} | {quantity} | {value} | `{key}` |");
     }
     text
 }

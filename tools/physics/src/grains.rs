@@ -4,13 +4,14 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use lizard_parts::{Assembly, Course, Scene};
-use lizard_robot::{CheckedGait, Ground, Robot, Stance};
+use lizard_parts::{Assembly, Scene, Trajectory};
+use lizard_robot::{CheckedGait, GroundContact, Robot, Stance};
 
 use crate::case::LegDrive;
 use crate::crate_dir;
-use crate::mujoco::{Jobs, MujocoError};
-use crate::results::{Displacement, Results};
+use crate::mujoco::{MujocoError, WalkBatch};
+use crate::results::{Displacement, DisplacementPair};
+use crate::text;
 
 /// The name of the robot's file, without its extension.
 pub const ROBOT: &str = "grain";
@@ -35,7 +36,7 @@ const TOLERANCE: (f64, f64, f64) = (3.0, 0.2, 2.0);
 const SETTLING_S: f64 = 1.5;
 
 /// The results by gait, in the order of [`RATIOS`].
-pub type GrainResults = BTreeMap<String, Vec<Results>>;
+pub type GrainResults = BTreeMap<String, Vec<DisplacementPair>>;
 
 /// Loads the results stored in `grains.json`.
 ///
@@ -51,19 +52,17 @@ pub fn load_stored() -> GrainResults {
 /// # Panics
 /// Never: names and numbers can always be written as JSON.
 pub fn to_json(grains: &GrainResults) -> String {
-    let gaits = grains.iter().map(|(gait, results)| {
-        let lines = results
-            .iter()
-            .map(|results| serde_json::to_string(results).expect("numbers can be written as JSON"));
-        format!("{gait:?}: [\n{}\n]", lines.collect::<Vec<_>>().join(",\n"))
-    });
-    format!("{{\n{}\n}}\n", gaits.collect::<Vec<_>>().join(",\n"))
+    let format_results = |results: &Vec<DisplacementPair>| {
+        let lines: Vec<String> = results.iter().map(text::to_json).collect();
+        format!("[\n{}\n]", lines.join(",\n"))
+    };
+    text::join_lines(grains, format_results) + "\n"
 }
 
 /// Simulates a cycle in the model with level feet. Returns `None` if two feet pull against the other two: the model
 /// then has no result.
 pub fn simulate_model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<Displacement> {
-    let ground = Ground {
+    let ground = GroundContact {
         stance: Stance {
             stiffness: robot.ground().stance.stiffness,
             ..Stance::LEVEL
@@ -71,8 +70,8 @@ pub fn simulate_model(robot: &Robot, gait: &CheckedGait, ratio: f64) -> Option<D
         friction_ratio: ratio,
         ..*robot.ground()
     };
-    let is_decided = gait.predict(&ground).is_decided();
-    is_decided.then(|| gait.simulate_cycle(&ground).travel.into())
+    let is_determined = gait.predict(&ground).is_determined();
+    is_determined.then(|| gait.simulate_cycle(&ground).travel.into())
 }
 
 /// Simulates every gait at every ratio in the model and in MuJoCo.
@@ -86,19 +85,19 @@ pub fn simulate_all(robot: &Robot) -> Result<GrainResults, MujocoError> {
     let assembly = Assembly::new(robot);
     let make_name = |gait: &str, index: usize| format!("{gait}-{index}");
     let gaits = GAITS.map(|(name, _)| robot.gait(name).expect("the robot has this gait"));
-    let mut jobs = Jobs::new()?;
+    let mut batch = WalkBatch::new()?;
     let scenes = gaits.iter().flat_map(|gait| {
         let ratios = RATIOS.into_iter().enumerate();
         ratios
             .map(|(index, ratio)| make_scene(make_name(gait.name(), index), &assembly, gait, ratio))
     });
-    jobs.add(&assembly, scenes.map(|scene| (LegDrive::Rigid, scene)))?;
-    let mujoco_displacements = jobs.start()?.wait()?;
+    batch.add(&assembly, scenes.map(|scene| (LegDrive::Rigid, scene)))?;
+    let mujoco_displacements = batch.start()?.wait()?;
     let grains = gaits.iter().map(|gait| {
         let results = RATIOS
             .into_iter()
             .enumerate()
-            .map(|(index, ratio)| Results {
+            .map(|(index, ratio)| DisplacementPair {
                 model: simulate_model(robot, gait, ratio),
                 mujoco: mujoco_displacements[&make_name(gait.name(), index)],
             });
@@ -113,7 +112,7 @@ pub(crate) fn count_settling_cycles(gait: &CheckedGait) -> u32 {
 }
 
 /// Returns the results of a gait at the ratio in the robot's file.
-pub(crate) fn find_results_at_own_ratio(results: &[Results]) -> Results {
+pub(crate) fn find_results_at_own_ratio(results: &[DisplacementPair]) -> DisplacementPair {
     let own_ratio = crate::load_robot(ROBOT).ground().friction_ratio;
     let index = RATIOS.iter().position(|ratio| *ratio == own_ratio);
     results[index.expect("the table has the file's ratio")]
@@ -125,7 +124,7 @@ fn make_scene(name: String, assembly: &Assembly, gait: &CheckedGait, ratio: f64)
     Scene {
         name,
         friction_ratio: ratio,
-        course: Some(Course::for_gait(robot, gait, cycles, 1)),
+        trajectory: Some(Trajectory::for_gait(robot, gait, cycles, 1)),
         has_shapes: false,
         ..Scene::for_assembly(assembly)
     }
@@ -154,7 +153,7 @@ pub fn describe_disagreements(grains: &GrainResults) -> Vec<String> {
     messages
 }
 
-/// Returns a table of the model's and MuJoCo's speeds, mm/s ahead and deg/s counter-clockwise.
+/// Returns a table of the model's and MuJoCo's speeds, mm/s forward and deg/s counter-clockwise.
 ///
 /// # Panics
 /// If a gait is missing.
@@ -165,7 +164,7 @@ pub fn format_table(robot: &Robot, grains: &GrainResults) -> String {
         _ = write!(text, "  {heading:>13}");
     }
     text.push('\n');
-    // Each gait with the index of the displacement component that it is for: 0 is the distance ahead, 2 is the turn.
+    // Each gait with the index of the displacement component that it is for: 0 is the distance forward, 2 is the turn.
     let rows = GAITS.into_iter().flat_map(|(gait, _)| match gait {
         "left" => vec![(gait, 2)],
         "arc-left" => vec![(gait, 0), (gait, 2)],

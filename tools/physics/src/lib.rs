@@ -25,7 +25,7 @@ mod walk;
 pub use case::{Case, FootSetup, LegDrive};
 pub use crossing::Crossing;
 pub use expected::format_expected_table;
-pub use results::{Displacement, Results, WalkResults};
+pub use results::{Displacement, DisplacementPair, WalkResults};
 pub use table::{format_displacement_table, format_table};
 pub use walk::{Walk, list_walks};
 

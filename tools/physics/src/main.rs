@@ -3,24 +3,26 @@
 //! the new results replace the stored ones; with `--one-in N`, only every N-th walk is simulated.
 
 use std::collections::BTreeMap;
+use std::ops::RangeFrom;
 use std::process::ExitCode;
 
 use lizard_parts::Assembly;
 use lizard_physics::assumptions::{self, Assumption, AssumptionDisplacements};
 use lizard_physics::grains::{self, GrainResults};
-use lizard_physics::mujoco::{Jobs, MujocoError};
+use lizard_physics::mujoco::{MujocoError, WalkBatch};
 use lizard_physics::pads::{self, PadShape, SURFACES, ShapeDisplacements};
 use lizard_physics::servos::{self, ServoResults, Variant, format_servos_table};
 use lizard_physics::surface::{self, Surface, SurfaceDisplacements, format_surfaces_table};
 use lizard_physics::text::{format_blocks, format_lines};
 use lizard_physics::{
-    Displacement, LegDrive, ROBOT_NAMES, Results, Walk, WalkResults, crate_dir, format_table,
-    list_walks, load_robot,
+    Displacement, DisplacementPair, LegDrive, ROBOT_NAMES, Walk, WalkResults, crate_dir,
+    format_table, list_walks, load_robot,
 };
 use lizard_robot::Robot;
 
-/// The largest difference from a stored displacement that does not count as a change, mm and deg.
-const TOLERANCES: (f64, f64) = (0.6, 0.4);
+/// The largest difference from a stored displacement that does not count as a change.
+const TOLERANCE_MM: f64 = 0.6;
+const TOLERANCE_DEG: f64 = 0.4;
 /// The message for a walk without a stored result.
 const NOT_STORED: &str = "no result is stored; `make physics WRITE=1` stores the new one";
 /// Prefixes of the walks' names: walks on other floors, with other servos, under other assumptions, and on other pads.
@@ -75,35 +77,23 @@ fn make_walk_name(prefix: &str, index: usize) -> String {
 fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let (is_writing, one_in) = (one_in.is_none(), one_in.unwrap_or(1));
     let robots: Vec<(&str, Robot)> = ROBOT_NAMES.map(|name| (name, load_robot(name))).into();
-    let mut walk_numbers = 0..;
-    let mut choose_walk = || {
-        walk_numbers
-            .next()
-            .is_some_and(|n: usize| n.is_multiple_of(one_in))
+    let mut choice = WalkChoice {
+        one_in,
+        walk_numbers: 0..,
     };
-    let walks_by_robot: Vec<Vec<Walk>> = robots
-        .iter()
-        .map(|(_, robot)| {
-            list_walks(robot)
-                .into_iter()
-                .filter(|_| choose_walk())
-                .collect()
-        })
-        .collect();
+    let choose_robot_walks = |(_, robot): &(&str, Robot)| choice.choose(list_walks(robot));
+    let walks_by_robot: Vec<Vec<Walk>> = robots.iter().map(choose_robot_walks).collect();
     let stored_results = WalkResults::load_stored();
-    let uneven_walks: Vec<UnevenWalk> = UnevenWalk::list_all(&stored_results)
-        .into_iter()
-        .filter(|_| choose_walk())
-        .collect();
-    let mut jobs = Jobs::new()?;
+    let surface_walks = choice.choose(SurfaceWalk::list_all(&stored_results));
+    let mut batch = WalkBatch::new()?;
     for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
         let assembly = Assembly::new(robot);
         let indexed_walks = walks.iter().enumerate();
         let scenes = indexed_walks
             .map(|(index, walk)| walk.make_scene(&make_walk_name(robot_name, index), &assembly));
-        jobs.add(&assembly, scenes)?;
+        batch.add(&assembly, scenes)?;
     }
-    for (index, walk) in uneven_walks.iter().enumerate() {
+    for (index, walk) in surface_walks.iter().enumerate() {
         let assembly = Assembly::new(&load_robot(walk.robot));
         let scene = walk.surface.make_scene(
             &make_walk_name(SURFACE_PREFIX, index),
@@ -111,77 +101,60 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
             &walk.gait,
             walk.level_displacement,
         );
-        jobs.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
     }
     let servo_walks = Variant::ALL.map(|variant| servos::GAITS.map(|(gait, _)| (variant, gait)));
-    let servo_walks: Vec<(Variant, &str)> = servo_walks
-        .concat()
-        .into_iter()
-        .filter(|_| choose_walk())
-        .collect();
+    let servo_walks = choice.choose(servo_walks.concat());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
         let assembly = Assembly::new(&variant.load_robot());
         let scene = variant.make_scene(&make_walk_name(SERVOS_PREFIX, index), &assembly, gait);
-        jobs.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
     }
     let assumption_walks =
         Assumption::ALL.map(|assumption| assumptions::GAITS.map(|gait| (assumption, gait)));
-    let assumption_walks: Vec<(Assumption, &str)> = assumption_walks
-        .concat()
-        .into_iter()
-        .filter(|_| choose_walk())
-        .collect();
+    let assumption_walks = choice.choose(assumption_walks.concat());
     for (index, (assumption, gait)) in assumption_walks.iter().enumerate() {
         let assembly = Assembly::new(&assumption.load_robot());
-        let level = surface::get_level_displacement(&stored_results, gait);
+        let level = surface::find_level_displacement(&stored_results, gait);
         let scene = assumption.make_scene(
             &make_walk_name(ASSUMPTIONS_PREFIX, index),
             &assembly,
             gait,
             level,
         );
-        jobs.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
+        batch.add(&assembly, std::iter::once((LegDrive::Rigid, scene)))?;
     }
     let pad_walks = PadShape::ALL.map(|shape| SURFACES.map(|surface| (shape, surface)));
-    let pad_walks: Vec<(PadShape, Surface)> = pad_walks
-        .concat()
-        .into_iter()
-        .filter(|_| choose_walk())
-        .collect();
+    let pad_walks = choice.choose(pad_walks.concat());
     let paper = Assembly::new(&load_robot("paper"));
     let scenes = pad_walks
         .iter()
         .enumerate()
         .map(|(index, (shape, surface))| {
-            let level = surface::get_level_displacement(&stored_results, pads::GAIT);
+            let level = surface::find_level_displacement(&stored_results, pads::GAIT);
             (
                 LegDrive::Rigid,
                 shape.make_scene(&make_walk_name(PADS_PREFIX, index), &paper, *surface, level),
             )
         });
-    jobs.add(&paper, scenes)?;
+    batch.add(&paper, scenes)?;
     println!(
         "physics: MuJoCo simulates {} walks, which takes some minutes",
-        jobs.walk_count()
+        batch.walk_count()
     );
-    let mujoco_displacements = jobs.start()?.wait()?;
+    let mujoco_displacements = batch.start()?.wait()?;
 
     let (mut walk_results, mut faults) = (WalkResults::default(), Vec::new());
     for ((robot_name, robot), walks) in robots.iter().zip(&walks_by_robot) {
         for (index, walk) in walks.iter().enumerate() {
-            let results = Results {
+            let results = DisplacementPair {
                 model: walk.simulate_model(robot),
                 mujoco: mujoco_displacements[&make_walk_name(robot_name, index)],
             };
-            let mut messages: Vec<String> = results
-                .describe_disagreement(walk.case)
-                .into_iter()
-                .collect();
+            let mut messages = Vec::from_iter(results.describe_disagreement(walk.case));
             if !is_writing {
-                messages.extend(describe_changes(
-                    stored_results.get(robot_name, &walk.gait, walk.case),
-                    &results,
-                ));
+                let stored = stored_results.get(robot_name, &walk.gait, walk.case);
+                messages.extend(describe_changes(stored, &results));
             }
             let describe =
                 |message| format!("{robot_name}: {} ({}): {message}", walk.gait, walk.case);
@@ -191,8 +164,8 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
         println!("\n{}", format_table(robot_name, robot, &walk_results));
     }
     let (stored_surfaces, mut surfaces) = (surface::load_stored(), SurfaceDisplacements::new());
-    for (index, walk) in uneven_walks.iter().enumerate() {
-        let UnevenWalk {
+    for (index, walk) in surface_walks.iter().enumerate() {
+        let SurfaceWalk {
             robot,
             gait,
             level_displacement,
@@ -231,14 +204,11 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     }
     let (stored_servos, mut servo_results) = (servos::load_stored(), ServoResults::new());
     for (index, (variant, gait)) in servo_walks.iter().enumerate() {
-        let results = Results {
+        let results = DisplacementPair {
             model: Some(variant.simulate_model(gait)),
             mujoco: mujoco_displacements[&make_walk_name(SERVOS_PREFIX, index)],
         };
-        let mut messages: Vec<String> = variant
-            .describe_disagreement(gait, &results)
-            .into_iter()
-            .collect();
+        let mut messages = Vec::from_iter(variant.describe_disagreement(gait, &results));
         if !is_writing {
             let stored_variant_results = stored_servos
                 .get(variant.name)
@@ -262,21 +232,17 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     let mut by_shape = ShapeDisplacements::new();
     for (index, (shape, surface)) in pad_walks.iter().enumerate() {
         let by_surface = by_shape.entry(shape.name()).or_default();
-        by_surface.insert(
-            surface.to_string(),
-            mujoco_displacements[&make_walk_name(PADS_PREFIX, index)],
-        );
+        let displacement = mujoco_displacements[&make_walk_name(PADS_PREFIX, index)];
+        by_surface.insert(surface.to_string(), displacement);
     }
     println!("\n{}", pads::format_table(&by_shape));
     if !is_writing {
-        faults.extend(describe_displacement_changes(
-            &assumptions::load_stored(),
-            &by_assumption,
-        ));
-        faults.extend(describe_displacement_changes(
-            &pads::load_stored(),
-            &by_shape,
-        ));
+        for (stored, current) in [
+            (assumptions::load_stored(), &by_assumption),
+            (pads::load_stored(), &by_shape),
+        ] {
+            faults.extend(describe_displacement_changes(&stored, current));
+        }
     }
     let grain_robot = load_robot(grains::ROBOT);
     // A shortened run (`--one-in`) omits the pads with a grain.
@@ -316,8 +282,23 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     Ok(faults)
 }
 
+/// A choice of every `one_in`-th walk.
+struct WalkChoice {
+    one_in: usize,
+    /// The numbers of the walks that follow.
+    walk_numbers: RangeFrom<usize>,
+}
+
+impl WalkChoice {
+    fn choose<T>(&mut self, walks: Vec<T>) -> Vec<T> {
+        let numbered_walks = walks.into_iter().zip(&mut self.walk_numbers);
+        let chosen_walks = numbered_walks.filter(|(_, number)| number.is_multiple_of(self.one_in));
+        chosen_walks.map(|(walk, _)| walk).collect()
+    }
+}
+
 /// A walk on a floor that is not level and even.
-struct UnevenWalk {
+struct SurfaceWalk {
     robot: &'static str,
     gait: String,
     /// The gait's displacement on a level floor.
@@ -325,7 +306,7 @@ struct UnevenWalk {
     surface: Surface,
 }
 
-impl UnevenWalk {
+impl SurfaceWalk {
     fn list_all(walk_results: &WalkResults) -> Vec<Self> {
         let mut walks = Vec::new();
         for robot in surface::ROBOT_NAMES {
@@ -383,7 +364,7 @@ fn describe_displacement_changes(
 }
 
 /// Returns a message for each of the model's and MuJoCo's displacements that differs from the stored one.
-fn describe_changes(stored: Option<&Results>, current: &Results) -> Vec<String> {
+fn describe_changes(stored: Option<&DisplacementPair>, current: &DisplacementPair) -> Vec<String> {
     let Some(stored) = stored else {
         return vec![NOT_STORED.to_owned()];
     };
@@ -401,14 +382,14 @@ fn describe_changes(stored: Option<&Results>, current: &Results) -> Vec<String> 
         .collect()
 }
 
-/// Returns a message if a displacement differs from the stored one by more than [`TOLERANCES`].
+/// Returns a message if a displacement differs from the stored one by more than the tolerance.
 fn describe_difference(
     source: &str,
     stored: Displacement,
     current: Displacement,
 ) -> Option<String> {
     let (mm, deg) = stored.compute_difference(current);
-    (mm > TOLERANCES.0 || deg > TOLERANCES.1).then(|| {
+    (mm > TOLERANCE_MM || deg > TOLERANCE_DEG).then(|| {
         format!(
             "{source} differs from the stored displacement by {mm:.1} mm and {deg:.1} deg; \
              if this is intended, run `make physics WRITE=1`"

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io;
 use std::process::{Child, Command, Stdio};
 
-use lizard_parts::{Assembly, Course, Pieces, Scene, StrutSpring};
+use lizard_parts::{Assembly, Pieces, Scene, StrutSpring, Trajectory};
 use serde::Deserialize;
 use tempfile::TempDir;
 
@@ -12,21 +12,21 @@ use crate::case::{Case, LegDrive};
 use crate::crate_dir;
 use crate::results::Displacement;
 
-/// An error that prevents MuJoCo's answer.
+/// An error that prevents MuJoCo's result.
 #[derive(Debug, thiserror::Error)]
 pub enum MujocoError {
     /// Python does not start.
     #[error("cannot start target/physics/bin/python: {0}; `make physics` installs it")]
     PythonStart(io::Error),
-    /// A file cannot be written, or the answer cannot be read.
+    /// A file cannot be written, or the result cannot be read.
     #[error("cannot exchange files with MuJoCo: {0}")]
     Files(#[from] io::Error),
     /// The judge failed.
     #[error("tools/physics/judge.py failed with {0}")]
     JudgeExit(std::process::ExitStatus),
-    /// The judge printed something other than an answer.
+    /// The judge printed something other than a result.
     #[error("unexpected output of tools/physics/judge.py: {0}")]
-    InvalidAnswer(String),
+    InvalidOutput(String),
     /// The judge could not simulate a walk, or MuJoCo warned during it.
     #[error("{name}: {message}")]
     FailedWalk {
@@ -40,16 +40,16 @@ pub enum MujocoError {
     Build(#[from] lizard_parts::BuildError),
 }
 
-/// The judge's answer for a walk, a line of its output.
+/// The judge's result for a walk, a line of its output.
 #[derive(Deserialize)]
-struct JudgeAnswer {
+struct JudgeResult {
     file: String,
     displacement: Option<[f64; 3]>,
     error: Option<String>,
 }
 
-/// A folder of files with walks for the judge.
-pub struct Jobs {
+/// Walks for the judge, as files in a folder.
+pub struct WalkBatch {
     folder: TempDir,
     walk_count: usize,
 }
@@ -60,8 +60,8 @@ pub struct RunningJudge {
     _folder: TempDir,
 }
 
-impl Jobs {
-    /// Creates an empty list of walks.
+impl WalkBatch {
+    /// Creates an empty batch.
     ///
     /// # Errors
     /// Fails if the folder for the files cannot be created.
@@ -147,7 +147,7 @@ pub(crate) fn make_two_cycle_scene(
             preload: strut.preload,
             rate: strut.spring_rate,
         }),
-        course: Some(Course::for_gait(robot, gait, 2, 1)),
+        trajectory: Some(Trajectory::for_gait(robot, gait, 2, 1)),
         // Only pictures need shapes; without shapes, MuJoCo reads the file ten times faster.
         has_shapes: false,
         ..Scene::for_assembly(assembly)
@@ -166,15 +166,15 @@ impl RunningJudge {
         }
         let mut displacements = BTreeMap::new();
         for line in String::from_utf8_lossy(&output.stdout).lines() {
-            let answer: JudgeAnswer = serde_json::from_str(line)
-                .map_err(|_| MujocoError::InvalidAnswer(line.to_owned()))?;
-            let Some(displacement) = answer.displacement else {
+            let result: JudgeResult = serde_json::from_str(line)
+                .map_err(|_| MujocoError::InvalidOutput(line.to_owned()))?;
+            let Some(displacement) = result.displacement else {
                 return Err(MujocoError::FailedWalk {
-                    name: answer.file,
-                    message: answer.error.unwrap_or_default(),
+                    name: result.file,
+                    message: result.error.unwrap_or_default(),
                 });
             };
-            displacements.insert(answer.file, displacement.into());
+            displacements.insert(result.file, displacement.into());
         }
         Ok(displacements)
     }

@@ -88,8 +88,8 @@ pub fn format_table(shapes: &ShapeDisplacements) -> String {
             let displacement =
                 by_surface.and_then(|by_surface| by_surface.get(&surface.to_string()));
             // Adding 0 turns -0 into 0.
-            let ahead_mm = displacement.map(|displacement| displacement.0[0].round() + 0.0);
-            ahead_mm.map_or(" - |".to_owned(), |ahead_mm| format!(" {ahead_mm} |"))
+            let forward_mm = displacement.map(|displacement| displacement.0[0].round() + 0.0);
+            forward_mm.map_or(" - |".to_owned(), |forward_mm| format!(" {forward_mm} |"))
         });
         _ = writeln!(text, "| {} |{}", shape.name(), cells.concat());
     }

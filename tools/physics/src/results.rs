@@ -35,7 +35,7 @@ impl From<Travel> for Displacement {
 
 /// The displacements that the contact model and MuJoCo compute for one cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Results {
+pub struct DisplacementPair {
     /// The contact model's displacement. `None` if two feet pull against the other two: the result would depend on the
     /// smallest difference between the pads.
     pub model: Option<Displacement>,
@@ -50,12 +50,13 @@ const LEVEL_FEET_TOLERANCE: (f64, f64, f64) = (1.5, 0.08, 1.0);
 const SOFT_FOOT_TOLERANCE: (f64, f64, f64) = (2.5, 0.08, 1.5);
 /// The allowed difference with one foot too long on stiff leaves, where hundredths of a mm decide which feet stick.
 const STIFF_FOOT_TOLERANCE: (f64, f64, f64) = (5.0, 0.35, 4.0);
-/// The model's displacement, mm and deg, below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot then
-/// moves nearly equally fast in both directions, and the result depends on inertia.
-const STANDSTILL_LIMITS: (f64, f64) = (1.0, 0.5);
+/// The model's displacement below which MuJoCo may differ by [`STANDSTILL_TOLERANCE_MM`]. The robot then moves nearly
+/// equally fast in both directions, and the result depends on inertia.
+const STANDSTILL_MM: f64 = 1.0;
+const STANDSTILL_DEG: f64 = 0.5;
 const STANDSTILL_TOLERANCE_MM: f64 = 3.5;
 
-impl Results {
+impl DisplacementPair {
     /// Returns the allowed difference between MuJoCo and the model, mm and deg.
     pub fn allowed_difference(&self, case: Case) -> (f64, f64) {
         let (mm, fraction, deg) = match case.feet {
@@ -63,9 +64,9 @@ impl Results {
             FootSetup::Soft => SOFT_FOOT_TOLERANCE,
             FootSetup::Stiff => STIFF_FOOT_TOLERANCE,
         };
-        let [ahead, left, turn] = self.model.unwrap_or_default().0;
-        let distance = ahead.hypot(left);
-        match distance < STANDSTILL_LIMITS.0 && turn.abs() < STANDSTILL_LIMITS.1 {
+        let [forward, left, turn] = self.model.unwrap_or_default().0;
+        let distance = forward.hypot(left);
+        match distance < STANDSTILL_MM && turn.abs() < STANDSTILL_DEG {
             true => (mm.max(STANDSTILL_TOLERANCE_MM), deg),
             false => (mm.max(fraction * distance), deg),
         }
@@ -88,7 +89,7 @@ impl Results {
 /// The results by robot, gait and case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct WalkResults(BTreeMap<String, BTreeMap<String, BTreeMap<String, Results>>>);
+pub struct WalkResults(BTreeMap<String, BTreeMap<String, BTreeMap<String, DisplacementPair>>>);
 
 impl WalkResults {
     /// Loads the results stored in `figures.json`.
@@ -109,12 +110,12 @@ impl WalkResults {
     }
 
     /// Returns the results for a robot's gait in a case; `None` if no results are stored.
-    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&Results> {
+    pub fn get(&self, robot: &str, gait: &str, case: Case) -> Option<&DisplacementPair> {
         self.0.get(robot)?.get(gait)?.get(&case.to_string())
     }
 
     /// Stores the results for a robot's gait in a case.
-    pub fn store(&mut self, robot: &str, gait: &str, case: Case, results: Results) {
+    pub fn store(&mut self, robot: &str, gait: &str, case: Case, results: DisplacementPair) {
         let gaits = self.0.entry(robot.to_owned()).or_default();
         let cases = gaits.entry(gait.to_owned()).or_default();
         cases.insert(case.to_string(), results);

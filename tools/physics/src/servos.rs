@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use lizard_parts::{Assembly, Course, Scene};
+use lizard_parts::{Assembly, Scene, Trajectory};
 use lizard_robot::Robot;
 
 use crate::crate_dir;
-use crate::results::{Displacement, Results};
+use crate::results::{Displacement, DisplacementPair};
 
 /// The gaits, each with the index of the compared displacement component: 0 for the distance forward, 2 for the turn.
 pub const GAITS: [(&str, usize); 4] = [("walk", 0), ("trot", 0), ("crawl", 0), ("left", 2)];
@@ -129,7 +129,7 @@ impl Variant {
             .expect("the robot has this gait");
         let mut scene = Scene {
             name: name.to_owned(),
-            course: Some(Course::for_gait(assembly.robot(), gait, 2, 1)),
+            trajectory: Some(Trajectory::for_gait(assembly.robot(), gait, 2, 1)),
             has_shapes: false,
             ..Scene::for_assembly(assembly)
         };
@@ -151,7 +151,7 @@ impl Variant {
     }
 
     /// Returns a message if the model differs too much from MuJoCo in a gait.
-    pub fn describe_disagreement(&self, gait: &str, results: &Results) -> Option<String> {
+    pub fn describe_disagreement(&self, gait: &str, results: &DisplacementPair) -> Option<String> {
         let (_, component) = GAITS.into_iter().find(|(name, _)| *name == gait)?;
         let [model, mujoco] =
             [results.model?, results.mujoco].map(|displacement| displacement.0[component]);
@@ -166,7 +166,7 @@ impl Variant {
 }
 
 /// The results by variant and gait.
-pub type ServoResults = BTreeMap<String, BTreeMap<String, Results>>;
+pub type ServoResults = BTreeMap<String, BTreeMap<String, DisplacementPair>>;
 
 /// Loads the results stored in `servos.json`.
 ///

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::fmt::{self, Write as _};
 
-use lizard_parts::{Assembly, Block, Course, Floor, Scene};
+use lizard_parts::{Assembly, Block, Floor, Scene, Trajectory};
 use lizard_robot::Robot;
 
 use crate::case::Case;
@@ -20,15 +20,16 @@ use crate::table::Component;
 /// on the highest edge and blocks.
 pub const ROBOT_NAMES: [&str; 5] = ["paper", "own-gaits", "large", "unequal", grains::ROBOT];
 
-/// The smallest displacement per cycle of a gait that walks, mm and deg; other gaits only look around or wag the tail.
-const MIN_DISPLACEMENT: (f64, f64) = (9.0, 3.0);
+/// The smallest distance or turn per cycle of a gait that walks; other gaits only look around or wag the tail.
+const MIN_DISTANCE_MM: f64 = 9.0;
+const MIN_TURN_DEG: f64 = 3.0;
 
 /// Returns the purposes of a gait with this displacement on a level floor: distance, turn, or both. A gait that does
 /// not walk has no purpose.
-pub(crate) fn list_gait_purposes(Displacement([ahead, _, turn]): Displacement) -> Vec<Component> {
+pub(crate) fn list_gait_purposes(Displacement([forward, _, turn]): Displacement) -> Vec<Component> {
     let purposes = [
-        (Component::Ahead, ahead.abs() > MIN_DISPLACEMENT.0),
-        (Component::Turn, turn.abs() > MIN_DISPLACEMENT.1),
+        (Component::Forward, forward.abs() > MIN_DISTANCE_MM),
+        (Component::Turn, turn.abs() > MIN_TURN_DEG),
     ];
     purposes
         .into_iter()
@@ -80,7 +81,7 @@ pub enum Surface {
     Edge(u8),
     /// Blocks of this height that cover a quarter of the floor; tenths of a mm.
     Blocks(u8),
-    /// A slope of this angle that rises ahead, deg.
+    /// A slope of this angle that rises in the forward direction, deg.
     Slope(u8),
     /// A floor with a friction of 0.4 for the left feet and 0.8 for the right feet.
     UnequalFriction,
@@ -118,7 +119,7 @@ impl Surface {
     /// fraction is accepted. A lost pad halves some turns; this is accepted because the user must repair the foot.
     fn min_fraction(self, component: Component) -> Option<f64> {
         match component {
-            Component::Ahead => self.is_climbed().then_some(0.85),
+            Component::Forward => self.is_climbed().then_some(0.85),
             Component::Turn => (self != Self::NoPad).then_some(0.75),
         }
     }
@@ -155,7 +156,7 @@ impl Surface {
         level_displacement: Displacement,
     ) -> Scene {
         let robot = assembly.robot();
-        let direction = if level_displacement.0[0] < -MIN_DISPLACEMENT.0 {
+        let direction = if level_displacement.0[0] < -MIN_DISTANCE_MM {
             -1.0
         } else {
             1.0
@@ -173,7 +174,7 @@ impl Surface {
             true => [settling_cycles + crossing.cycle_count, crossing.cycle_count],
             false => [2, 1],
         };
-        scene.course = Some(Course::for_gait(robot, gait, cycles, measured_cycles));
+        scene.trajectory = Some(Trajectory::for_gait(robot, gait, cycles, measured_cycles));
         scene.floor = self.make_floor(assembly, &crossing, direction);
         if self == Self::NoPad {
             // The foot stands on the head of its screw.
@@ -188,7 +189,7 @@ fn tenths_to_mm(tenths: u8) -> f64 {
     f64::from(tenths) / 10.0
 }
 
-/// Returns blocks of 10 to 20 mm at pseudo-random places, the same in each call. One block lies in each square of 30
+/// Returns blocks of 10 to 20 mm at pseudo-random positions, the same in each call. One block lies in each square of 30
 /// mm; the blocks therefore cover a quarter of the floor. No block is under a foot at the start.
 fn scatter_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
     const SQUARE_MM: f64 = 30.0;
@@ -204,9 +205,9 @@ fn scatter_blocks(robot: &Robot, height_mm: f64) -> Vec<Block> {
     for row in -REACH_SQUARES..REACH_SQUARES {
         for column in -REACH_SQUARES / 2..REACH_SQUARES / 2 {
             let [width, length] = [random_between(10.0, 20.0), random_between(10.0, 20.0)];
-            let mut random_place =
+            let mut random_position =
                 |square: i32| SQUARE_MM * f64::from(square) + random_between(0.0, SQUARE_MM);
-            let centre = [random_place(column), random_place(row)];
+            let centre = [random_position(column), random_position(row)];
             let distance =
                 |[forward, left]: [f64; 2]| (centre[0] + left).hypot(centre[1] - forward);
             if feet.into_iter().map(distance).fold(f64::INFINITY, f64::min) > SQUARE_MM {
@@ -251,7 +252,7 @@ pub fn load_stored() -> SurfaceDisplacements {
 ///
 /// # Panics
 /// If no displacement of the gait is stored.
-pub fn get_level_displacement(walk_results: &WalkResults, gait: &str) -> Displacement {
+pub fn find_level_displacement(walk_results: &WalkResults, gait: &str) -> Displacement {
     let results = walk_results.get("paper", gait, Case::ALL[0]);
     results.expect("figures.json has the result").mujoco
 }
@@ -332,7 +333,7 @@ pub fn format_surfaces_table(
         }
     }
     for (name, component) in [
-        ("a displacement", Component::Ahead),
+        ("a displacement", Component::Forward),
         ("a turn", Component::Turn),
     ] {
         let cells = robot_surfaces

@@ -7,25 +7,27 @@ use lizard_robot::Robot;
 use crate::case::{Case, FootSetup, LegDrive};
 use crate::results::{Displacement, WalkResults};
 
-/// The largest displacement per cycle that counts as zero: mm ahead, and deg of turn.
-const NEGLIGIBLE_DISPLACEMENT: (f64, f64) = (1.0, 0.5);
+/// The largest distance forward per cycle that counts as zero.
+const NEGLIGIBLE_MM: f64 = 1.0;
+/// The largest turn per cycle that counts as zero.
+const NEGLIGIBLE_DEG: f64 = 0.5;
 
-/// A component of a displacement: the distance ahead, or the turn.
+/// A component of a displacement: the distance forward, or the turn.
 #[derive(Clone, Copy)]
 pub(crate) enum Component {
-    Ahead,
+    Forward,
     Turn,
 }
 
 impl Component {
-    /// Returns a displacement's components that are not negligible; `Ahead` if both are negligible.
+    /// Returns a displacement's components that are not negligible; `Forward` if both are negligible.
     pub(crate) fn for_displacement(displacement: Displacement) -> Vec<Self> {
-        let [ahead, _, turn] = displacement.0.map(f64::abs);
+        let [forward, _, turn] = displacement.0.map(f64::abs);
         let mut components = Vec::new();
-        if ahead > NEGLIGIBLE_DISPLACEMENT.0 || turn <= NEGLIGIBLE_DISPLACEMENT.1 {
-            components.push(Self::Ahead);
+        if forward > NEGLIGIBLE_MM || turn <= NEGLIGIBLE_DEG {
+            components.push(Self::Forward);
         }
-        if turn > NEGLIGIBLE_DISPLACEMENT.1 {
+        if turn > NEGLIGIBLE_DEG {
             components.push(Self::Turn);
         }
         components
@@ -33,14 +35,14 @@ impl Component {
 
     pub(crate) fn unit(self) -> &'static str {
         match self {
-            Self::Ahead => "mm",
+            Self::Forward => "mm",
             Self::Turn => "deg",
         }
     }
 
     pub(crate) fn value(self, displacement: Displacement) -> f64 {
         match self {
-            Self::Ahead => displacement.0[0],
+            Self::Forward => displacement.0[0],
             Self::Turn => displacement.0[2],
         }
     }

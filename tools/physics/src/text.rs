@@ -36,14 +36,18 @@ pub fn format_nested_blocks<T: Serialize>(
     }) + "\n"
 }
 
-fn join_lines<T>(map: &BTreeMap<String, T>, format_value: impl Fn(&T) -> String) -> String {
+/// Formats a map as a JSON object, without a line feed at its end.
+pub(crate) fn join_lines<T>(
+    map: &BTreeMap<String, T>,
+    format_value: impl Fn(&T) -> String,
+) -> String {
     let lines = map
         .iter()
         .map(|(key, value)| format!("{key:?}: {}", format_value(value)));
     format!("{{\n{}\n}}", lines.collect::<Vec<_>>().join(",\n"))
 }
 
-fn to_json<T: Serialize>(value: &T) -> String {
+pub(crate) fn to_json<T: Serialize>(value: &T) -> String {
     serde_json::to_string(value).expect("numbers can be written as JSON")
 }
 

@@ -15,7 +15,7 @@ pub struct Walk {
     /// The case of the legs and feet.
     pub case: Case,
     /// True if the contact model has a result: at no time do two feet pull against the other two.
-    pub is_decided: bool,
+    pub is_determined: bool,
 }
 
 impl Walk {
@@ -32,7 +32,7 @@ impl Walk {
     pub fn simulate_model(&self, robot: &Robot) -> Option<Displacement> {
         let gait = robot.gait(&self.gait).expect("the robot has this gait");
         let simulate = || gait.simulate_cycle(&self.case.ground(robot)).travel;
-        self.is_decided.then(|| simulate().into())
+        self.is_determined.then(|| simulate().into())
     }
 }
 
@@ -47,14 +47,14 @@ pub fn list_walks(robot: &Robot) -> Vec<Walk> {
 
 fn list_gait_walks(robot: &Robot, gait: &CheckedGait) -> Vec<Walk> {
     let [first_case, ..] = Case::ALL;
-    let is_decided = gait.predict(&first_case.ground(robot)).is_decided();
+    let is_determined = gait.predict(&first_case.ground(robot)).is_determined();
     let cases = Case::ALL
         .into_iter()
-        .filter(|case| is_decided || *case == first_case);
+        .filter(|case| is_determined || *case == first_case);
     let make_walk = |case| Walk {
         gait: gait.name().to_owned(),
         case,
-        is_decided,
+        is_determined,
     };
     cases.map(make_walk).collect()
 }

@@ -105,12 +105,12 @@ fn every_gait_keeps_its_distance_over_edges_and_blocks_and_its_turn_on_every_flo
     // The check reports robots that cannot move or turn at an edge, and a robot that turns in the wrong direction.
     let no_displacement = Displacement([0.0; 3]);
     for (gait, loss_count) in [("walk", 1), ("back", 1), ("left", 1), ("arc-right", 2)] {
-        let level = surface::get_level_displacement(&walk_results, gait);
+        let level = surface::find_level_displacement(&walk_results, gait);
         let messages = surface::describe_excess_losses(Surface::Edge(20), level, no_displacement);
         assert_eq!(messages.len(), loss_count, "{gait}: {messages:?}");
     }
     let [left, right] =
-        ["left", "right"].map(|gait| surface::get_level_displacement(&walk_results, gait));
+        ["left", "right"].map(|gait| surface::find_level_displacement(&walk_results, gait));
     assert_eq!(
         surface::describe_excess_losses(Surface::Slope(8), left, right),
         [
@@ -141,21 +141,21 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
                 block.centre[1] - half_length * cos,
             ];
             let compute_distance_beyond =
-                |[right, ahead]: [f64; 2]| (ahead - edge[1]) * cos - (right - edge[0]) * sin;
-            let mut place = [0.0; 3];
-            for [ahead, left] in feet {
+                |[right, forward]: [f64; 2]| (forward - edge[1]) * cos - (right - edge[0]) * sin;
+            let mut pose = [0.0; 3];
+            for [forward, left] in feet {
                 assert!(
-                    compute_distance_beyond([-left, ahead]) < -20.0,
+                    compute_distance_beyond([-left, forward]) < -20.0,
                     "{name}: {gait} does not start before the edge"
                 );
             }
             for _ in 0..crossing.cycle_count {
-                place = move_place(place, level.0);
+                pose = move_pose(pose, level.0);
             }
-            for [ahead, left] in feet {
-                let [ahead, left, _] = move_place(place, [ahead, left, 0.0]);
+            for [forward, left] in feet {
+                let [forward, left, _] = move_pose(pose, [forward, left, 0.0]);
                 assert!(
-                    compute_distance_beyond([-left, ahead]) > 20.0,
+                    compute_distance_beyond([-left, forward]) > 20.0,
                     "{name}: {gait} does not end beyond the edge"
                 );
             }
@@ -172,12 +172,12 @@ fn gaits_that_do_not_turn_on_the_spot_take_every_foot_across_the_edge() {
     assert_eq!(turning_gaits, expected_gaits);
 }
 
-/// Returns a place (mm ahead, mm to the left, deg) after a displacement in the place's own frame.
-fn move_place([x, y, heading]: [f64; 3], [ahead, left, turn]: [f64; 3]) -> [f64; 3] {
+/// Returns a pose (mm forward, mm to the left, deg) after a displacement in the pose's own frame.
+fn move_pose([x, y, heading]: [f64; 3], [forward, left, turn]: [f64; 3]) -> [f64; 3] {
     let (sin, cos) = heading.to_radians().sin_cos();
     [
-        x + ahead * cos - left * sin,
-        y + ahead * sin + left * cos,
+        x + forward * cos - left * sin,
+        y + forward * sin + left * cos,
         heading + turn,
     ]
 }
@@ -225,12 +225,12 @@ fn every_walk_is_stored_and_agrees_with_the_model() {
         let robot = load_robot(name);
         for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
             let find_results = |case| walk_results.get(name, gait.name(), case);
-            let is_decided =
+            let is_determined =
                 find_results(Case::ALL[0]).is_some_and(|results| results.model.is_some());
             for case in Case::ALL {
                 let Some(results) = find_results(case) else {
                     assert!(
-                        !is_decided && case != Case::ALL[0],
+                        !is_determined && case != Case::ALL[0],
                         "{name}: {}",
                         gait.name()
                     );
@@ -244,7 +244,7 @@ fn every_walk_is_stored_and_agrees_with_the_model() {
                 );
                 assert_eq!(
                     results.model.is_some(),
-                    is_decided,
+                    is_determined,
                     "{name}: {}",
                     gait.name()
                 );
@@ -267,7 +267,7 @@ fn the_stored_results_of_the_model_are_up_to_date() {
         let results = walk_results
             .get("paper", &walk.gait, walk.case)
             .expect("the walk is stored");
-        assert_eq!(results.model.is_some(), walk.is_decided, "{}", walk.gait);
+        assert_eq!(results.model.is_some(), walk.is_determined, "{}", walk.gait);
         let (Some(stored), Some(computed)) = (results.model, walk.simulate_model(&robot)) else {
             continue;
         };
@@ -330,14 +330,9 @@ fn robot_toml_accepts_every_key_of_the_trials() {
     let text = std::fs::read_to_string(crate_dir().join("../../robots/paper.toml"))
         .expect("robots/paper.toml is readable");
     let table = format_expected_table(&load_robot("paper"));
-    let keys = table.lines().skip(2).flat_map(|line| {
-        let cell = line
-            .rsplit(" | ")
-            .next()
-            .expect("each row ends with its keys");
-        cell.trim_end_matches(" |")
-            .split(", ")
-            .map(|key| key.trim_matches('`'))
+    let keys = table.lines().skip(2).map(|line| {
+        let cell = line.rsplit(" | ").next().expect("a row has cells");
+        cell.trim_end_matches(" |").trim_matches('`')
     });
     let mut count = 0;
     for key in keys {

@@ -7,7 +7,7 @@ use lizard_physics::text::check_block;
 use lizard_physics::{crate_dir, load_robot};
 
 /// Returns a gait's speeds at a friction ratio: the model's, if the model has a result, and MuJoCo's. `component` is
-/// the index in the displacement: 0 for mm/s ahead, 2 for deg/s of turn.
+/// the index in the displacement: 0 for mm/s forward, 2 for deg/s of turn.
 fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: usize) -> Vec<f64> {
     let period = load_robot(grains::ROBOT)
         .gait(gait)

@@ -6,7 +6,7 @@
 //! of the model. Gaits that depend on inertia were simulated at a slower pace.
 
 use lizard_physics::{Displacement, load_robot};
-use lizard_robot::{Body, Feet, Ground};
+use lizard_robot::{Body, Feet, GroundContact};
 
 /// The compared gaits; no gait mirrors or reverses another.
 const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
@@ -15,8 +15,8 @@ const GAITS: [&str; 5] = ["walk", "trot", "crawl", "left", "arc-left"];
 type Displacements = [[f64; 3]; 5];
 
 /// Returns the ground of the paper's robot with a body of 280 g.
-fn ground_with_280_g() -> Ground {
-    Ground {
+fn ground_with_280_g() -> GroundContact {
+    GroundContact {
         body: Body {
             mass: 280.0,
             ..Body::DEFAULT
@@ -26,7 +26,7 @@ fn ground_with_280_g() -> Ground {
 }
 
 /// Asserts that each gait's displacement in the model differs from `expected` by at most `max_mm` and `max_deg`.
-fn assert_agreement(ground: &Ground, expected: &Displacements, max_mm: f64, max_deg: f64) {
+fn assert_agreement(ground: &GroundContact, expected: &Displacements, max_mm: f64, max_deg: f64) {
     let paper = load_robot("paper");
     for (name, displacement) in GAITS.into_iter().zip(expected) {
         let model_displacement = Displacement::from(
@@ -48,7 +48,7 @@ fn assert_agreement(ground: &Ground, expected: &Displacements, max_mm: f64, max_
 #[test]
 fn rigid_legs_match_the_engine_on_a_slippery_and_on_a_rough_floor() {
     for (friction, displacements) in [(0.4, SLIPPERY_FLOOR), (1.0, ROUGH_FLOOR)] {
-        let ground = Ground {
+        let ground = GroundContact {
             friction_coefficient: friction,
             ..ground_with_280_g()
         };
@@ -63,7 +63,12 @@ fn legs_mounted_outward_match_the_engine() {
         mount_angle: 45.0,
         ..ground.feet
     };
-    assert_agreement(&Ground { feet, ..ground }, &MOUNTED_OUTWARD, 0.5, 0.3);
+    assert_agreement(
+        &GroundContact { feet, ..ground },
+        &MOUNTED_OUTWARD,
+        0.5,
+        0.3,
+    );
 }
 
 #[test]

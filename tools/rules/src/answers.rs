@@ -39,12 +39,12 @@ impl Observer {
         if INVALID_LINES.contains(&line) {
             self.record_violation(Rule::InvalidRefused, format!("answer to {line}: {answer}"));
         }
-        self.note_accepted_command(answer);
+        self.record_accepted_command(answer);
         match effect {
-            Effect::Moves if !self.was_disturbed_since(now) => {
+            Effect::Motion if !self.was_disturbed_since(now) => {
                 self.pending_promises.motion = Some((now, now + MAX_WAKE_TIME, [false; 4]));
             }
-            Effect::Rests => {
+            Effect::Rest => {
                 if self.disturbed_until <= sent_at {
                     self.pending_promises.no_pulses = Some((
                         now + self.limits.max_frame_remainder,

@@ -1,9 +1,19 @@
 //! The LED's patterns. For a fault, the LED flashes as many times as the fault's code, then pauses. Without a fault,
-//! the LED flashes slowly and regularly.
+//! the LED blinks slowly and regularly.
+
+use std::ops::RangeInclusive;
 
 use crate::event::{MS, Time};
 
-/// The words after `fault=` in `status`. The index of a word is the fault's code.
+/// The duration of a flash, and of the dark interval between two flashes.
+const FLASH_MS: RangeInclusive<Time> = 150..=170;
+/// The duration of the pause after the flashes of a fault.
+const PAUSE_MS: RangeInclusive<Time> = 1_100..=1_140;
+/// The time for which the LED is on, and then off, while there is no fault.
+const BLINK_MS: RangeInclusive<Time> = 630..=650;
+
+/// The words after `fault=` in `status`. The index of a word is the fault's code. `robot` is missing, because the tools
+/// always run a robot.
 const FAULT_WORDS: [&str; 8] = [
     "none", "guard", "supply", "link", "watchdog", "late", "stack", "brownout",
 ];
@@ -26,32 +36,28 @@ pub fn fault_code(fault: &str) -> Result<u8, String> {
 pub fn check_pattern(edges: &[(Time, bool)], from: Time, to: Time, code: u8) -> Result<(), String> {
     let mut flash_count = None;
     for pair in edges.windows(2) {
-        let ((start, is_high), (end, _)) = (pair[0], pair[1]);
+        let ((start, is_on), (end, _)) = (pair[0], pair[1]);
         if start < from || end > to {
             continue;
         }
         let ms = (end - start) / MS;
-        match (is_high, ms) {
-            (true, 150..=170) if code > 0 => flash_count = flash_count.map(|count: u8| count + 1),
-            (false, 150..=170) if code > 0 => {}
-            (false, 1_100..=1_140) if code > 0 => {
-                // The count before the first pause is incomplete, so it is not checked.
-                if let Some(count) = flash_count
-                    && count != code
-                {
-                    return Err(format!(
-                        "fault {code}: expected {code} flashes, got {count}"
-                    ));
-                }
-                flash_count = Some(0);
-            }
-            (_, 630..=650) if code == 0 => {}
-            _ => {
-                let start_ms = start as f64 / MS as f64;
+        if code > 0 && FLASH_MS.contains(&ms) {
+            flash_count = flash_count.map(|count: u8| count + u8::from(is_on));
+        } else if code > 0 && !is_on && PAUSE_MS.contains(&ms) {
+            // The count before the first pause is incomplete, so it is not checked.
+            if let Some(count) = flash_count
+                && count != code
+            {
                 return Err(format!(
-                    "fault {code}: unexpected interval of {ms} ms (LED on: {is_high}) from {start_ms:.3} ms on"
+                    "fault {code}: expected {code} flashes, got {count}"
                 ));
             }
+            flash_count = Some(0);
+        } else if code > 0 || !BLINK_MS.contains(&ms) {
+            let start_ms = start as f64 / MS as f64;
+            return Err(format!(
+                "fault {code}: unexpected interval of {ms} ms (LED on: {is_on}) from {start_ms:.3} ms on"
+            ));
         }
     }
     Ok(())

@@ -12,9 +12,9 @@ mod coarse_state;
 mod event;
 pub mod led;
 mod observer;
+mod pulses;
 mod reports;
 mod rule;
-mod servos;
 mod supply;
 
 pub use event::{Event, MS, Pulse, Time};

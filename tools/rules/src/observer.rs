@@ -4,9 +4,9 @@ use lizard_core::console::word::Effect;
 use lizard_core::memory::restart::Cause;
 
 use crate::event::{Event, MS, NEVER, Pulse, Time};
+use crate::pulses::{Permission, ServoHistory};
 use crate::reports::Reports;
 use crate::rule::{Rule, Violation};
-use crate::servos::{Permission, ServoHistory};
 use crate::supply::SupplyHistory;
 
 /// The limits of the robot, and the accuracy with which a tool observes the robot.
@@ -269,7 +269,7 @@ impl Observer {
         self.advance(time);
         match event {
             Event::TimePasses => {}
-            Event::ProgramStart(cause) => self.note_program_start(cause),
+            Event::ProgramStart(cause) => self.record_program_start(cause),
             Event::ProgramCut => self.cut_at = time,
             Event::MainStalled(until) => {
                 self.disturbed_until = self.disturbed_until.max(until);
@@ -281,7 +281,7 @@ impl Observer {
                 self.disturbed_until = self.disturbed_until.max(until);
                 self.cancel_promises();
                 for servo in &mut self.servos {
-                    servo.note_blocked_interrupts(until);
+                    servo.record_blocked_interrupts(until);
                 }
             }
             Event::SupplyMv(mv) => {
@@ -299,7 +299,7 @@ impl Observer {
             Event::MotionCommand {
                 effect,
                 is_accepted,
-            } => self.note_motion_command(effect, is_accepted),
+            } => self.record_motion_command(effect, is_accepted),
             Event::CalibrationChanged { is_saved } => {
                 self.has_unsaved_settings = !is_saved;
                 if !is_saved {
@@ -322,7 +322,7 @@ impl Observer {
             Event::LinePrinted(first_byte_at, line) => self.check_printed_line(first_byte_at, line),
             Event::Pulse(pulse) => self.check_pulse(pulse),
             Event::ByteWritten => self.check_write(),
-            Event::Fault => self.reports.note_stop(time),
+            Event::Fault => self.reports.record_stop(time),
         }
     }
 
@@ -339,7 +339,7 @@ impl Observer {
             && is_undisturbed
             && self.supply.is_low_since(stop_mv, low_since)
         {
-            self.reports.note_stop(self.now);
+            self.reports.record_stop(self.now);
         }
     }
 
@@ -350,7 +350,7 @@ impl Observer {
         self.pending_promises.pulses_after_status = None;
     }
 
-    fn note_program_start(&mut self, cause: Cause) {
+    fn record_program_start(&mut self, cause: Cause) {
         let now = self.now;
         // A brown-out may last a long time, so the program hung if a disturbance came shortly before the brown-out
         // began.
@@ -369,7 +369,7 @@ impl Observer {
                 cause => cause == Cause::Power,
             };
             self.servos[servo].is_position_lost |= is_ram_lost;
-            self.servos[servo].note_restart(
+            self.servos[servo].record_restart(
                 has_hung,
                 self.permission.is_granted,
                 keeps_position,
@@ -385,7 +385,7 @@ impl Observer {
         self.first_rest_at = NEVER;
         self.unfinished_motion_count = 0;
         self.permission
-            .note_start(cause, now, self.limits.can_boot_to_rest);
+            .record_start(cause, now, self.limits.can_boot_to_rest);
         let is_rest_promised = matches!(
             self.pending_promises.no_pulses,
             Some((.., Rule::RestEndsPulses))
@@ -398,7 +398,7 @@ impl Observer {
             no_pulses,
             ..PendingPromises::default()
         };
-        self.reports.note_start(cause, now);
+        self.reports.record_start(cause, now);
     }
 
     /// Returns the total time for which main was stalled in the 300 ms before `time`.
@@ -432,14 +432,14 @@ impl Observer {
         }
     }
 
-    fn note_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
+    fn record_motion_command(&mut self, effect: Effect, is_accepted: Option<bool>) {
         self.pending_promises.motion = None;
         if is_accepted == Some(false) {
             return;
         }
         self.last_motion_command_at = self.now;
         self.pending_promises = PendingPromises::default();
-        if effect == Effect::Rests {
+        if effect == Effect::Rest {
             self.rest_command_at = self.now;
             for servo in &mut self.servos {
                 servo.forget_reset();
@@ -447,12 +447,12 @@ impl Observer {
         } else {
             self.first_rest_at = NEVER;
         }
-        if effect == Effect::Moves {
-            self.reports.note_motion_command(is_accepted.is_some());
+        if effect == Effect::Motion {
+            self.reports.record_motion_command(is_accepted.is_some());
             self.unfinished_motion_count += 1;
         }
         let is_undisturbed = self.disturbed_until <= self.now;
-        self.permission.note_motion_command(
+        self.permission.record_motion_command(
             self.now,
             effect,
             is_accepted.is_some() && is_undisturbed,

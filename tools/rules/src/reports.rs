@@ -36,14 +36,14 @@ impl Default for Reports {
 
 impl Reports {
     /// Records that a fault stops the robot, unless the robot is already stopped.
-    pub(crate) fn note_stop(&mut self, time: Time) {
+    pub(crate) fn record_stop(&mut self, time: Time) {
         if self.stopped_at.is_none() {
             self.stopped_at = Some(time);
             self.is_reported = self.may_still_be_stopped || time - self.reported_at < 400 * MS;
         }
     }
 
-    pub(crate) fn note_start(&mut self, cause: Cause, time: Time) {
+    pub(crate) fn record_start(&mut self, cause: Cause, time: Time) {
         *self = Self::default();
         if cause == Cause::Watchdog {
             self.stopped_at = Some(time);
@@ -51,7 +51,7 @@ impl Reports {
     }
 
     /// Records a motion command, which ends a stop. `is_certain` is false if the command may have been lost.
-    pub(crate) const fn note_motion_command(&mut self, is_certain: bool) {
+    pub(crate) const fn record_motion_command(&mut self, is_certain: bool) {
         let was_reported = self.stopped_at.is_some() && self.is_reported;
         self.may_still_be_stopped = !is_certain && (was_reported || self.may_still_be_stopped);
         self.stopped_at = None;
@@ -72,14 +72,14 @@ impl Observer {
                 self.last_command_read_at = self.now;
             }
         }
-        self.note_accepted_command(line);
+        self.record_accepted_command(line);
         if line.starts_with("# fault: ") || line.starts_with("# held") {
             self.reports.is_reported = true;
             self.reports.reported_at = self.now;
             if line.contains("no command within") {
                 // Soon after a command, the line may report a stop that the command has already ended.
                 if first_byte_at - self.last_motion_command_at >= self.limits.max_queue_time {
-                    self.reports.note_stop(self.now);
+                    self.reports.record_stop(self.now);
                 }
                 let silence = first_byte_at - self.last_command_at;
                 if (self.limits.max_queue_time..self.deadman_time).contains(&silence) {
@@ -105,7 +105,7 @@ impl Observer {
                 self.boot_rest_at = self.now;
             }
             self.unfinished_motion_count += 1;
-            self.permission.note_boot(self.now, boot_action);
+            self.permission.record_boot(self.now, boot_action);
         }
         let reports_rest = line.ends_with("pulses off") || line.contains("several times in a row");
         // If a command arrived while the line waited or was printed, the line no longer describes the robot.
@@ -116,7 +116,7 @@ impl Observer {
     }
 
     /// Updates `deadman_time` and `is_gait_or_routine` from an answer. A refusal changes nothing.
-    pub(crate) fn note_accepted_command(&mut self, answer: &str) {
+    pub(crate) fn record_accepted_command(&mut self, answer: &str) {
         let Some(accepted) = answer.strip_prefix("ok ") else {
             return;
         };
@@ -130,7 +130,7 @@ impl Observer {
         match Word::find(word.as_bytes()).map(Word::effect) {
             // A word that is not a command is the name of a gait or a routine.
             None if !word.starts_with("gait=") => self.is_gait_or_routine = word != "stand",
-            Some(Effect::Moves | Effect::Calibrates) => self.is_gait_or_routine = false,
+            Some(Effect::Motion | Effect::CalibrationChange) => self.is_gait_or_routine = false,
             _ => {}
         }
     }

@@ -5,11 +5,11 @@ use lizard_core::memory::restart::Cause;
 use lizard_rules::{Event, Limits, MS, Observer, Pulse, Rule, Time};
 
 const REST: Event<'_> = Event::MotionCommand {
-    effect: Effect::Rests,
+    effect: Effect::Rest,
     is_accepted: Some(true),
 };
 const STAND: Event<'_> = Event::MotionCommand {
-    effect: Effect::Moves,
+    effect: Effect::Motion,
     is_accepted: Some(true),
 };
 const REPEATED_RESETS_REPORT: &str =

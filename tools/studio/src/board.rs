@@ -16,7 +16,7 @@ const STOP_DISTANCE_MM: f64 = 110.0;
 
 /// A board that is lifted, with a robot on it.
 #[derive(Clone, Copy)]
-pub struct Board {
+pub struct LiftedBoard {
     /// Coefficient of static friction.
     pub static_friction: f64,
     /// Coefficient of sliding friction.
@@ -36,7 +36,7 @@ pub struct Board {
 }
 
 /// A board that is lifted evenly. Its robot faces downhill and slides straight down.
-pub const EVEN_BOARD: Board = Board {
+pub const EVENLY_LIFTED_BOARD: LiftedBoard = LiftedBoard {
     static_friction: 0.75,
     sliding_friction: 0.68,
     lift_deg_per_s: 6.0,
@@ -47,7 +47,7 @@ pub const EVEN_BOARD: Board = Board {
     slide_direction_deg: 0.0,
 };
 
-impl Board {
+impl LiftedBoard {
     /// Returns the board's tilt at a time, deg.
     fn tilt_deg_at(&self, seconds: f64) -> f64 {
         (self.start_tilt_deg + self.lift_deg_per_s * (seconds - self.lift_start_s).max(0.0))

@@ -13,7 +13,7 @@ use lizard_video::{Frame, sheet};
 pub type Pose = [f64; 3];
 type Vector = [f64; 3];
 
-/// Grey of the black squares of a tag.
+/// Grey of the black cells of a tag.
 const BLACK_GREY: f64 = 35.0;
 /// Grey of the paper.
 const PAPER_GREY: f64 = 205.0;
@@ -95,7 +95,7 @@ impl Studio {
 
     /// True if the corners of both strips are in the frame.
     fn sees_strips(&self) -> bool {
-        let view = self.view();
+        let optics = self.optics();
         let [half_length, half_width] = sheet::STRIP_SIZE.map(|length| length / 2.0);
         self.strips.iter().all(|&[x, y, heading]| {
             let (sin, cos) = heading.sin_cos();
@@ -106,14 +106,14 @@ impl Studio {
                 [-half_length, -half_width],
             ]
             .into_iter()
-            .map(|[u, v]| view.project([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
+            .map(|[u, v]| optics.project([x + u * cos - v * sin, y + u * sin + v * cos], 0.0))
             .all(|pixel| (0..2).all(|i| (0.0..self.size[i] as f64).contains(&pixel[i])))
         })
     }
 
     /// Returns a studio with a random camera, which may not see the strips.
     fn random_camera(rng: &mut Rng) -> Self {
-        let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        let mut random_between = |min: f64, max: f64| min + (max - min) * rng.f64();
         Self {
             size: [1280, 720],
             focal_length: random_between(0.72, 0.9),
@@ -150,27 +150,28 @@ impl Studio {
         }
     }
 
-    /// Returns the camera's position and its axes (right, down, ahead), in the axes of the tilted board.
+    /// Returns the camera's position and its axes (right, down, forward), in the axes of the tilted board.
     fn camera(&self) -> (Vector, [Vector; 3]) {
         let (tilt, direction) = (
             self.camera_tilt.to_radians(),
             self.camera_direction.to_radians(),
         );
         let horizontal = [tilt.sin() * direction.cos(), tilt.sin() * direction.sin()];
-        let ahead = [horizontal[0], horizontal[1], -tilt.cos()];
+        let forward = [horizontal[0], horizontal[1], -tilt.cos()];
         let distance = self.camera_height / tilt.cos();
         let eye = [
-            self.aim[0] - distance * ahead[0],
-            self.aim[1] - distance * ahead[1],
+            self.aim[0] - distance * forward[0],
+            self.aim[1] - distance * forward[1],
             self.camera_height,
         ];
         // The axis to the right is level before the roll.
         let level_right = [direction.sin(), -direction.cos(), 0.0];
-        let down = cross_product(ahead, level_right);
+        let down = cross_product(forward, level_right);
         let (sin, cos) = self.camera_roll.to_radians().sin_cos();
         let right = [0, 1, 2].map(|i| cos * level_right[i] + sin * down[i]);
         let [x, y, z] = self.to_board_axes([eye[0] - TILT_EDGE_X_MM, eye[1], eye[2]]);
-        let axes = [right, cross_product(ahead, right), ahead].map(|axis| self.to_board_axes(axis));
+        let axes = [right, cross_product(forward, right), forward];
+        let axes = axes.map(|axis| self.to_board_axes(axis));
         ([x + TILT_EDGE_X_MM, y, z], axes)
     }
 
@@ -180,10 +181,10 @@ impl Studio {
         [x * cos + z * sin, y, z * cos - x * sin]
     }
 
-    fn view(&self) -> View {
+    fn optics(&self) -> Optics {
         let (eye, axes) = self.camera();
         let [width, height] = self.size.map(|length| length as f64);
-        View {
+        Optics {
             eye,
             axes,
             focal_length: self.focal_length * width,
@@ -195,25 +196,25 @@ impl Studio {
     /// Renders the floor and the strips without the robot.
     pub fn render_background(&self, rng: &mut Rng) -> Background {
         let [width, height] = self.size;
-        let view = self.view();
+        let optics = self.optics();
         let mut grey_levels = vec![0f32; width * height];
         for (i, grey) in grey_levels.iter_mut().enumerate() {
             let (x, y) = ((i % width) as f64, (i / width) as f64);
-            let pixel_centre = view.point_at_height([x, y], 0.0);
+            let pixel_centre = optics.point_at_height([x, y], 0.0);
             let is_near = (0..2).any(|strip| {
                 let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
             *grey = match is_near {
                 true => average_over_pixel(|dx, dy| {
-                    self.floor_grey_at(view.point_at_height([x + dx, y + dy], 0.0))
+                    self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
                 }) as f32,
                 false => self.floor_grey as f32,
             };
         }
         Background {
             studio: self.clone(),
-            view,
+            optics,
             grey_levels,
             noise: (0..NOISE_COUNT)
                 .map(|_| (self.noise * random_normal(rng)) as f32)
@@ -249,8 +250,8 @@ impl Studio {
         self.floor_grey
     }
 
-    /// Returns the grey of a point on the robot's card; `None` outside the card. The point's coordinates are to the
-    /// right and ahead of the tag's centre.
+    /// Returns the grey of a point on the robot's card; `None` outside the card. The point's coordinates are relative
+    /// to the tag's centre: to the right, and forward.
     fn card_grey_at(&self, [x, y]: [f64; 2]) -> Option<f64> {
         let [x, y] = [x / self.print_scale[0], y / self.print_scale[1]];
         let min_y = -sheet::DECK_TAG_EDGE / 2.0 - sheet::CARD_MARGIN;
@@ -268,14 +269,14 @@ impl Studio {
 /// A rendered studio without the robot.
 pub struct Background {
     studio: Studio,
-    view: View,
+    optics: Optics,
     grey_levels: Vec<f32>,
     /// Random numbers for the noise; each run of successive pixels starts at a random index.
     noise: Vec<f32>,
 }
 
 /// The optics of the camera: converts between pixels and points.
-struct View {
+struct Optics {
     eye: Vector,
     axes: [Vector; 3],
     focal_length: f64,
@@ -283,7 +284,7 @@ struct View {
     image_centre: [f64; 2],
 }
 
-impl View {
+impl Optics {
     /// Returns the point that a pixel shows at a height: the intersection of the pixel's ray with the plane at that
     /// height.
     fn point_at_height(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
@@ -297,8 +298,8 @@ impl View {
             let factor = self.distortion_factor(u, v);
             [u, v] = [distorted[0] / factor, distorted[1] / factor];
         }
-        let [right, down, ahead] = &self.axes;
-        let ray = [0, 1, 2].map(|i| ahead[i] + u * right[i] + v * down[i]);
+        let [right, down, forward] = &self.axes;
+        let ray = [0, 1, 2].map(|i| forward[i] + u * right[i] + v * down[i]);
         let distance = (height - self.eye[2]) / ray[2];
         [
             self.eye[0] + distance * ray[0],
@@ -310,10 +311,10 @@ impl View {
     fn project(&self, [x, y]: [f64; 2], height: f64) -> [f64; 2] {
         let offset = [x - self.eye[0], y - self.eye[1], height - self.eye[2]];
         let component_along = |axis: &Vector| (0..3).map(|i| axis[i] * offset[i]).sum::<f64>();
-        let [right, down, ahead] = &self.axes;
+        let [right, down, forward] = &self.axes;
         let [u, v] = [
-            component_along(right) / component_along(ahead),
-            component_along(down) / component_along(ahead),
+            component_along(right) / component_along(forward),
+            component_along(down) / component_along(forward),
         ];
         let distance = self.focal_length * self.distortion_factor(u, v);
         [
@@ -353,7 +354,7 @@ impl Background {
         let middle_pose = rows[height / 2][SHUTTER_SAMPLES / 2];
         let body_half_size = [(BODY_HALF_SIZE[0] + 5.0), (BODY_HALF_SIZE[1] + 5.0)];
         self.for_each_pixel(middle_pose, body_half_size, BODY_HEIGHT_MM, |i, [x, y]| {
-            let [u, v] = middle_pose.to_robot(self.view.point_at_height([x, y], BODY_HEIGHT_MM));
+            let [u, v] = middle_pose.to_robot(self.optics.point_at_height([x, y], BODY_HEIGHT_MM));
             if u.abs() < BODY_HALF_SIZE[0] && v.abs() < BODY_HALF_SIZE[1] {
                 grey_levels[i] = BODY_GREY as f32;
             }
@@ -372,7 +373,7 @@ impl Background {
                 let card_grey = |pose: &LocalAxes| {
                     average_over_pixel(|dx, dy| {
                         let point = pose.to_robot(
-                            self.view
+                            self.optics
                                 .point_at_height([x + dx, y + dy], studio.deck_tag_height),
                         );
                         studio.card_grey_at(point).unwrap_or(background_grey)
@@ -409,18 +410,19 @@ impl Background {
         mut visit: impl FnMut(usize, [f64; 2]),
     ) {
         let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[a, b]| {
-            let (right, ahead) = (a * half_size[0], b * half_size[1]);
-            let floor = [x + ahead * cos + right * sin, y + ahead * sin - right * cos];
-            self.view.project(floor, height)
+            let (right, forward) = (a * half_size[0], b * half_size[1]);
+            let floor = [
+                x + forward * cos + right * sin,
+                y + forward * sin - right * cos,
+            ];
+            self.optics.project(floor, height)
         });
         let size = self.studio.size;
         let pixel_range = |i: usize| {
-            let low = corners
-                .iter()
-                .map(|corner| corner[i])
-                .fold(f64::INFINITY, f64::min);
-            let high = corners.iter().map(|corner| corner[i]).fold(0.0, f64::max);
-            (low.max(0.0) as usize)..((high + 1.0).max(0.0) as usize).min(size[i])
+            let positions = corners.iter().map(|corner| corner[i]);
+            let min = positions.clone().fold(f64::INFINITY, f64::min);
+            let max = positions.fold(0.0, f64::max);
+            (min.max(0.0) as usize)..((max + 1.0).max(0.0) as usize).min(size[i])
         };
         for row in pixel_range(1) {
             for column in pixel_range(0) {
@@ -440,10 +442,10 @@ fn average_over_pixel(sample: impl Fn(f64, f64) -> f64) -> f64 {
 
 /// Returns the grey of a tag at a point relative to the tag's centre; `None` outside the tag.
 fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
-    let square = sheet::tag_edge(id) / sheet::SQUARES_PER_SIDE as f64;
-    let half = sheet::SQUARES_PER_SIDE as f64 / 2.0;
-    let (column, row) = ((x / square + half).floor(), (half - y / square).floor());
-    let tag_range = 0.0..sheet::SQUARES_PER_SIDE as f64;
+    let cell = sheet::tag_edge(id) / sheet::CELLS_PER_SIDE as f64;
+    let half_count = sheet::CELLS_PER_SIDE as f64 / 2.0;
+    let [column, row] = [x / cell + half_count, half_count - y / cell].map(f64::floor);
+    let tag_range = 0.0..sheet::CELLS_PER_SIDE as f64;
     let is_inside = tag_range.contains(&column) && tag_range.contains(&row);
     is_inside.then(
         || match sheet::is_white(id, row as usize, column as usize) {
@@ -469,10 +471,10 @@ impl LocalAxes {
         [dx * cos + dy * sin, dy * cos - dx * sin]
     }
 
-    /// Converts a point on the floor to the robot's axes: right, ahead.
+    /// Converts a point on the floor to the robot's axes: right, forward.
     fn to_robot(self, point: [f64; 2]) -> [f64; 2] {
-        let [ahead, left] = self.to_local(point);
-        [-left, ahead]
+        let [forward, left] = self.to_local(point);
+        [-left, forward]
     }
 }
 

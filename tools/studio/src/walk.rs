@@ -2,7 +2,7 @@
 //! robot.
 
 use fastrand::Rng;
-use lizard_robot::{Place, Robot, Travel};
+use lizard_robot::{BodyPose, Robot, Travel};
 use lizard_twin::{ServoModel, Twin};
 use lizard_video::Gait;
 
@@ -17,26 +17,23 @@ pub fn paper_gait(name: &str) -> Gait {
         Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid");
     let gait = robot.gait(name).expect("the robot has this gait");
     let mut twin = Twin::new(&robot, ServoModel::for_robot(&robot));
-    let frame_count = gait.frames().count() - 1;
-    let mut places = Vec::new();
+    let phases: Vec<u16> = gait.frames().map(|(_, phase)| phase).collect();
+    let frame_count = phases.len() - 1;
+    let mut poses = Vec::new();
     for i in 0..=2 * frame_count {
-        let phase = gait
-            .frames()
-            .nth(i % frame_count)
-            .expect("every cycle has this frame")
-            .1;
-        let place = twin.simulate_angles(gait.table_angles(phase)).place;
+        let angles = gait.table_angles(phases[i % frame_count]);
+        let pose = twin.simulate_angles(angles).body_pose;
         if i >= frame_count {
-            places.push(place);
+            poses.push(pose);
         }
     }
-    let relative_place = |place: &Place| {
-        let travel = place.travel_from(places[0]);
-        to_place([travel.forward, travel.left, travel.turn.to_radians()])
+    let relative_pose = |pose: &BodyPose| {
+        let travel = pose.travel_from(poses[0]);
+        to_body_pose([travel.forward, travel.left, travel.turn.to_radians()])
     };
     Gait {
         period: gait.period(),
-        path: places.iter().map(relative_place).collect(),
+        path: poses.iter().map(relative_pose).collect(),
     }
 }
 
@@ -47,8 +44,8 @@ const PARTS_PER_CYCLE: usize = 12;
 pub struct Walk {
     gait: Gait,
     period: f64,
-    /// The place at the start of each cycle, and at the end of the last cycle.
-    cycle_starts: Vec<Place>,
+    /// The pose at the start of each cycle, and at the end of the last cycle.
+    cycle_starts: Vec<BodyPose>,
     /// The deviation of each cycle from the gait at the ends of its parts: mm, mm, rad.
     deviations: Vec<[[f64; 3]; PARTS_PER_CYCLE + 1]>,
 }
@@ -65,7 +62,7 @@ pub struct Variation {
 }
 
 impl Walk {
-    /// Creates a walk of some cycles of a gait, from a place.
+    /// Creates a walk of some cycles of a gait, from a pose.
     pub fn new(
         gait: &Gait,
         start: Pose,
@@ -73,7 +70,7 @@ impl Walk {
         variation: Variation,
         rng: &mut Rng,
     ) -> Self {
-        let mut cycle_starts = vec![to_place(start)];
+        let mut cycle_starts = vec![to_body_pose(start)];
         let mut deviations = Vec::new();
         for _ in 0..cycle_count {
             let mut cycle_deviations = [[0.0; 3]; PARTS_PER_CYCLE + 1];
@@ -84,10 +81,10 @@ impl Walk {
                 cycle_deviations[i] =
                     [0, 1, 2].map(|axis| cycle_deviations[i - 1][axis] + step[axis]);
             }
-            let start_place = cycle_starts[cycle_starts.len() - 1];
+            let start_pose = cycle_starts[cycle_starts.len() - 1];
             cycle_starts.push(compose(
-                compose(start_place, gait.path[gait.path.len() - 1]),
-                to_place(cycle_deviations[PARTS_PER_CYCLE]),
+                compose(start_pose, gait.path[gait.path.len() - 1]),
+                to_body_pose(cycle_deviations[PARTS_PER_CYCLE]),
             ));
             deviations.push(cycle_deviations);
         }
@@ -116,13 +113,13 @@ impl Walk {
             path[position as usize + 1],
             position.fract(),
         );
-        let interpolate = |coordinate: fn(&Place) -> f64| {
+        let interpolate = |coordinate: fn(&BodyPose) -> f64| {
             coordinate(&a) + fraction * (coordinate(&b) - coordinate(&a))
         };
-        let gait_place = to_place([
-            interpolate(|place| place.forward),
-            interpolate(|place| place.left),
-            interpolate(|place| place.heading),
+        let gait_pose = to_body_pose([
+            interpolate(|pose| pose.forward),
+            interpolate(|pose| pose.left),
+            interpolate(|pose| pose.heading),
         ]);
         let position = cycle_fraction * PARTS_PER_CYCLE as f64;
         let (i, fraction) = (position as usize, position.fract());
@@ -131,11 +128,11 @@ impl Walk {
             self.deviations[cycle][(i + 1).min(PARTS_PER_CYCLE)],
         ];
         let deviation = [0, 1, 2].map(|axis| from[axis] + fraction * (to[axis] - from[axis]));
-        let place = compose(
-            compose(self.cycle_starts[cycle], gait_place),
-            to_place(deviation),
+        let pose = compose(
+            compose(self.cycle_starts[cycle], gait_pose),
+            to_body_pose(deviation),
         );
-        [place.forward, place.left, place.heading]
+        [pose.forward, pose.left, pose.heading]
     }
 }
 
@@ -201,16 +198,16 @@ pub fn true_displacement(gait: &Gait) -> Travel {
     gait.path[gait.path.len() - 1].travel()
 }
 
-fn to_place([forward, left, heading]: [f64; 3]) -> Place {
-    Place {
+fn to_body_pose([forward, left, heading]: [f64; 3]) -> BodyPose {
+    BodyPose {
         forward,
         left,
         heading,
     }
 }
 
-/// Converts a place relative to `from` to a place on the floor.
-fn compose(from: Place, relative: Place) -> Place {
+/// Converts a pose relative to `from` to a pose on the floor.
+fn compose(from: BodyPose, relative: BodyPose) -> BodyPose {
     let [forward, left] = from.to_floor([relative.forward, relative.left]);
-    to_place([forward, left, from.heading + relative.heading])
+    to_body_pose([forward, left, from.heading + relative.heading])
 }

@@ -1,13 +1,13 @@
 // The worker of FasterSearch: a robot in WebAssembly that can search for a faster gait.
 import { expose } from 'comlink';
 
-import { type Found, initSync, Robot, type SearchTask, type Trial } from '../../generated/tune';
+import { type FoundGait, initSync, Robot, type SearchTask, type Trial } from '../../generated/tune';
 import { isRefused, type OnFloor } from '../robot';
 
 let robot: Robot;
 
 /** A found gait, with its trial on the page's floor with the page's servos. */
-export interface BestGait extends Found {
+export interface BestGait extends FoundGait {
   trial: Trial;
 }
 
@@ -22,21 +22,21 @@ const api = {
     robot.read(toml);
     robot.setFloor(floor);
     robot.setServos(servos);
-    const search = robot.makeFaster(task);
+    const search = robot.beginSearch(task);
     if (isRefused(search)) throw new Error(search.refused);
-    return { ...search, referenceTrial: robot.trial(task.bars) as Trial };
+    return { ...search, referenceTrial: robot.tryGait(task.bars) as Trial };
   },
 
   /** Tries one more gait; returns the number of tried gaits and the best score. */
-  tryNext: () => robot.fasterStep(),
+  tryNext: () => robot.tryNextGait(),
 
   /**
    * Compares the best gait so far with the gait to beat on `robotCount` random robots. Returns null until a gait stays
    * within the limits.
    */
   compareBest(robotCount: number): BestGait | null {
-    const bestGait = robot.fasterFound(robotCount);
-    return bestGait && { ...bestGait, trial: robot.trial(bestGait.bars) as Trial };
+    const bestGait = robot.compareBestGait(robotCount);
+    return bestGait && { ...bestGait, trial: robot.tryGait(bestGait.bars) as Trial };
   },
 };
 

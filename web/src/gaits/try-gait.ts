@@ -1,30 +1,30 @@
 // Puts an edited gait into the page's robot and starts it in the simulation.
-import type { EditedGait, Refused } from '../robot';
+import type { EditedGait, Refusal } from '../robot';
 import type { Session } from '../session';
 
 /** Simulated time between a restart and standing, ms. */
 const WAKE_MS = 2500;
 
 /** Puts the gait into the session's robot. A real board has the gait only after the robot is written to it. */
-export async function applyGait(session: Session, gait: EditedGait): Promise<Refused | null> {
+export async function applyGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   return session.change(session.robot.putGait(session.toml, gait));
 }
 
 /**
- * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refused for a real board,
- * which has only the gaits that were written to it.
+ * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refuses a real board, which
+ * has only the gaits that were written to it.
  */
-export async function tryGait(session: Session, gait: EditedGait): Promise<Refused | null> {
+export async function tryGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   const refusal = await restartWithGait(session, gait);
   if (!refusal) await session.drive(gait.name.replaceAll('-', ' '));
   return refusal;
 }
 
 /**
- * Puts the gait into the session's robot, restarts the simulated board and waits until the robot stands. Refused for a
- * real board.
+ * Puts the gait into the session's robot, restarts the simulated board and waits until the robot stands. Refuses a real
+ * board.
  */
-export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refused | null> {
+export async function restartWithGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   if (session.isReal) {
     return { refused: 'A real board has only the gaits that were written to it. Write this gait to the board, or return to the simulation to try it.', consequence: null, line: null, key: '' };
   }

@@ -4,11 +4,11 @@ import { sleep, type Link } from './link';
 
 /** The serial services of the HM-10 and Nordic's modules, each with its characteristics for writing and reading. */
 const SERIAL_SERVICES = [
-  { service: 0xffe0, to: 0xffe1, from: 0xffe1 },
+  { service: 0xffe0, write: 0xffe1, read: 0xffe1 },
   {
     service: '6e400001-b5a3-f393-e0a9-e50e24dcca9e',
-    to: '6e400002-b5a3-f393-e0a9-e50e24dcca9e',
-    from: '6e400003-b5a3-f393-e0a9-e50e24dcca9e',
+    write: '6e400002-b5a3-f393-e0a9-e50e24dcca9e',
+    read: '6e400003-b5a3-f393-e0a9-e50e24dcca9e',
   },
 ];
 /** Name prefixes of modules that do not advertise their service. */
@@ -84,13 +84,13 @@ export class BluetoothLink implements Link {
     for (const candidate of SERIAL_SERVICES) {
       const service = await server.getPrimaryService(candidate.service).catch(() => null);
       if (!service) continue;
-      const readCharacteristic = await service.getCharacteristic(candidate.from);
+      const readCharacteristic = await service.getCharacteristic(candidate.read);
       readCharacteristic.addEventListener('characteristicvaluechanged', () => {
         const { value } = readCharacteristic;
         if (value) this.onBytes(new Uint8Array(value.buffer, value.byteOffset, value.byteLength).slice());
       });
       await readCharacteristic.startNotifications();
-      this.writeCharacteristic = candidate.to === candidate.from ? readCharacteristic : await service.getCharacteristic(candidate.to);
+      this.writeCharacteristic = candidate.write === candidate.read ? readCharacteristic : await service.getCharacteristic(candidate.write);
       return;
     }
     this.gatt.disconnect();
@@ -110,10 +110,10 @@ export class BluetoothLink implements Link {
   }
 
   write(bytes: Uint8Array): Promise<void> {
-    return (this.pendingWrites = this.pendingWrites.catch(() => {}).then(() => this.send(bytes)));
+    return (this.pendingWrites = this.pendingWrites.catch(() => {}).then(() => this.sendPackets(bytes)));
   }
 
-  private async send(bytes: Uint8Array): Promise<void> {
+  private async sendPackets(bytes: Uint8Array): Promise<void> {
     for (let start = 0; start < bytes.length; start += MAX_PACKET_BYTES) {
       const characteristic = this.writeCharacteristic;
       if (!characteristic) throw new Error(`the ${this.name} is out of range`);

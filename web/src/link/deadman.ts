@@ -21,11 +21,11 @@ export class Deadman {
   constructor(private readonly dialogue: Dialogue) {}
 
   /** True while the robot has, or will soon have, the page's setting. */
-  get isSet(): boolean {
+  get isEngaged(): boolean {
     return this.confirmation !== null;
   }
 
-  /** Sets `deadman` before a gait; resolves to false if the robot does not confirm it; then no gait may start. */
+  /** Sets `deadman` before a gait. Resolves to false if the robot does not confirm it; no gait may start then. */
   engage(): Promise<boolean> {
     return (this.confirmation ??= this.setAndConfirm());
   }
@@ -34,9 +34,9 @@ export class Deadman {
     if (this.robotSettingMs === null) await this.readSetting();
     const ms = this.robotSettingMs ? Math.min(this.robotSettingMs, DRIVING_DEADMAN_MS) : DRIVING_DEADMAN_MS;
     const line = `${WORDS.deadman} ${ms}`;
-    const isSet = (await this.askQuietly(line))?.ok ?? false;
-    if (isSet && this.isSet) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
-    return isSet;
+    const isConfirmed = (await this.askQuietly(line))?.ok ?? false;
+    if (isConfirmed && this.isEngaged) this.dialogue.keepAlive(line, Math.floor(ms / LINES_PER_DEADMAN));
+    return isConfirmed;
   }
 
   private async readSetting(): Promise<void> {
@@ -45,8 +45,8 @@ export class Deadman {
     if (ms !== undefined) this.robotSettingMs = Number(ms) === DRIVING_DEADMAN_MS ? 0 : Number(ms);
   }
 
-  /** Notes a change of the robot's own setting by a user's line, if the robot accepted the line. */
-  noteLine(line: string, isAccepted: boolean): void {
+  /** Records a change of the robot's own setting by a user's line, if the robot accepted the line. */
+  observeUserLine(line: string, isAccepted: boolean): void {
     if (!isAccepted) return;
     const [word, ms] = line.split(/\s+/);
     if (word === WORDS.deadman) this.robotSettingMs = Number(ms);
@@ -61,7 +61,7 @@ export class Deadman {
   /** Restores the robot's own setting. */
   restore(): void {
     this.stopRepeating();
-    if (!this.isSet) return;
+    if (!this.isEngaged) return;
     this.confirmation = null;
     if (this.robotSettingMs !== null) void this.askQuietly(`${WORDS.deadman} ${this.robotSettingMs}`);
   }

@@ -6,18 +6,18 @@ import type { Link } from './link';
 
 /** The beginning of the firmware's banner, which is its first line after a reset. */
 export const BANNER_PREFIX = '# lizard ';
-/** Largest length of a line from the robot, characters; a longer line is noise and is truncated. */
+/** Largest length of a line from the robot, characters; a longer line is noise and loses its beginning. */
 const MAX_LINE_LENGTH = 500;
-/** Longest time until an answer, ms. */
-const TIMEOUT_MS = 3000;
+/** Longest wait for an answer, ms. */
+const ANSWER_TIMEOUT_MS = 3000;
 /** Interval between repetitions of an unanswered `stop`, ms. */
 const STOP_INTERVAL_MS = 250;
 /** Longest time between the first answer to a repeated `stop` and the answers to the repetitions, ms. */
 const LATE_STOP_ANSWERS_MS = 500;
 /** Time without an expected answer after which the robot counts as silent, ms. */
 export const SILENCE_MS = 800;
-/** Texts that a Bluetooth module inserts into the line when it connects and disconnects. */
-const MODULE_TEXTS = /OK\+(CONN|LOST)/g;
+/** Messages that a Bluetooth module inserts into the line when it connects and disconnects. */
+const BLUETOOTH_MODULE_MESSAGES = /OK\+(CONN|LOST)/g;
 /**
  * A refusal of `stop` by a board that sends no pulses because it rests or has no robot in its flash. The whole line
  * must match: a line that a radio truncated may be the beginning of an earlier answer.
@@ -47,22 +47,22 @@ export interface DialogueListener {
   onStopping(isStopping: boolean): void;
 }
 
-/** Thrown for a question that is dropped before its answer arrives. */
-export class DroppedQuestion extends Error {}
+/** Thrown for a request that is dropped before its answer arrives. */
+export class DroppedRequest extends Error {}
 
 interface PromiseCallbacks {
   resolve: (answer: Answer) => void;
   reject: (error: Error) => void;
 }
 
-interface Question extends PromiseCallbacks {
+interface Request extends PromiseCallbacks {
   line: string;
   isQuiet: boolean;
   timeoutMs: number;
 }
 
 /** An unanswered `stop`: the callbacks of its callers, and the number of times that it was sent. */
-interface Stop {
+interface PendingStop {
   callers: PromiseCallbacks[];
   sendCount: number;
 }
@@ -81,17 +81,20 @@ export class Dialogue {
   private readonly decoder = new TextDecoder('latin1');
   /** The received part of the incomplete line. */
   private partialLine = '';
-  private readonly waitingQuestions: Question[] = [];
-  private pendingQuestion: Question | null = null;
-  private pendingStop: Stop | null = null;
+  private readonly queuedRequests: Request[] = [];
+  private pendingRequest: Request | null = null;
+  private pendingStop: PendingStop | null = null;
   /** Pending while answers to repetitions of `stop` may arrive; no other line is sent meanwhile. */
-  private lateAnswers: Promise<void> | null = null;
+  private lateAnswerPeriod: Promise<void> | null = null;
   private isSilent = false;
-  /** The line that is repeated independently of other lines; null for none. */
+  /**
+   * The line that is repeated independently of other lines; null for none. An object, so that a new repetition of the
+   * same line differs from the previous one.
+   */
   private keepAliveLine: { line: string } | null = null;
   /** The expected answer to the repeated line; it is not shown. */
   private keepAliveAnswer = '';
-  /** The # lines since the last question. */
+  /** The # lines since the last request. */
   private notes: string[] = [];
   /** True once the dialogue is closed; another user of the link, such as the boot loader, may then take over. */
   isClosed = false;
@@ -107,35 +110,35 @@ export class Dialogue {
    * Sends a line and waits at most `timeoutMs` for its answer. Sends `stop` at once, and waits for its answer without a
    * time limit. A quiet line and its answer are not shown.
    */
-  ask(line: string, isQuiet = false, timeoutMs = TIMEOUT_MS): Promise<Answer> {
+  ask(line: string, isQuiet = false, timeoutMs = ANSWER_TIMEOUT_MS): Promise<Answer> {
     return new Promise((resolve, reject) => {
       if (this.isClosed) throw new Error(`"${line}" was not sent: the boot loader is using the serial line`);
-      if (line.trim().toLowerCase() === WORDS.stop) return this.halt({ resolve, reject });
-      this.waitingQuestions.push({ line, isQuiet, timeoutMs, resolve, reject });
+      if (line.trim().toLowerCase() === WORDS.stop) return this.sendStop({ resolve, reject });
+      this.queuedRequests.push({ line, isQuiet, timeoutMs, resolve, reject });
       void this.sendNext();
     });
   }
 
-  /** Drops all questions: the board restarts, or another user takes over the link. */
-  dropQuestions(): void {
-    const dropped = [...(this.pendingQuestion ? [this.pendingQuestion] : []), ...(this.pendingStop?.callers ?? [])];
-    this.pendingQuestion = null;
+  /** Drops all requests: the board restarts, or another user takes over the link. */
+  dropRequests(): void {
+    const dropped = [...(this.pendingRequest ? [this.pendingRequest] : []), ...(this.pendingStop?.callers ?? [])];
+    this.pendingRequest = null;
     this.partialLine = '';
     this.notes = [];
     if (this.pendingStop) this.listener.onStopping(false);
     this.pendingStop = null;
     this.setSilent(false);
-    for (const { reject } of dropped) reject(new DroppedQuestion());
-    this.dropWaitingQuestions();
+    for (const { reject } of dropped) reject(new DroppedRequest());
+    this.dropQueuedRequests();
   }
 
-  private dropWaitingQuestions(): void {
-    for (const { reject } of this.waitingQuestions.splice(0)) reject(new DroppedQuestion());
+  private dropQueuedRequests(): void {
+    for (const { reject } of this.queuedRequests.splice(0)) reject(new DroppedRequest());
   }
 
-  /** Stops the robot, and drops the waiting lines, which could make the robot walk again. */
-  private halt(callbacks: PromiseCallbacks): void {
-    this.dropWaitingQuestions();
+  /** Sends `stop`, and drops the queued lines, which could make the robot walk again. */
+  private sendStop(callbacks: PromiseCallbacks): void {
+    this.dropQueuedRequests();
     if (this.pendingStop) {
       this.pendingStop.callers.push(callbacks);
       return;
@@ -147,10 +150,10 @@ export class Dialogue {
     void this.link.wait(SILENCE_MS).then(() => this.pendingStop === stop && this.setSilent(true));
   }
 
-  private async repeatStop(stop: Stop): Promise<void> {
+  private async repeatStop(stop: PendingStop): Promise<void> {
     while (this.pendingStop === stop) {
       stop.sendCount += 1;
-      // The link reports a lost port.
+      // A lost port is ignored here, because the link reports it.
       this.link.write(this.encoder.encode(`${WORDS.stop}\n`)).catch(() => {});
       await this.link.wait(STOP_INTERVAL_MS);
     }
@@ -170,18 +173,18 @@ export class Dialogue {
     void repeatLine();
   }
 
-  private finishStop(stop: Stop, answer: Answer): void {
+  private finishStop(stop: PendingStop, answer: Answer): void {
     this.pendingStop = null;
     this.listener.onStopping(false);
     this.setSilent(false);
     // Answers arrive in order; therefore the answer to the line before `stop` was lost.
-    const { pendingQuestion: question } = this;
-    this.pendingQuestion = null;
-    question?.reject(new DroppedQuestion());
+    const { pendingRequest: request } = this;
+    this.pendingRequest = null;
+    request?.reject(new DroppedRequest());
     for (const { resolve } of stop.callers) resolve(answer);
-    const lateAnswers = (this.lateAnswers = stop.sendCount > 1 ? this.link.wait(LATE_STOP_ANSWERS_MS) : null);
-    void lateAnswers?.then(() => {
-      if (this.lateAnswers === lateAnswers) this.lateAnswers = null;
+    const lateAnswerPeriod = (this.lateAnswerPeriod = stop.sendCount > 1 ? this.link.wait(LATE_STOP_ANSWERS_MS) : null);
+    void lateAnswerPeriod?.then(() => {
+      if (this.lateAnswerPeriod === lateAnswerPeriod) this.lateAnswerPeriod = null;
       void this.sendNext();
     });
     void this.sendNext();
@@ -196,25 +199,25 @@ export class Dialogue {
   /** Closes the dialogue and frees the link for another user. */
   close(): void {
     this.isClosed = true;
-    this.dropQuestions();
+    this.dropRequests();
   }
 
   private async sendNext(): Promise<void> {
-    if (this.pendingQuestion || this.pendingStop || this.lateAnswers || this.isClosed) return;
-    const question = this.waitingQuestions.shift();
-    if (!question) return;
-    this.pendingQuestion = question;
+    if (this.pendingRequest || this.pendingStop || this.lateAnswerPeriod || this.isClosed) return;
+    const request = this.queuedRequests.shift();
+    if (!request) return;
+    this.pendingRequest = request;
     this.notes = [];
-    if (!question.isQuiet) this.listener.onSent(question.line);
+    if (!request.isQuiet) this.listener.onSent(request.line);
     try {
-      await this.link.write(this.encoder.encode(`${question.line}\n`));
-      void this.link.wait(SILENCE_MS).then(() => this.pendingQuestion === question && this.setSilent(true));
-      await this.link.wait(question.timeoutMs);
-      if (this.pendingQuestion === question) throw new Error(`no answer to "${question.line}"`);
+      await this.link.write(this.encoder.encode(`${request.line}\n`));
+      void this.link.wait(SILENCE_MS).then(() => this.pendingRequest === request && this.setSilent(true));
+      await this.link.wait(request.timeoutMs);
+      if (this.pendingRequest === request) throw new Error(`no answer to "${request.line}"`);
     } catch (error) {
-      if (this.pendingQuestion !== question) return;
-      this.pendingQuestion = null;
-      question.reject(error instanceof Error ? error : new Error(String(error)));
+      if (this.pendingRequest !== request) return;
+      this.pendingRequest = null;
+      request.reject(error instanceof Error ? error : new Error(String(error)));
       void this.sendNext();
     }
   }
@@ -229,14 +232,14 @@ export class Dialogue {
 
   private receiveLine(received: string): void {
     // A reset truncates the line that the board is sending; the banner follows on the same line.
-    const line = received.slice(Math.max(0, received.indexOf(BANNER_PREFIX))).replace(MODULE_TEXTS, '');
+    const line = received.slice(Math.max(0, received.indexOf(BANNER_PREFIX))).replace(BLUETOOTH_MODULE_MESSAGES, '');
     if (line === '') return;
     this.listener.onAnyLine(line);
-    const { pendingQuestion: question, pendingStop: stop } = this;
+    const { pendingRequest: request, pendingStop: stop } = this;
     const isAnswer = /^(ok|err)\b/.test(line);
     if (!isAnswer) {
       // Settings that the page itself requested are not shown.
-      if (!(question?.isQuiet && getFirstWord(question.line) === WORDS.cal && SETTING_LINE.test(line))) this.listener.onShownLine(line);
+      if (!(request?.isQuiet && getFirstWord(request.line) === WORDS.cal && SETTING_LINE.test(line))) this.listener.onShownLine(line);
       this.notes.push(line);
       return;
     }
@@ -246,15 +249,15 @@ export class Dialogue {
       this.finishStop(stop, { ok: line.startsWith('ok'), text: line, notes: [] });
       return;
     }
-    const isExpected = question !== null && canAnswer(line, question.line);
-    const isQuiet = isExpected ? question.isQuiet : line === this.keepAliveAnswer;
+    const isExpected = request !== null && canAnswer(line, request.line);
+    const isQuiet = isExpected ? request.isQuiet : line === this.keepAliveAnswer;
     if (!isQuiet) this.listener.onShownLine(line);
     if (!isExpected) return;
-    this.pendingQuestion = null;
+    this.pendingRequest = null;
     this.setSilent(false);
     const { notes } = this;
     this.notes = [];
-    question.resolve({ ok: line.startsWith('ok'), text: line, notes });
+    request.resolve({ ok: line.startsWith('ok'), text: line, notes });
     void this.sendNext();
   }
 }

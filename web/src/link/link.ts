@@ -17,13 +17,11 @@ export interface Link {
   readonly name: string;
   /** True if the board may be an Arduino Nano, because both boards use its USB chip. */
   readonly mayBeNano?: boolean;
-  /** Called with received bytes. */
   onBytes: (bytes: Uint8Array) => void;
   /** Called with the reason, a sentence, when the board is gone. */
   onGone?: (reason: string) => void;
   /** Called with false when a radio's board goes out of range, and with true when it is back in range. */
   onRange?: (isInRange: boolean) => void;
-  /** Sends bytes. */
   write(bytes: Uint8Array): Promise<void>;
   /** Resets the board, as opening a port does, and sets the baud rate of a real line. */
   reset(baud?: number): Promise<void>;
@@ -35,18 +33,18 @@ export interface Link {
 
 /** Timers in simulated time, whose unit the caller chooses. */
 export class Timers {
-  private pendingTimers: { due: number; resolve: () => void }[] = [];
+  private pendingTimers: { dueTime: number; resolve: () => void }[] = [];
 
-  /** Resolves once the simulated time has reached `due`. */
-  waitUntil(due: number): Promise<void> {
-    return new Promise((resolve) => this.pendingTimers.push({ due, resolve }));
+  /** Resolves once the simulated time has reached `dueTime`. */
+  waitUntil(dueTime: number): Promise<void> {
+    return new Promise((resolve) => this.pendingTimers.push({ dueTime, resolve }));
   }
 
-  /** Resolves the timers that are due at `now`. */
+  /** Resolves the timers whose time has come at `now`. */
   advanceTo(now: number): void {
-    const dueTimers = this.pendingTimers.filter(({ due }) => due <= now);
+    const dueTimers = this.pendingTimers.filter(({ dueTime }) => dueTime <= now);
     if (dueTimers.length === 0) return;
-    this.pendingTimers = this.pendingTimers.filter(({ due }) => due > now);
+    this.pendingTimers = this.pendingTimers.filter(({ dueTime }) => dueTime > now);
     for (const { resolve } of dueTimers) resolve();
   }
 }

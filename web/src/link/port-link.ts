@@ -7,7 +7,6 @@ import { BAUD_RATE, GONE_MESSAGE, sleep, type Link } from './link';
 const SERIAL_PROFILE = '00001101-0000-1000-8000-00805f9b34fb';
 /** The USB vendor ids of arduino.cc and arduino.org, whose chips are used on UNOs but not on Nanos. */
 const ARDUINO_VENDOR_IDS = [0x2341, 0x2a03];
-/** The message for a browser without Web Serial. */
 export const NO_SERIAL_MESSAGE = 'This browser cannot connect to a board on USB, because it has no Web Serial. Chrome, Chromium, Edge and newer Firefox have Web Serial, on localhost and over https.';
 /** Duration of the pulse on the reset line, ms. */
 const RESET_PULSE_MS = 50;

@@ -1,7 +1,7 @@
 // The link to a simulated UNO, which runs its image cycle by cycle, only in `advance`.
 import type { Four } from '../robot';
-import { SimulatedBoard, FREQUENCY_HZ } from '../uno/board';
-import { FrameCollector } from '../uno/frames';
+import { SimulatedBoard, FREQUENCY_HZ } from '../uno/simulated-board';
+import { FrameCollector } from '../uno/frame-collector';
 import { type Link, Timers } from './link';
 
 const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
@@ -9,7 +9,7 @@ const CYCLES_PER_MS = FREQUENCY_HZ / 1000;
 const SLICE_MS = 2;
 
 /** Callbacks for the servo pulses of the simulated board. */
-export interface UnoEvents {
+export interface UnoListener {
   /** Receives a frame: the pulse width of each servo in cycles, 0 for none, and the cycle of the first rising edge. */
   onFrame(widths: Four<number>, cycle: number): void;
   /** Receives a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
@@ -31,12 +31,12 @@ export class UnoLink implements Link {
   constructor(
     readonly board: SimulatedBoard,
     pins: number[],
-    events: UnoEvents,
+    listener: UnoListener,
   ) {
-    this.frameCollector = new FrameCollector(pins, events.onFrame);
+    this.frameCollector = new FrameCollector(pins, listener.onFrame);
     board.onByte = (byte) => this.bytesFromBoard.push(byte);
     board.onPulse = (pin, rise, width) => {
-      events.onPulse(pin, rise, width);
+      listener.onPulse(pin, rise, width);
       this.frameCollector.add(pin, rise, width);
     };
   }
@@ -61,7 +61,6 @@ export class UnoLink implements Link {
     }
   }
 
-  /** Sends bytes to the board. */
   async write(bytes: Uint8Array): Promise<void> {
     this.board.send(bytes);
   }
@@ -71,7 +70,6 @@ export class UnoLink implements Link {
     this.board.reset('external');
   }
 
-  /** Waits in simulated time. */
   wait(ms: number): Promise<void> {
     return this.timers.waitUntil(this.board.cycle + ms * CYCLES_PER_MS);
   }

@@ -2,7 +2,7 @@
 // tags, and records the times of each walk. The protocol ends at any other activity of the robot, such as `stop` or
 // another gait, and when the link is lost.
 import { DONE_LINE, GAITS, WORDS } from '../words';
-import type { OffsetToMiddle } from './tag-tracker';
+import type { OffsetToCentre } from './tag-tracker';
 
 /**
  * Limits of a return to the centre of the sheet by a gait: cycles per attempt, attempts, and the smallest fraction of
@@ -23,7 +23,7 @@ const MAX_UNSEEN_S = 2;
  */
 export const MIN_CYCLES = 4;
 
-/** A walk of the robot. */
+/** A measured walk of the robot. */
 export interface Walk {
   gait: string;
   /** Start and end on the video's clock, s. */
@@ -53,7 +53,7 @@ export interface Plan {
 }
 
 /** The protocol's interface to the robot, the camera and the user. */
-export interface Stage {
+export interface ProtocolEnvironment {
   /** Sends a line; resolves to true if the robot accepts it. */
   ask: (line: string) => Promise<boolean>;
   /** The video's clock, s. */
@@ -64,12 +64,11 @@ export interface Stage {
   predictions: () => PredictedCycle[];
   /** Asks the user to put the robot back; resolves when the robot is back, or when the protocol has ended. */
   putBack: () => Promise<void>;
-  /** Shows the progress to the user. */
   showProgress: (text: string) => void;
 }
 
 /** Thrown when the protocol ends before its last walk; `message` is the reason. */
-export class Interrupted extends Error {}
+export class ProtocolInterrupted extends Error {}
 
 /** A walk that has not ended yet. */
 interface ActiveWalk {
@@ -77,14 +76,14 @@ interface ActiveWalk {
   /** Smallest distance of the robot from the centre so far, mm; null until the robot has accepted the gait. */
   nearestMm: number | null;
   /** True if the walk was ended before its last cycle. */
-  isCut: boolean;
+  isCutShort: boolean;
   /** The end of the walk on the video's clock, s; null until it has ended. */
   endSeconds: number | null;
   resolve: () => void;
   reject: (error: Error) => void;
 }
 
-const distance = ({ forward, left }: OffsetToMiddle) => Math.hypot(forward, left);
+const distance = ({ forward, left }: OffsetToCentre) => Math.hypot(forward, left);
 
 export class Protocol {
   /** The measured walks so far, without returns. */
@@ -95,22 +94,22 @@ export class Protocol {
   /** Called when the protocol ends. */
   onEnd: () => void = () => {};
   /** The reason why the protocol has ended; null until then. */
-  private endReason: Interrupted | null = null;
+  private endReason: ProtocolInterrupted | null = null;
   /** The last detected offset, and its time on the video's clock, s; null before the first. */
-  private lastSighting: { offset: OffsetToMiddle; seconds: number } | null = null;
+  private lastSighting: { offset: OffsetToCentre; seconds: number } | null = null;
 
-  constructor(private readonly stage: Stage) {}
+  constructor(private readonly environment: ProtocolEnvironment) {}
 
-  /** Drives all gaits of a plan. Throws {@link Interrupted}; `walks` then has the walks so far. */
+  /** Drives all gaits of a plan. Throws {@link ProtocolInterrupted}; `walks` then has the walks so far. */
   async run({ gaits, cycles, speed, pause }: Plan): Promise<void> {
-    const { stage } = this;
+    const { environment } = this;
     await this.ask(`${WORDS.speed} ${speed}`);
     for (const [i, { command, period }] of gaits.entries()) {
-      const { forward = 0 } = stage.predictions().find((predicted) => predicted.command === command) ?? {};
+      const { forward = 0 } = environment.predictions().find((predicted) => predicted.command === command) ?? {};
       for (let cyclesLeft = cycles; cyclesLeft >= MIN_CYCLES; ) {
         await this.goBack(cyclesLeft * forward);
         await this.wait(pause);
-        stage.showProgress(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
+        environment.showProgress(`${i + 1} of ${gaits.length}: ${command}, ${cyclesLeft} cycles`);
         const [start, end] = await this.walk(command, cyclesLeft, (during) => this.walks.push({ gait: command, during }));
         cyclesLeft -= Math.max(MIN_CYCLES, Math.floor(((end - start) * speed) / 100 / period));
       }
@@ -122,24 +121,24 @@ export class Protocol {
    * Sets the robot's offset in the latest frame; null if the frame does not show the robot. Ends a walk that leaves the
    * sheet.
    */
-  setPlace(offset: OffsetToMiddle | null): void {
+  setOffset(offset: OffsetToCentre | null): void {
     if (!offset) return;
-    this.lastSighting = { offset, seconds: this.stage.now() };
+    this.lastSighting = { offset, seconds: this.environment.now() };
     const { activeWalk } = this;
     if (activeWalk === null || activeWalk.nearestMm === null) return;
     activeWalk.nearestMm = Math.min(activeWalk.nearestMm, distance(offset));
-    if (offset.isNear && distance(offset) > activeWalk.nearestMm + MAX_OUTWARD_MM) this.cut(activeWalk);
+    if (offset.isNearEdge && distance(offset) > activeWalk.nearestMm + MAX_OUTWARD_MM) this.cutShort(activeWalk);
   }
 
-  /** Notes a line that was sent to the robot. A line from another part of the page may end the protocol. */
-  noteSent(line: string): void {
+  /** Handles a line that was sent to the robot. A line from another part of the page may end the protocol. */
+  handleSent(line: string): void {
     const isWalk = ({ command }: PredictedCycle) => line === command || line.startsWith(`${command} `);
     if (line === WORDS.stop) this.end('it was stopped');
-    else if (line !== this.lastSent && this.stage.predictions().some(isWalk)) this.end(`the robot was sent "${line}"`);
+    else if (line !== this.lastSent && this.environment.predictions().some(isWalk)) this.end(`the robot was sent "${line}"`);
   }
 
-  /** Notes a line from the robot. `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
-  noteReceived(line: string): void {
+  /** Handles a line from the robot. `DONE_LINE` ends a walk, and arrives before `setActivity` is called. */
+  handleReceived(line: string): void {
     if (line !== DONE_LINE || !this.activeWalk) return;
     this.finish(this.activeWalk);
     this.activeWalk = null;
@@ -150,7 +149,7 @@ export class Protocol {
     const { activeWalk } = this;
     const isWalking = activeWalk?.gait === activity;
     const isStanding = activity === WORDS.stop || activity === GAITS.stand;
-    if (isWalking || (isStanding && (activeWalk === null || activeWalk.isCut))) return;
+    if (isWalking || (isStanding && (activeWalk === null || activeWalk.isCutShort))) return;
     this.end(activity === '' ? 'the link to the robot was cut, or it was reset' : `the robot does "${activity}"`);
   }
 
@@ -158,20 +157,20 @@ export class Protocol {
   stop(reason: string): void {
     const wasWalking = this.activeWalk !== null;
     this.end(reason);
-    if (wasWalking) void this.stage.ask(WORDS.stop);
+    if (wasWalking) void this.environment.ask(WORDS.stop);
   }
 
   /** Ends the protocol: nothing more is sent. */
   end(reason: string): void {
-    this.endReason ??= new Interrupted(reason);
+    this.endReason ??= new ProtocolInterrupted(reason);
     if (this.activeWalk) this.finish(this.activeWalk, this.endReason);
     this.activeWalk = null;
     this.onEnd();
   }
 
   /** The robot's last offset; null if the camera has not detected the robot for `MAX_UNSEEN_S`. */
-  private get lastOffset(): OffsetToMiddle | null {
-    return this.lastSighting && this.stage.now() - this.lastSighting.seconds < MAX_UNSEEN_S ? this.lastSighting.offset : null;
+  private get lastOffset(): OffsetToCentre | null {
+    return this.lastSighting && this.environment.now() - this.lastSighting.seconds < MAX_UNSEEN_S ? this.lastSighting.offset : null;
   }
 
   /**
@@ -180,24 +179,24 @@ export class Protocol {
    */
   private async goBack(forwardMm: number): Promise<void> {
     for (let attempt = 0; ; attempt++) {
-      const { lastOffset: offset, stage } = this;
-      const isOnSheet = offset !== null && !offset.isNear;
+      const { lastOffset: offset, environment } = this;
+      const isOnSheet = offset !== null && !offset.isNearEdge;
       const wouldLeave = offset !== null && attempt === 0 && distance(offset) > RETURN_DISTANCE_MM && Math.hypot(offset.forward - forwardMm, offset.left) > offset.reach;
       if (isOnSheet && !wouldLeave) return;
       const gait = offset && attempt < RETURN_LIMITS.maxAttempts && Math.abs(offset.forward) > RETURN_LIMITS.minForwardFraction * distance(offset) ? this.findGaitToward(offset.forward) : null;
       if (offset && gait) {
-        stage.showProgress(`Back to the centre by ${gait.command}`);
+        environment.showProgress(`Back to the centre by ${gait.command}`);
         await this.walk(gait.command, Math.min(RETURN_LIMITS.maxCycles, Math.max(1, Math.round(offset.forward / gait.forward))));
       } else if (isOnSheet) return;
-      else await stage.putBack();
+      else await environment.putBack();
       this.throwIfEnded();
     }
   }
 
-  /** Finds the gait that moves farthest ahead (back if `offsetMm` is negative) and hardly turns; null without one. */
+  /** Finds the gait that moves farthest forward (back if `offsetMm` is negative) and hardly turns, if there is one. */
   private findGaitToward(offsetMm: number): PredictedCycle | null {
     const progress = ({ forward, turn }: PredictedCycle) => (Math.abs(turn) < RETURN_GAIT.maxTurnDeg ? forward * Math.sign(offsetMm) : 0);
-    const [best] = this.stage.predictions().sort((a, b) => progress(b) - progress(a));
+    const [best] = this.environment.predictions().sort((a, b) => progress(b) - progress(a));
     return best && progress(best) > RETURN_GAIT.minForwardMm ? best : null;
   }
 
@@ -206,13 +205,13 @@ export class Protocol {
    * is called with both even if the walk is interrupted.
    */
   private async walk(gait: string, cycles: number, record: (during: [number, number]) => void = () => {}): Promise<[number, number]> {
-    const { stage } = this;
-    const activeWalk: ActiveWalk = { gait, nearestMm: null, isCut: false, endSeconds: null, resolve: () => {}, reject: () => {} };
+    const { environment } = this;
+    const activeWalk: ActiveWalk = { gait, nearestMm: null, isCutShort: false, endSeconds: null, resolve: () => {}, reject: () => {} };
     const walkEnd = new Promise<void>((resolve, reject) => Object.assign(activeWalk, { resolve, reject }));
     // The promise may reject before it is awaited.
     walkEnd.catch(() => {});
     this.activeWalk = activeWalk;
-    const start = stage.now();
+    const start = environment.now();
     await this.ask(`${gait} ${cycles}`);
     activeWalk.nearestMm = this.lastOffset ? distance(this.lastOffset) : Infinity;
     void this.watch(activeWalk);
@@ -221,7 +220,7 @@ export class Protocol {
     } finally {
       record([start, activeWalk.endSeconds ?? start]);
     }
-    if (activeWalk.isCut) {
+    if (activeWalk.isCutShort) {
       await this.ask(GAITS.stand);
       this.activeWalk = null;
     }
@@ -230,20 +229,20 @@ export class Protocol {
 
   /** Ends a walk when the robot is no longer detected. */
   private async watch(activeWalk: ActiveWalk): Promise<void> {
-    while (this.activeWalk === activeWalk && !activeWalk.isCut) {
-      if (!this.lastOffset) return this.cut(activeWalk);
-      await this.stage.wait(MAX_UNSEEN_S / 4);
+    while (this.activeWalk === activeWalk && !activeWalk.isCutShort) {
+      if (!this.lastOffset) return this.cutShort(activeWalk);
+      await this.environment.wait(MAX_UNSEEN_S / 4);
     }
   }
 
   /** Ends a walk before its last cycle; the robot walks on until it is told to stand. */
-  private cut(activeWalk: ActiveWalk): void {
-    activeWalk.isCut = true;
+  private cutShort(activeWalk: ActiveWalk): void {
+    activeWalk.isCutShort = true;
     this.finish(activeWalk);
   }
 
   private finish(activeWalk: ActiveWalk, error?: Error): void {
-    activeWalk.endSeconds ??= this.stage.now();
+    activeWalk.endSeconds ??= this.environment.now();
     if (error) activeWalk.reject(error);
     else activeWalk.resolve();
   }
@@ -253,14 +252,14 @@ export class Protocol {
   }
 
   private async wait(seconds: number): Promise<void> {
-    await this.stage.wait(seconds);
+    await this.environment.wait(seconds);
     this.throwIfEnded();
   }
 
   private async ask(line: string): Promise<void> {
     this.throwIfEnded();
     this.lastSent = line;
-    if (!(await this.stage.ask(line))) this.stop(`the robot did not accept "${line}"`);
+    if (!(await this.environment.ask(line))) this.stop(`the robot did not accept "${line}"`);
     this.throwIfEnded();
   }
 }

@@ -1,4 +1,4 @@
-// Tracks the tags in the latest frames: the hidden tags, the robot's place and its path. Lengths are measured in the
+// Tracks the tags in the latest frames: the hidden tags, the robot's position and its path. Lengths are measured in the
 // frame and scaled by the floor tags, which is precise enough for a warning that the robot is about to leave the sheet,
 // but not for the measurement of a gait.
 import type { Pixel, TagEntry as Tag } from '../../generated/measure';
@@ -7,15 +7,15 @@ import type { Detection } from './worker';
 /** The names of the tags, indexed by their ids. */
 const TAG_NAMES = ['the left tag of strip 1', 'the right tag of strip 1', 'the left tag of strip 2', 'the right tag of strip 2', 'the tag on the deck'];
 /** The id of the tag on the robot's deck. */
-const DECK_ID = 4;
+const DECK_TAG_ID = 4;
 /** Edge length of a floor tag, mm. */
-const EDGE_MM = 50;
+const TAG_EDGE_MM = 50;
 /** Distance beyond the floor tags at which the robot is about to leave the sheet, mm. */
 const SHEET_MARGIN_MM = 50;
 /** Distance from the frame's edge at which the robot is about to leave the frame, mm. */
 const FRAME_MARGIN_MM = 150;
 /** Time over which the frame rate is averaged, ms. */
-const RATE_WINDOW_MS = 2000;
+const FRAME_RATE_WINDOW_MS = 2000;
 /** Number of consecutive frames without a tag after which the tag counts as hidden. */
 const MAX_MISSED_FRAMES = 3;
 
@@ -24,18 +24,18 @@ const length = ([x, y]: Pixel) => Math.hypot(x, y);
 const mean = (points: Pixel[]): Pixel => [0, 1].map((i) => points.reduce((sum, point) => sum + (point[i] ?? 0), 0) / points.length) as Pixel;
 
 /** The vector from the deck tag to the centre of the floor tags, relative to the robot's heading, mm. */
-export interface OffsetToMiddle {
+export interface OffsetToCentre {
   forward: number;
   left: number;
   /** Distance from the centre beyond which the robot is near the edge of the sheet, mm. */
   reach: number;
   /** True if the robot is beyond `reach`, or near the edge of the frame. */
-  isNear: boolean;
+  isNearEdge: boolean;
 }
 
 export class TagTracker {
   /** Width and height of the last frame, px. */
-  size: [number, number] = [1, 1];
+  frameSize: [number, number] = [1, 1];
   /** The tags in the last frame. */
   tags: Tag[] = [];
   /** The centre of the deck tag in each frame so far that shows it. */
@@ -46,17 +46,17 @@ export class TagTracker {
   private readonly floorTags: (Tag | undefined)[] = [];
   /** Number of latest consecutive frames without a tag, indexed by the tag's id. */
   private readonly missedFrames = TAG_NAMES.map(() => MAX_MISSED_FRAMES);
-  /** Arrival times of the frames in the last `RATE_WINDOW_MS`, on the page's clock, ms. */
+  /** Arrival times of the frames in the last `FRAME_RATE_WINDOW_MS`, on the page's clock, ms. */
   private readonly arrivalTimes: number[] = [];
 
   /** Adds the tags that were detected in the next frame. */
-  addDetection({ tags, size, searchMs }: Detection): void {
-    Object.assign(this, { tags, size, searchMs });
+  addDetection({ tags, frameSize, searchMs }: Detection): void {
+    Object.assign(this, { tags, frameSize, searchMs });
     for (const id of TAG_NAMES.keys()) this.missedFrames[id] = tags.some((tag) => tag.id === id) ? 0 : (this.missedFrames[id] ?? 0) + 1;
-    for (const tag of tags) if (tag.id !== DECK_ID) this.floorTags[tag.id] = tag;
-    if (this.deck) this.path.push(mean(this.deck.corners));
+    for (const tag of tags) if (tag.id !== DECK_TAG_ID) this.floorTags[tag.id] = tag;
+    if (this.deckTag) this.path.push(mean(this.deckTag.corners));
     this.arrivalTimes.push(performance.now());
-    while ((this.arrivalTimes[0] ?? 0) < performance.now() - RATE_WINDOW_MS) this.arrivalTimes.shift();
+    while ((this.arrivalTimes[0] ?? 0) < performance.now() - FRAME_RATE_WINDOW_MS) this.arrivalTimes.shift();
   }
 
   /** The rate of the latest frames, 1/s. */
@@ -66,18 +66,18 @@ export class TagTracker {
   }
 
   /** The deck tag in the last frame; undefined if the frame does not show it. */
-  get deck(): Tag | undefined {
-    return this.tags.find(({ id }) => id === DECK_ID);
+  get deckTag(): Tag | undefined {
+    return this.tags.find(({ id }) => id === DECK_TAG_ID);
   }
 
   /** The vector toward the robot's head in the frame, as long as the deck tag; null if that tag is not visible. */
-  get heading(): Pixel | null {
-    if (!this.deck) return null;
-    const [a, b, c, d] = this.deck.corners;
+  get headingVector(): Pixel | null {
+    if (!this.deckTag) return null;
+    const [a, b, c, d] = this.deckTag.corners;
     return subtract(mean([a, b]), mean([c, d]));
   }
 
-  /** A sentence that names the hidden tags; empty if all tags are visible. */
+  /** A message that names the hidden tags; empty if all tags are visible. */
   get hiddenTagsMessage(): string {
     const hiddenNames = TAG_NAMES.filter((_, id) => (this.missedFrames[id] ?? 0) >= MAX_MISSED_FRAMES);
     if (hiddenNames.length === 0) return '';
@@ -87,25 +87,24 @@ export class TagTracker {
   }
 
   /** The vector from the robot to the centre; null if the deck tag or all floor tags are unknown. */
-  get offsetToMiddle(): OffsetToMiddle | null {
-    const { heading, deck, size } = this;
-    const floor = this.floorTags.filter((tag) => tag !== undefined);
-    if (!heading || !deck || floor.length === 0) return null;
-    const centres = floor.map(({ corners }) => mean(corners));
-    const edges = floor.map(({ corners }) => length(subtract(corners[0], corners[1])));
-    const scale = EDGE_MM / (edges.reduce((sum, edge) => sum + edge, 0) / edges.length);
-    const [deckCentre, centre] = [mean(deck.corners), mean(centres)];
+  get offsetToCentre(): OffsetToCentre | null {
+    const { headingVector: heading, deckTag, frameSize } = this;
+    const floorTags = this.floorTags.filter((tag) => tag !== undefined);
+    if (!heading || !deckTag || floorTags.length === 0) return null;
+    const tagCentres = floorTags.map(({ corners }) => mean(corners));
+    const edgeLengths = floorTags.map(({ corners }) => length(subtract(corners[0], corners[1])));
+    const scale = TAG_EDGE_MM / (edgeLengths.reduce((sum, edgeLength) => sum + edgeLength, 0) / edgeLengths.length);
+    const [deckCentre, centre] = [mean(deckTag.corners), mean(tagCentres)];
     const offset = subtract(centre, deckCentre);
     const headingLength = length(heading);
     const forward = ((offset[0] * heading[0] + offset[1] * heading[1]) / headingLength) * scale;
     const left = ((offset[0] * heading[1] - offset[1] * heading[0]) / headingLength) * scale;
-    const reach = Math.max(...centres.map((point) => length(subtract(point, centre)))) * scale + SHEET_MARGIN_MM;
-    const edgeDistance = Math.min(deckCentre[0], deckCentre[1], size[0] - deckCentre[0], size[1] - deckCentre[1]) * scale;
-    return { forward, left, reach, isNear: Math.hypot(forward, left) > reach || edgeDistance < FRAME_MARGIN_MM };
+    const reach = Math.max(...tagCentres.map((point) => length(subtract(point, centre)))) * scale + SHEET_MARGIN_MM;
+    const edgeDistance = Math.min(deckCentre[0], deckCentre[1], frameSize[0] - deckCentre[0], frameSize[1] - deckCentre[1]) * scale;
+    return { forward, left, reach, isNearEdge: Math.hypot(forward, left) > reach || edgeDistance < FRAME_MARGIN_MM };
   }
 
-  /** Clears the path. */
-  clear(): void {
+  clearPath(): void {
     this.path = [];
   }
 }

@@ -7,7 +7,7 @@ import { Camera, initSync, type MeasureRequest, type TagEntry } from '../../gene
 /** The tags in a frame, the frame's width and height, px, and the duration of the search, ms. */
 export interface Detection {
   tags: TagEntry[];
-  size: [number, number];
+  frameSize: [number, number];
   searchMs: number;
 }
 
@@ -15,7 +15,7 @@ let camera: Camera;
 /** The pixel formats that have the brightness as their first plane. */
 const LUMA_PLANE_FORMATS = ['I420', 'I420A', 'I422', 'I444', 'NV12'];
 /** A buffer for the planes of a frame, reused for frames of the same size. */
-let planes = new Uint8Array();
+let planeBuffer = new Uint8Array();
 const canvas = new OffscreenCanvas(1, 1);
 // Pixels are often read back, so the canvas is kept in main memory instead of the GPU.
 const context = canvas.getContext('2d', { willReadFrequently: true });
@@ -30,9 +30,9 @@ async function copyLuma(frame: VideoFrame): Promise<Uint8Array | null> {
   const isUnscaled = visibleRect?.width === displayWidth && visibleRect.height === displayHeight;
   if (!format || !LUMA_PLANE_FORMATS.includes(format) || !isUnscaled || rotation !== 0 || flip) return null;
   const size = frame.allocationSize();
-  if (planes.length !== size) planes = new Uint8Array(size);
-  const [firstPlane] = await frame.copyTo(planes);
-  return firstPlane?.offset === 0 && firstPlane.stride === displayWidth ? planes.subarray(0, displayWidth * displayHeight) : null;
+  if (planeBuffer.length !== size) planeBuffer = new Uint8Array(size);
+  const [firstPlane] = await frame.copyTo(planeBuffer);
+  return firstPlane?.offset === 0 && firstPlane.stride === displayWidth ? planeBuffer.subarray(0, displayWidth * displayHeight) : null;
 }
 
 /** Copies the pixels of a frame as RGBA, four bytes per pixel. */
@@ -68,7 +68,7 @@ const api = {
       const luma = 'codedWidth' in frame ? await copyLuma(frame).catch(() => null) : null;
       const pixels = luma ?? copyRgba(frame, width, height);
       frame.close();
-      return { tags: camera.findTags(width, height, pixels, seconds, isKept), size: [width, height], searchMs: performance.now() - startMs };
+      return { tags: camera.findTags(width, height, pixels, seconds, isKept), frameSize: [width, height], searchMs: performance.now() - startMs };
     }),
 
   /** Discards the video and starts a new one. */
@@ -82,7 +82,7 @@ const api = {
   measure: (request: MeasureRequest) => runInTurn(() => camera.measure(request)),
 
   /** Draws the sheet of tags as PDF, for US Letter paper if `isLetter`, otherwise for A4. */
-  sheet: (isLetter: boolean) => Camera.sheet(isLetter) as Uint8Array<ArrayBuffer>,
+  drawSheet: (isLetter: boolean) => Camera.drawSheet(isLetter) as Uint8Array<ArrayBuffer>,
 };
 
 export type VideoWorkerApi = typeof api;

@@ -5,20 +5,20 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import type { Place } from '../robot';
 import { getPalette, getServoColour } from '../view/palette';
 import type { BodyEntry } from '../../generated/parts';
-import type { Model, Solid } from './workshop';
-import { PaintBudget } from './paint-budget';
+import type { Model, Solid } from './make-parts';
+import { RenderBudget } from './render-budget';
 
 /** Lift of a body with `lift` 1 in the fully exploded view, mm, as in the guide's pictures. */
 const LIFT_MM = 45;
 /** Cell size of the floor's grid, mm. */
-const CELL_MM = 50;
-const CELLS_PER_SIDE = 16;
+const GRID_CELL_MM = 50;
+const GRID_CELLS_PER_SIDE = 16;
 /** Largest movement of the pointer during a click, CSS pixels. */
-const CLICK_PX = 5;
+const MAX_CLICK_MOVEMENT_PX = 5;
 /** Rotation of the view per key press, rad. */
-const TURN_RAD = Math.PI / 24;
-/** Time without a change after which the view counts as still, ms. */
-const STILL_MS = 400;
+const KEY_ROTATION_RAD = Math.PI / 24;
+/** Time after the last change at which the view counts as still, ms. */
+const STILL_AFTER_MS = 400;
 /** Fraction of the floor's colour in pale bodies: bodies of earlier steps, or all bodies that are not highlighted. */
 const PALE_FRACTION = 0.65;
 
@@ -41,7 +41,7 @@ export class RobotView {
   private readonly camera = new three.PerspectiveCamera(35, 1, 10, 4000);
   private readonly controls: OrbitControls;
   private readonly sun = new three.DirectionalLight(0xffffff, 2.2);
-  private readonly paintBudget: PaintBudget;
+  private readonly renderBudget: RenderBudget;
   private grid: three.GridHelper | null = null;
   private model: Model | null = null;
   private mounts: three.Group[] = [];
@@ -57,7 +57,7 @@ export class RobotView {
     onPick: (body: number | null) => void,
   ) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: true, powerPreference: 'low-power' });
-    this.paintBudget = new PaintBudget(this.renderer.getContext() as WebGL2RenderingContext);
+    this.renderBudget = new RenderBudget(this.renderer.getContext() as WebGL2RenderingContext);
     this.camera.up.set(0, 0, 1);
     // The sun is behind the viewer, a little to the side.
     this.sun.position.set(-0.6, 0.9, 1.2);
@@ -80,7 +80,7 @@ export class RobotView {
     let pressed: { x: number; y: number } | null = null;
     canvas.addEventListener('pointerdown', ({ offsetX: x, offsetY: y }) => (pressed = { x, y }));
     canvas.addEventListener('pointerup', ({ offsetX: x, offsetY: y }) => {
-      if (pressed && Math.hypot(x - pressed.x, y - pressed.y) < CLICK_PX) onPick(this.findBody(x, y));
+      if (pressed && Math.hypot(x - pressed.x, y - pressed.y) < MAX_CLICK_MOVEMENT_PX) onPick(this.findBody(x, y));
       pressed = null;
     });
     canvas.addEventListener('pointercancel', () => (pressed = null));
@@ -93,38 +93,36 @@ export class RobotView {
 
   /** Rotates, zooms or resets the view, depending on the key; returns false if the key has no effect. */
   handleKey(key: string): boolean {
-    // Changes of azimuth and elevation, rad, and the factor of the camera's distance; the factor 0 resets the view.
-    const movesByKey: Record<string, [number, number, number]> = {
-      ArrowLeft: [-TURN_RAD, 0, 1],
-      ArrowRight: [TURN_RAD, 0, 1],
-      ArrowUp: [0, TURN_RAD, 1],
-      ArrowDown: [0, -TURN_RAD, 1],
-      '+': [0, 0, 0.87],
-      '-': [0, 0, 1.15],
-      Home: [0, 0, 0],
+    const actions: Record<string, () => void> = {
+      ArrowLeft: () => this.moveCamera(-KEY_ROTATION_RAD, 0, 1),
+      ArrowRight: () => this.moveCamera(KEY_ROTATION_RAD, 0, 1),
+      ArrowUp: () => this.moveCamera(0, KEY_ROTATION_RAD, 1),
+      ArrowDown: () => this.moveCamera(0, -KEY_ROTATION_RAD, 1),
+      '+': () => this.moveCamera(0, 0, 0.87),
+      '-': () => this.moveCamera(0, 0, 1.15),
+      Home: () => this.resetView(),
     };
-    const move = movesByKey[key];
-    if (!move) return false;
-    const [azimuthChange, elevationChange, distanceFactor] = move;
-    if (distanceFactor === 0) this.resetView();
-    else {
-      const { target } = this.controls;
-      const offset = this.camera.position.clone().sub(target);
-      const elevation = Math.asin(Math.max(-1, Math.min(1, offset.z / offset.length())));
-      const maxElevation = Math.PI / 2 - 0.05;
-      const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + elevationChange));
-      const newAzimuth = Math.atan2(offset.y, offset.x) + azimuthChange;
-      const distance = Math.max(this.controls.minDistance, Math.min(this.controls.maxDistance, offset.length() * distanceFactor));
-      this.camera.position.set(Math.cos(newAzimuth) * Math.cos(newElevation), Math.sin(newAzimuth) * Math.cos(newElevation), Math.sin(newElevation));
-      this.camera.position.multiplyScalar(distance).add(target);
-      this.controls.update();
-    }
+    actions[key]?.();
+    return key in actions;
+  }
+
+  /** Changes the camera's azimuth and elevation, rad, and multiplies its distance by a factor. */
+  private moveCamera(azimuthChange: number, elevationChange: number, distanceFactor: number): void {
+    const { target, minDistance, maxDistance } = this.controls;
+    const offset = this.camera.position.clone().sub(target);
+    const elevation = Math.asin(Math.max(-1, Math.min(1, offset.z / offset.length())));
+    const maxElevation = Math.PI / 2 - 0.05;
+    const newElevation = Math.max(-maxElevation, Math.min(maxElevation, elevation + elevationChange));
+    const newAzimuth = Math.atan2(offset.y, offset.x) + azimuthChange;
+    const distance = Math.max(minDistance, Math.min(maxDistance, offset.length() * distanceFactor));
+    this.camera.position.set(Math.cos(newAzimuth) * Math.cos(newElevation), Math.sin(newAzimuth) * Math.cos(newElevation), Math.sin(newElevation));
+    this.camera.position.multiplyScalar(distance).add(target);
+    this.controls.update();
     this.needsRendering = true;
-    return true;
   }
 
   /** Resets the camera to the guide's view: from behind, from the left and from above. */
-  resetView(): void {
+  private resetView(): void {
     this.controls.target.set(0, -30, 5);
     // The camera is farther away for a narrow canvas, to show the whole robot.
     const { clientWidth, clientHeight } = this.canvas;
@@ -171,7 +169,7 @@ export class RobotView {
     this.scene.background = floor;
     if (this.grid) this.scene.remove(this.grid);
     this.grid?.dispose();
-    this.grid = new three.GridHelper(CELL_MM * CELLS_PER_SIDE, CELLS_PER_SIDE, colours.grid, colours.grid);
+    this.grid = new three.GridHelper(GRID_CELL_MM * GRID_CELLS_PER_SIDE, GRID_CELLS_PER_SIDE, colours.grid, colours.grid);
     this.grid.geometry.rotateX(Math.PI / 2);
     this.grid.matrixAutoUpdate = false;
     this.scene.add(this.grid);
@@ -202,7 +200,7 @@ export class RobotView {
 
   /** Returns true if a frame may be rendered now; must be called once per animation frame. */
   mayRender(): boolean {
-    return this.paintBudget.mayRender();
+    return this.renderBudget.mayRender();
   }
 
   /** Renders a frame if the view has changed and `mayRender()` is true. `place` is the robot's place on the floor. */
@@ -212,8 +210,8 @@ export class RobotView {
     const now = performance.now();
     if (this.needsRendering) this.changedAt = now;
     // A still view is rendered again at full resolution.
-    const isStill = now - this.changedAt > STILL_MS;
-    const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.paintBudget.resolution);
+    const isStill = now - this.changedAt > STILL_AFTER_MS;
+    const ratio = Math.min(2, devicePixelRatio) * (isStill ? 1 : this.renderBudget.resolution);
     const size = this.renderer.getSize(new three.Vector2());
     if (size.x !== width || size.y !== height || this.renderer.getPixelRatio() !== ratio) {
       this.renderer.setPixelRatio(ratio);
@@ -226,21 +224,21 @@ export class RobotView {
     this.needsRendering = false;
     this.moveGrid(place);
     this.renderer.render(this.scene, this.camera);
-    this.paintBudget.noteFrame(isStill);
+    this.renderBudget.recordFrame(isStill);
   }
 
-  /** Moves the floor's grid below the robot, which stays in the middle of the view. */
+  /** Moves the floor's grid under the robot, so that the robot stays in the middle of the view. */
   private moveGrid({ x, y, heading }: Place): void {
     if (!this.grid) return;
-    const turn = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
-    const wrapToCell = (value: number) => value - CELL_MM * Math.round(value / CELL_MM);
-    const depth = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
-    const shift = new three.Matrix4().makeTranslation(-wrapToCell(x), -wrapToCell(y), depth);
-    this.grid.matrix.copy(turn.multiply(shift));
+    const rotation = new three.Matrix4().makeRotationZ((-heading * Math.PI) / 180);
+    const wrapToCell = (value: number) => value - GRID_CELL_MM * Math.round(value / GRID_CELL_MM);
+    const floorZ = this.settings.guideStep === null ? -(this.model?.floor ?? 0) : -2 * (this.model?.floor ?? 0);
+    const translation = new three.Matrix4().makeTranslation(-wrapToCell(x), -wrapToCell(y), floorZ);
+    this.grid.matrix.copy(rotation.multiply(translation));
     this.grid.matrixWorldNeedsUpdate = true;
   }
 
-  /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null for an empty point. */
+  /** Returns the index of the foremost body at a point of the canvas, CSS pixels; null if no body is there. */
   private findBody(x: number, y: number): number | null {
     const { clientWidth, clientHeight } = this.canvas;
     const ray = new three.Raycaster();
@@ -262,7 +260,7 @@ const KIND_COLOURS: Partial<Record<BodyEntry['kind'], string>> = {
   fitting: '#8a6d4b',
 };
 
-/** Returns a body's colour: a printed part has its servo's colour, as in the drawing, else the material's colour. */
+/** Returns a body's colour: that of its servo, or else of the plate, for a printed part; that of its kind otherwise. */
 function chooseColour({ kind, servo }: BodyEntry): string {
   const { 'skin-edge': plate, tube, steel } = getPalette();
   if (kind === 'printed') return servo === null ? plate : getServoColour(servo);

@@ -1,5 +1,5 @@
-// The workshop's web worker, which makes the robot's parts in WebAssembly. Its functions throw a `Refused` if the parts
-// cannot be made.
+// The web worker that makes the robot's parts in WebAssembly. Its functions throw a `Refusal` if the parts cannot be
+// made.
 import { expose, transfer } from 'comlink';
 import { zipSync } from 'fflate';
 
@@ -32,35 +32,35 @@ const api = {
   load: (module: WebAssembly.Module) => void initSync({ module }),
 
   /** Makes the parts to show; returns their model and solids. */
-  model(toml: string) {
+  makeModel(toml: string) {
     shownParts = null;
     shownParts = new Parts(toml);
     const solids = shownParts.solids().map(({ corners, triangles }) => ({ corners, triangles }));
     return transfer({ model: shownParts.entry(), solids }, solids.flatMap(({ corners, triangles }) => [corners.buffer, triangles.buffer]));
   },
 
-  /** Returns the places of the shown parts' mounts; null without parts, or if a loop does not close. */
-  pose: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
+  /** Returns the places of the shown parts' mounts; null if no parts are shown or a loop does not close. */
+  computeMountPlaces: (angles: number[], lags: number[]) => shownParts?.pose(angles, lags) ?? null,
 
   /** Proves that a robot's parts fit; returns their smallest distance, mm, or null if no pair was checked. */
-  fit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
+  proveFit: (toml: string) => new Parts(toml).prove(() => {}) ?? null,
 
   /**
    * Proves that the parts fit, makes all files and packs them. If `previousToml` is not null, packs only the files that
    * differ from the previous robot's files.
    */
-  make(toml: string, previousToml: string | null, onProgress: (progress: Progress) => void) {
+  makeArchive(toml: string, previousToml: string | null, onProgress: (progress: Progress) => void) {
     const parts = new Parts(toml);
-    const smallestMm = parts.prove((done, total) => onProgress({ stage: 'prove', done, total })) ?? null;
+    const minDistanceMm = parts.prove((done, total) => onProgress({ stage: 'prove', done, total })) ?? null;
     const files = makeFiles(parts, onProgress);
-    const count = Object.keys(files).length;
+    const fileCount = Object.keys(files).length;
     if (previousToml !== null) {
       const previousFiles = makeFiles(new Parts(previousToml), onProgress);
       for (const [path, bytes] of Object.entries(previousFiles)) if (areEqual(bytes, files[path])) delete files[path];
     }
     // With a fixed date, equal files give equal archives.
     const zip = zipSync(files, { mtime: '1980-01-02T00:00:00' }) as Uint8Array<ArrayBuffer>;
-    return transfer({ zip, paths: Object.keys(files), count, smallestMm }, [zip.buffer]);
+    return transfer({ zip, paths: Object.keys(files), fileCount, minDistanceMm }, [zip.buffer]);
   },
 };
 

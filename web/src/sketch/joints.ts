@@ -19,7 +19,7 @@ export interface Joint {
 
 const toLinkKey = (n: number) => `links.l${n}`;
 /** Rounds to 0.5 mm. */
-const round = (mm: number) => Math.round(mm * 2) / 2;
+const roundToHalf = (mm: number) => Math.round(mm * 2) / 2;
 const computeDistance = ([x, y]: Point, [u, v]: Point) => Math.hypot(x - u, y - v);
 
 /** Returns the distance between `from` and the projection of `to` onto the line from `from` through `towards`. */
@@ -77,8 +77,8 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
    * slider keeps its travel.
    */
   const editHalves = (side: (typeof SIDES)[number], change: number): Edits => [
-    [toLinkKey(side.rearHalf), round(getLength(toLinkKey(side.rearHalf)) + change / 2)],
-    [toLinkKey(side.frontHalf), round(getLength(toLinkKey(side.frontHalf)) + change / 2)],
+    [toLinkKey(side.rearHalf), roundToHalf(getLength(toLinkKey(side.rearHalf)) + change / 2)],
+    [toLinkKey(side.frontHalf), roundToHalf(getLength(toLinkKey(side.frontHalf)) + change / 2)],
   ];
   const cranks = ENDS.flatMap((end): Joint[] =>
     (['left', 'right'] as const).map((side) => {
@@ -87,7 +87,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
       return {
         name: `end of the ${end.name}'s ${side} crank`,
         position: tips[servo],
-        makeEdits: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [toLinkKey(n), round(projectDistance(shafts[servo], tips[servo], to))]),
+        makeEdits: (to, isSymmetric) => [ownKey, ...(isSymmetric ? [otherKey] : [])].map((n) => [toLinkKey(n), roundToHalf(projectDistance(shafts[servo], tips[servo], to))]),
       };
     }),
   );
@@ -97,7 +97,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
     makeEdits(to, isSymmetric) {
       const middleX = (tips[end.left][0] + tips[end.right][0]) / 2;
       const point: Point = isSymmetric ? [middleX, to[1]] : to;
-      return [[toLinkKey(end.leftCoupler), round(computeDistance(tips[end.left], point))], [toLinkKey(end.rightCoupler), round(computeDistance(tips[end.right], point))]];
+      return [[toLinkKey(end.leftCoupler), roundToHalf(computeDistance(tips[end.left], point))], [toLinkKey(end.rightCoupler), roundToHalf(computeDistance(tips[end.right], point))]];
     },
   }));
   const arms = SIDES.flatMap((side, n): Joint[] =>
@@ -108,7 +108,7 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
         name: `end of the ${end} ${side.name} arm`,
         position: tip,
         makeEdits(to, isSymmetric) {
-          const length = round(projectDistance(shaft, tip, to));
+          const length = roundToHalf(projectDistance(shaft, tip, to));
           const scale = length / computeDistance(shaft, tip);
           const movedTip: Point = [shaft[0] + scale * (tip[0] - shaft[0]), shaft[1] + scale * (tip[1] - shaft[1])];
           const change = end === 'front' ? computeDistance(movedTip, rear) - computeDistance(front, rear) : computeDistance(front, movedTip) - computeDistance(front, rear);
@@ -125,17 +125,17 @@ export function listJoints({ shafts, tips, points, sliders, legs }: Scene, getLe
         const [ownShaft, otherShaft] = [shafts[end[side]], shafts[end[side === 'left' ? 'right' : 'left']]];
         const middleX = (ownShaft[0] + otherShaft[0]) / 2;
         // The head's servos move outward by +y, the tail's by -y.
-        const change = round((n === 0 ? 1 : -1) * (to[1] - ownShaft[1]));
+        const change = roundToHalf((n === 0 ? 1 : -1) * (to[1] - ownShaft[1]));
         // Both sides change, so that equal sides stay equal.
         const chassis = SIDES.flatMap((side): Edits => (change === 0 ? [] : [[toLinkKey(side.chassis), getLength(toLinkKey(side.chassis)) + change], ...editHalves(side, change)]));
-        return [[toLinkKey(end.base), round(2 * Math.abs(to[0] - middleX))], ...chassis];
+        return [[toLinkKey(end.base), roundToHalf(2 * Math.abs(to[0] - middleX))], ...chassis];
       },
     })),
   );
   const knees = legs.map(({ pivots, joints }, n): Joint => ({
     name: `knee of leg ${n + 1}`,
     position: joints[0],
-    makeEdits: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, round(projectDistance(pivots[0], joints[0], to))]),
+    makeEdits: (to, isSymmetric) => ['leg.crank', ...(isSymmetric ? ['leg.follower'] : [])].map((key) => [key, roundToHalf(projectDistance(pivots[0], joints[0], to))]),
   }));
   return [...bases, ...arms, ...knees, ...cranks, ...ends];
 }

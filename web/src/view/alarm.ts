@@ -1,9 +1,9 @@
 // The alarm for a robot that does not answer: the page then shows an outdated state, and the robot may still walk.
 import type { Session } from '../session';
 import { SILENCE_MS } from '../link/dialogue';
-import { element, setText } from './canvas';
+import { element, setText } from './elements';
 
-export class Alarm {
+export class AlarmView {
   private readonly box = element('alarm');
   /** The time at which the first unanswered line was sent, on the page's clock, ms. */
   private lineSentAt = 0;
@@ -27,7 +27,7 @@ export class Alarm {
   update(): void {
     if (this.box.hidden) return;
     const message = this.session.state.isStopping.value ? 'No answer: the robot may still walk. The page repeats "stop" until it answers.' : 'No answer from the robot.';
-    setText(element('alarm-said'), message);
+    setText(element('alarm-message'), message);
     element('alarm-age').textContent = `${((performance.now() - this.lineSentAt) / 1000).toFixed(1)} s`;
   }
 }

@@ -1,11 +1,10 @@
 // The panel of the servos' calibration: `cal` reads the settings, the inputs change them, and `save` stores them.
-import { loadBoard } from '../board';
+import { loadBoardModule } from '../board-module';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
-import { element } from './canvas';
-import { make } from './make';
+import { element, make } from './elements';
 import { isShown } from './rooms';
 
 /** The inputs of a servo. */
@@ -17,9 +16,9 @@ interface Row {
   dir: HTMLSelectElement;
 }
 
-export class Calibrate {
+export class CalibrationView {
   private readonly rowBox = element('calibration');
-  private readonly message = element('cal-said');
+  private readonly message = element('cal-message');
   private rows: Row[] = [];
   /** True after an unanswered line: the shown settings may differ from the robot's settings. */
   private mayBeOutdated = false;
@@ -38,7 +37,7 @@ export class Calibrate {
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session.ask(WORDS.cal, true);
-    const board = await loadBoard().catch((error: unknown) => (this.message.textContent = getMessage(error)));
+    const board = await loadBoardModule().catch((error: unknown) => (this.message.textContent = getMessage(error)));
     const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
     if (!settings) return;
     this.mayBeOutdated = false;

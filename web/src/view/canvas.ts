@@ -1,4 +1,4 @@
-// Canvases at the screen's resolution and at the size of their elements, and access to the page's elements.
+// Canvases at the screen's resolution and at the size of their elements.
 
 /** A canvas prepared for drawing. */
 export interface Surface {
@@ -29,7 +29,7 @@ export function prepareSurface(canvas: HTMLCanvasElement, isOpaque = false): Sur
 }
 
 /** Adds the straight lines between successive points to the path. */
-export function polyline(context: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
+export function addPolyline(context: CanvasRenderingContext2D, ...[[x, y], ...others]: [[number, number], ...[number, number][]]): void {
   context.moveTo(x, y);
   for (const point of others) context.lineTo(...point);
 }
@@ -38,26 +38,8 @@ export function polyline(context: CanvasRenderingContext2D, ...[[x, y], ...other
  * Adds a circle to the path, as two half circles: with an upward y axis, the SVG context reverses the direction of an
  * arc, but a half circle looks the same in both directions.
  */
-export function circle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
+export function addCircle(context: CanvasRenderingContext2D, x: number, y: number, radius: number): void {
   context.moveTo(x + radius, y);
   context.arc(x, y, radius, 0, Math.PI);
   context.arc(x, y, radius, Math.PI, 2 * Math.PI);
-}
-
-/** Returns an element of index.html. Throws an error if it is missing. */
-export function element<T extends HTMLElement>(id: string): T {
-  const node = document.getElementById(id);
-  if (!node) throw new Error(`the page has no #${id}`);
-  return node as T;
-}
-
-/** Shows a message in a box; an empty message hides the box. */
-export function showMessage(box: HTMLElement, text: string): void {
-  setText(box, text);
-  box.hidden = text === '';
-}
-
-/** Sets an element's text unless the text is unchanged, so that it is not laid out or read aloud again. */
-export function setText(box: HTMLElement, text: string): void {
-  if (box.textContent !== text) box.textContent = text;
 }

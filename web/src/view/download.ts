@@ -1,12 +1,12 @@
 // Saves files on the user's machine, for example robot.toml with the values of the page's sliders.
-import { type Floor, isRefused, type Refused, Robot } from '../robot';
-import { make } from './make';
+import { type Floor, isRefused, type Refusal, Robot } from '../robot';
+import { make } from './elements';
 
 /**
  * Saves a robot.toml with this floor, mass, feet and leg drive; null keeps the values of the text. If the values cannot
  * be written, saves the text unchanged and returns the reason.
  */
-export function downloadRobot(toml: string, floor: Floor | null): Refused | null {
+export function downloadRobot(toml: string, floor: Floor | null): Refusal | null {
   const edited = floor && Robot.editFloor(toml, floor);
   const refusal = edited && (isRefused(edited) ? edited : edited.refusal);
   const text = !edited || isRefused(edited) || refusal ? toml : edited.text;

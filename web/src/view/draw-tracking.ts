@@ -15,7 +15,7 @@ export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): vo
   const surface = prepareSurface(canvas);
   if (!surface) return;
   const { context, width, height } = surface;
-  const [frameWidth, frameHeight] = tracker.size;
+  const [frameWidth, frameHeight] = tracker.frameSize;
   const scale = Math.min(width / frameWidth, height / frameHeight);
   context.translate((width - scale * frameWidth) / 2, (height - scale * frameHeight) / 2);
   const toCanvas = ([x, y]: Pixel): Pixel => [scale * x, scale * y];
@@ -29,6 +29,6 @@ export function drawTracking(canvas: HTMLCanvasElement, tracker: TagTracker): vo
   };
   drawLine(tracker.path, a2, 2);
   for (const { corners } of tracker.tags) drawLine([...corners, corners[0], corners[1]], accent, 3);
-  const [from, { heading }] = [tracker.path.at(-1), tracker];
-  if (from && tracker.deck && heading) drawLine([from, [from[0] + ARROW_LENGTH * heading[0], from[1] + ARROW_LENGTH * heading[1]]], a2, 4);
+  const [from, heading] = [tracker.path.at(-1), tracker.headingVector];
+  if (from && heading) drawLine([from, [from[0] + ARROW_LENGTH * heading[0], from[1] + ARROW_LENGTH * heading[1]]], a2, 4);
 }

@@ -6,8 +6,7 @@ import type { Predictor } from '../predictor';
 import type { Description, Displacement } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { element, showMessage } from './canvas';
-import { make } from './make';
+import { element, make, showMessage } from './elements';
 
 /** Number of characters that fit on a button of normal width. */
 const BUTTON_CHARACTERS = 13;
@@ -26,11 +25,11 @@ export function formatDisplacement(displacement: Displacement | null): string {
   return parts.filter(Boolean).join(', ');
 }
 
-export class Drive {
+export class DriveView {
   private readonly buttonList = element('gaits');
-  /** The buttons with their parts; `note` shows the prediction, and `loadLabel` the load. */
-  private buttons: { command: string; button: HTMLButtonElement; note: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
-  private readonly message = element('drive-said');
+  /** The buttons with their labels; `moves` is true if the gait moves a servo. */
+  private buttons: { command: string; button: HTMLButtonElement; predictionLabel: HTMLElement; loadLabel: HTMLElement; moves: boolean }[] = [];
+  private readonly message = element('drive-message');
   /** The commands of the buttons in index.html, which exist for every robot. */
   readonly commands: string[] = [...document.querySelectorAll<HTMLElement>('[data-command]')].map(({ dataset }) => dataset.command ?? '');
 
@@ -55,15 +54,15 @@ export class Drive {
   private showRobot({ gaits, routines }: Description): void {
     this.buttonList.replaceChildren();
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
-      const note = make('span', {});
-      const noteBox = make('small', {}, note);
-      const loadLabel = make('span', { className: 'line', title: 'fraction of the servos’ torque-speed line that the gait uses at this pace' });
-      if (moves) noteBox.dataset.room = LONGEST_PREDICTION;
+      const predictionLabel = make('span', {});
+      const predictionBox = make('small', {}, predictionLabel);
+      const loadLabel = make('span', { className: 'load', title: 'fraction of the servos’ torque-speed line that the gait uses at this pace' });
+      if (moves) predictionBox.dataset.room = LONGEST_PREDICTION;
       // A button with a long name is twice as wide.
-      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, noteBox, ...(moves ? [loadLabel] : []));
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, predictionBox, ...(moves ? [loadLabel] : []));
       button.dataset.command = command;
       this.buttonList.append(button);
-      return { command, button, note, loadLabel, moves };
+      return { command, button, predictionLabel, loadLabel, moves };
     });
     this.session.state.refusal.value = '';
     // A connected board continues its gait.
@@ -79,9 +78,9 @@ export class Drive {
     const pace = this.session.state.pace.value;
     const areAllPredicted = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
     let [hardestGait, highestUtilisation] = ['', 0];
-    for (const { command, note, loadLabel } of this.buttons) {
+    for (const { command, predictionLabel, loadLabel } of this.buttons) {
       const prediction = predictions.get(command) ?? null;
-      note.textContent = formatDisplacement(prediction);
+      predictionLabel.textContent = formatDisplacement(prediction);
       const utilisations = prediction?.utilisations;
       const utilisation = utilisations?.[Math.ceil((pace * utilisations.length) / 100) - 1];
       const isHighUtilisation = utilisation !== undefined && utilisation >= HIGH_UTILISATION;
@@ -89,7 +88,7 @@ export class Drive {
       loadLabel.textContent = utilisation === undefined ? '' : `${isHighUtilisation ? '⚠ ' : ''}load ${utilisation.toFixed(2)}`;
       if (areAllPredicted && utilisation !== undefined && utilisation > highestUtilisation) [hardestGait, highestUtilisation] = [command, utilisation];
     }
-    const note = element('line-note');
+    const note = element('load-note');
     note.classList.toggle('warning', highestUtilisation >= HIGH_UTILISATION);
     const advice = highestUtilisation >= 1 ? ': the servos lag behind their pulses; choose a slower pace' : highestUtilisation >= HIGH_UTILISATION ? ': the reserve is small' : '';
     note.textContent = hardestGait === '' ? '' : `${hardestGait} has the highest load: it uses ${highestUtilisation.toFixed(2)} of the servos’ torque-speed line at a pace of ${pace} %${advice}.`;

@@ -3,9 +3,8 @@ import { files } from '../files';
 import { type SearchReport, type BestGait, FasterSearch } from '../gaits/faster';
 import type { Bars, Trial } from '../robot';
 import type { Session } from '../session';
-import { element, setText } from './canvas';
-import { tableRow } from './make';
-import { setUpNumberInput } from './number';
+import { element, setText, tableRow } from './elements';
+import { setUpNumberInput } from './number-input';
 import { formatResults } from './trial';
 
 /** Access to the edited gait. */
@@ -18,18 +17,18 @@ export interface GaitEditor {
 
 const BUTTON_LABELS = { start: 'Make it faster', stop: 'Stop the search', take: 'Use this gait', back: 'Back to the previous gait' };
 /** The labels of the comparison's rows. */
-const ROW_LABELS = { speed: 'speed', way: 'distance per cycle', turn: 'turn per cycle', least: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
+const ROW_LABELS = { speed: 'speed', distance: 'distance per cycle', turn: 'turn per cycle', margin: 'least margin', fastest: 'fastest servo', cycle: 'cycle' } as const;
 
 export class FasterView {
   private readonly startButton = element<HTMLButtonElement>('faster-start');
   private readonly takeButton = element<HTMLButtonElement>('faster-take');
   private readonly progressBar = element<HTMLProgressElement>('faster-progress');
-  private readonly message = element('faster-said');
+  private readonly message = element('faster-message');
   private readonly resultBox = element('faster-result');
   private readonly settings = { rate: null as number | null, rounds: 5, seed: 1 };
   private search: FasterSearch | null = null;
   /** The gait to beat, and its trial. */
-  private reference: Bars | null = null;
+  private referenceGait: Bars | null = null;
   private referenceTrial: Trial | null = null;
   private best: BestGait | null = null;
   /** The gait that the found gait has replaced in the editor; null if it has replaced no gait. */
@@ -70,14 +69,14 @@ export class FasterView {
     if (!bars) return this.setMessage('There is no gait to start from.');
     const { toml, floor, servos } = this.session;
     this.toml = toml;
-    this.reference = bars;
+    this.referenceGait = bars;
     this.referenceTrial = this.best = null;
     this.resultBox.hidden = true;
     this.startButton.textContent = BUTTON_LABELS.stop;
     this.progressBar.removeAttribute('value');
     this.progressBar.hidden = false;
     this.setMessage('Searching for the widest stride within the limits…');
-    this.module ??= files.tune();
+    this.module ??= files.searchModule();
     // The next search repeats a failed download.
     this.module.catch(() => (this.module = null));
     this.search = new FasterSearch(this.module, { toml, floor, servos, task: { bars, ...this.settings } }, (report) => this.handleReport(report));
@@ -87,15 +86,15 @@ export class FasterView {
     switch (report.kind) {
       case 'start':
         this.referenceTrial = report.referenceTrial;
-        this.gaitCount = this.progressBar.max = report.all;
+        this.gaitCount = this.progressBar.max = report.total;
         this.progressBar.value = 0;
-        return this.setMessage(`Trying ${report.all} gaits with servo speeds of at most ${report.rate.toFixed(0)} °/s…`);
+        return this.setMessage(`Trying ${report.total} gaits with servo speeds of at most ${report.rate.toFixed(0)} °/s…`);
       case 'progress':
         this.progressBar.value = report.done;
         return;
       case 'best':
-        if (report.best.better) this.show(report.best);
-        return this.setMessage(report.best.better ? `${formatGain(report.best)} faster so far.` : 'No faster gait so far.');
+        if (report.best.is_better) this.show(report.best);
+        return this.setMessage(report.best.is_better ? `${formatGain(report.best)} faster so far.` : 'No faster gait so far.');
       case 'end':
         this.showEnd(report);
     }
@@ -106,7 +105,7 @@ export class FasterView {
     if ('refused' in report) return this.setMessage(`This gait cannot be made faster: ${report.refused}.`);
     const { best, done } = report;
     const stopText = done < this.gaitCount ? `Stopped after ${done} of ${this.gaitCount} gaits. ` : '';
-    if (best?.better) {
+    if (best?.is_better) {
       this.show(best);
       const { comparison } = best;
       return this.setMessage(`${stopText}Faster on ${comparison.faster} of ${comparison.robots} random robots and floors; the speed that 95 % of them exceed is ${formatGain(best)} higher. No servo turns faster than ${comparison.rate.toFixed(0)} °/s.`);
@@ -133,7 +132,7 @@ export class FasterView {
     );
     this.replacedGait = null;
     this.takeButton.textContent = BUTTON_LABELS.take;
-    element('faster-ways').textContent = '';
+    element('faster-distances').textContent = '';
     this.resultBox.hidden = false;
   }
 
@@ -148,12 +147,12 @@ export class FasterView {
   }
 
   private async compare(): Promise<void> {
-    const { reference, best } = this;
-    if (!reference || !best) return;
+    const { referenceGait, best } = this;
+    if (!referenceGait || !best) return;
     const { robot, toml, isReal } = this.session;
     // The comparison only puts the found gait into the robot; therefore the result stays valid.
     if (!isReal) this.toml = robot.putGait(toml, best.bars);
-    await this.editor.compare(reference, best.bars, element('faster-ways'));
+    await this.editor.compare(referenceGait, best.bars, element('faster-distances'));
   }
 
   private readonly setMessage = (text: string): void => setText(this.message, text);

@@ -1,10 +1,10 @@
 // Checks that the robot's parts fit after a change of lengths, also during a drag. The proof runs in a web worker. The
 // 3D view shows two parts that come too close in red, and the page searches for the nearest lengths whose parts fit.
-import type { Clash } from '../parts/workshop';
+import type { Clash } from '../parts/make-parts';
 import { type Length, Robot } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
-import { element } from './canvas';
+import { element } from './elements';
 import type { PartsView } from './parts';
 
 /** Delay between the last change and the check, ms, because dragging a joint makes many changes. */
@@ -17,7 +17,7 @@ type Lengths = Map<string, number>;
 
 /** A check of the parts, which the next change cancels. */
 interface Check {
-  isOver: boolean;
+  isCancelled: boolean;
   /** The functions that cancel the proofs, each in its own worker. */
   cancels: Set<() => void>;
 }
@@ -30,20 +30,20 @@ interface RangeRequest {
 }
 
 export class FitView {
-  private readonly message = element('fit-said');
+  private readonly message = element('fit-message');
   private readonly useButton = element<HTMLButtonElement>('fit-use');
-  private readonly whereButton = element<HTMLButtonElement>('fit-where');
+  private readonly showOverlapButton = element<HTMLButtonElement>('fit-where');
   /** The last lengths whose parts fit, of a robot from the same file. */
   private fittingLengths: Lengths = new Map();
   private rangeRequest: RangeRequest | null = null;
   private timer = 0;
-  private check: Check = { isOver: true, cancels: new Set() };
+  private check: Check = { isCancelled: true, cancels: new Set() };
 
   constructor(
     private readonly session: Session,
     private readonly parts: PartsView,
   ) {
-    this.whereButton.addEventListener('click', () => this.parts.set3d(true));
+    this.showOverlapButton.addEventListener('click', () => this.parts.set3d(true));
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
@@ -91,13 +91,13 @@ export class FitView {
   /** Cancels the scheduled or running check, and clears the message. */
   private cancelCheck(): void {
     clearTimeout(this.timer);
-    this.check.isOver = true;
+    this.check.isCancelled = true;
     for (const cancel of this.check.cancels) cancel();
     this.setMessage('', null);
   }
 
   private schedule(run: (check: Check) => Promise<void>): void {
-    const check: Check = { isOver: false, cancels: new Set() };
+    const check: Check = { isCancelled: false, cancels: new Set() };
     this.check = check;
     const runAndReport = () => run(check).catch((error: unknown) => this.setMessage(`Cannot check the parts: ${getMessage(error)}.`, null));
     this.timer = setTimeout(() => void runAndReport(), CHECK_DELAY_MS);
@@ -107,7 +107,7 @@ export class FitView {
   private async proveAndReport(toml: string, check: Check): Promise<boolean> {
     this.setMessage('Checking that the parts fit…', null);
     const result = await this.proveParts(toml, check);
-    if (check.isOver) return false;
+    if (check.isCancelled) return false;
     if (result instanceof Error) this.setMessage(describeUnfit(result), result.clash);
     else this.setMessage(`The parts fit${result === null ? '' : `: no two come nearer than ${result.toFixed(2)} mm`}.`, null);
     return !(result instanceof Error);
@@ -118,8 +118,8 @@ export class FitView {
    * not fit.
    */
   private async proveParts(toml: string, check: Check) {
-    const { proveFit, UnfitError } = await import('../parts/workshop');
-    if (check.isOver) return null;
+    const { proveFit, UnfitError } = await import('../parts/make-parts');
+    if (check.isCancelled) return null;
     const { result, cancel } = proveFit(toml);
     check.cancels.add(cancel);
     return result
@@ -136,11 +136,11 @@ export class FitView {
       this.fittingLengths = robotLengths;
       return this.searchRange(check);
     }
-    if (check.isOver) return;
+    if (check.isCancelled) return;
     const refusalText = this.message.textContent ?? '';
     this.message.textContent = `${refusalText} Searching for the nearest printable lengths…`;
     const nearest = await this.findNearest(changedLengths, check);
-    if (check.isOver) return;
+    if (check.isCancelled) return;
     this.message.textContent = refusalText;
     const { lengths } = this.session.description;
     const names = lengths.filter(({ key }) => changedLengths.has(key)).map(({ key, label }) => `${label} ${nearest.lengths.get(key)}`);
@@ -160,7 +160,7 @@ export class FitView {
       return lengths.get(keys[0] ?? '') ?? target;
     };
     const [shortest, longest] = await Promise.all([findLimit(range[0]), findLimit(range[1])]);
-    if (check.isOver) return;
+    if (check.isCancelled) return;
     const { unit } = this.session.description.lengths.find(({ key }) => key === keys[0]) ?? { unit: '' };
     show([shortest, longest], `Printable from ${shortest} to ${longest} ${unit}.`);
   }
@@ -178,7 +178,7 @@ export class FitView {
       }));
     const makeRobot = (fraction: number) => {
       const lengths = interpolate(fraction);
-      const { text, refusal } = Robot.lengths(toml, [...lengths], false);
+      const { text, refusal } = Robot.tryLengths(toml, [...lengths], false);
       return { lengths, text, isAccepted: refusal === null };
     };
     const checkFit = async ({ text, isAccepted }: ReturnType<typeof makeRobot>) => isAccepted && !((await this.proveParts(text, check)) instanceof Error);
@@ -189,7 +189,7 @@ export class FitView {
     }
     let [low, high] = [0, 1];
     const largestChange = Math.max(...[...targetLengths].map(([key, to]) => Math.abs(to - (this.fittingLengths.get(key) ?? to))));
-    while ((high - low) * largestChange > STEP_MM && !check.isOver) {
+    while ((high - low) * largestChange > STEP_MM && !check.isCancelled) {
       const middle = (low + high) / 2;
       const candidate = makeRobot(middle);
       if (await checkFit(candidate)) [low, best] = [middle, candidate];
@@ -202,7 +202,7 @@ export class FitView {
     element('fit').hidden = text === '';
     this.message.textContent = text;
     this.useButton.hidden = true;
-    this.whereButton.hidden = clash === null;
+    this.showOverlapButton.hidden = clash === null;
     this.parts.showClash(clash);
   }
 }

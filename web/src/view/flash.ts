@@ -1,27 +1,27 @@
 // The panel that writes the firmware and the robot to the board through its boot loader.
 import { effect } from '@preact/signals-core';
 
-import { loadBoard } from '../board';
+import { loadBoardModule } from '../board-module';
 import { NO_WRITING_BY_RADIO, type Session } from '../session';
 import { getMessage } from '../problem';
-import { element } from './canvas';
+import { element } from './elements';
 import { reveal } from './rooms';
-import type { WriteContent, Writer } from './writer';
+import type { WriteContent, BoardWriter } from './writer';
 
 export class FlashView {
   private readonly note = element('flash-note');
   private readonly fileInput = element<HTMLInputElement>('flash-file');
   private readonly writeAllButton = element<HTMLButtonElement>('flash-write');
   private readonly writeRobotButton = element<HTMLButtonElement>('flash-robot');
-  private readonly question = element('flash-question');
+  private readonly confirmationBox = element('flash-question');
   readonly progress = element<HTMLProgressElement>('flash-progress');
-  readonly message = element('flash-said');
-  /** The image of the chosen file until the user confirms or rejects it; null for none. */
+  readonly message = element('flash-message');
+  /** The image of the chosen file until the user confirms or rejects it; null if there is none. */
   private chosenImage: Uint8Array | null = null;
 
   constructor(
     private readonly session: Session,
-    private readonly writer: Writer,
+    private readonly writer: BoardWriter,
   ) {
     this.writeAllButton.addEventListener('click', () => this.write('all'));
     this.writeRobotButton.addEventListener('click', () => this.write('robot'));
@@ -60,13 +60,13 @@ export class FlashView {
     void this.writer.write(content, this);
   }
 
-  /** Reads a file and asks the user to confirm its writing. */
+  /** Reads a file and asks the user to confirm that it is to be written. */
   private async askToConfirm(file: File): Promise<void> {
     this.dropChosenImage();
     this.message.textContent = '';
     let isLizard: boolean;
     try {
-      const board = await loadBoard();
+      const board = await loadBoardModule();
       this.chosenImage = board.parseImage(await file.text());
       isLizard = board.isLizard(this.chosenImage);
     } catch (error) {
@@ -76,14 +76,14 @@ export class FlashView {
     const kindText = isLizard
       ? 'It is lizard firmware.'
       : 'It is not this firmware: the board will not be a lizard until firmware and robot are written again.';
-    element('flash-what').textContent =
+    element('flash-question-text').textContent =
       `${file.name}, ${this.chosenImage.length} bytes. ${kindText} Write it to the ${this.session.link.name}?`;
-    this.question.hidden = false;
+    this.confirmationBox.hidden = false;
     element('flash-no').focus();
   }
 
   private dropChosenImage(): void {
     this.chosenImage = null;
-    this.question.hidden = true;
+    this.confirmationBox.hidden = true;
   }
 }

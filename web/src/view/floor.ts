@@ -1,6 +1,7 @@
 // The view of the floor on which the robot walks; pointer, wheel, fingers and keys pan and zoom it.
 import type { Frame, Place, Plate } from '../robot';
-import { circle, element, polyline, prepareSurface } from './canvas';
+import { addCircle, addPolyline, prepareSurface } from './canvas';
+import { element } from './elements';
 import { drawLizard } from './lizard';
 import { onPaletteChange, getPalette } from './palette';
 
@@ -26,7 +27,7 @@ const GOAL_TOLERANCE_MM = 0.01;
 const DRAG_THRESHOLD_PX = 12;
 
 /** The label of the scale bar and its position, CSS pixels. */
-interface Label {
+interface ScaleLabel {
   text: string;
   x: number;
   y: number;
@@ -38,7 +39,7 @@ interface PointerPosition {
   y: number;
 }
 
-export class Floor {
+export class FloorView {
   private readonly canvas = element<HTMLCanvasElement>('floor');
   private readonly followButton = element<HTMLButtonElement>('follow');
   /** The floor's point in the middle of the canvas, mm in the frame of the robot's start. */
@@ -51,12 +52,12 @@ export class Floor {
   private isFollowing = true;
   /** The tracks of the robot and of the second robot, mm, each in the frame of its own start. */
   private tracks: { x: number; y: number }[][] = [[], []];
-  /** True if every animation frame paints the floor, even behind the robot in 3D: for a video or a picture. */
-  paintsAlways = false;
+  /** True if the floor is drawn in every animation frame, even behind the robot in 3D: for a video or a picture. */
+  drawsAlways = false;
   /** The plate and the two robots' frames in the last drawing; null before the first drawing. */
   private lastDrawn: [Plate, Frame | null, Frame | null] | null = null;
-  /** The inputs of the painted picture except the colours, as text; empty if the floor must be repainted. */
-  private paintedState = '';
+  /** The inputs of the drawn picture except the colours, as text; empty if the floor must be drawn again. */
+  private drawnState = '';
   /** The last positions of the pressed pointers by id. */
   private readonly pressedPointers = new Map<number, PointerPosition>();
   /** True while the pointer drags the floor. */
@@ -94,7 +95,7 @@ export class Floor {
       { passive: false },
     );
     this.canvas.addEventListener('keydown', (event) => this.handleKey(event));
-    const invalidate = () => (this.paintedState = '');
+    const invalidate = () => (this.drawnState = '');
     onPaletteChange(invalidate);
     // A browser that is short of memory may clear canvases.
     this.canvas.addEventListener('contextrestored', invalidate);
@@ -116,7 +117,7 @@ export class Floor {
   }
 
   /**
-   * Draws the floor and the robots unless the canvas already shows them: painting in every animation frame takes half
+   * Draws the floor and the robots unless the canvas already shows them: drawing in every animation frame takes half
    * of a slow machine's core.
    */
   draw(plate: Plate, frame: Frame | null, secondFrame: Frame | null): void {
@@ -130,15 +131,15 @@ export class Floor {
     if (this.canvas.dataset.zoom !== zoom) this.canvas.dataset.zoom = zoom;
     const robots = [frame, secondFrame].map((robot) => robot && [robot.place, robot.scene, robot.slides]);
     const state = JSON.stringify([width, height, devicePixelRatio, this.zoom, this.centre, plate, robots, this.tracks.map((track) => [track.length, track.at(-1)])]);
-    if (state === this.paintedState && !this.paintsAlways) return;
+    if (state === this.drawnState && !this.drawsAlways) return;
     const surface = prepareSurface(this.canvas, true);
     if (!surface) return;
     const { context } = surface;
-    const label = this.paint(context, width, height);
+    const label = this.drawPicture(context, width, height);
     context.fillStyle = getPalette().ink;
     context.font = '12px system-ui, sans-serif';
     context.fillText(label.text, label.x, label.y);
-    this.paintedState = state;
+    this.drawnState = state;
   }
 
   /**
@@ -147,9 +148,9 @@ export class Floor {
    */
   private moveViewTowards(robotPlace: Place, secondPlace: Place | null): void {
     const goal = secondPlace ? { x: (robotPlace.x + secondPlace.x + SECOND_ROBOT_OFFSET_MM) / 2, y: (robotPlace.y + secondPlace.y) / 2 } : robotPlace;
-    const [x, y] = [goal.x - this.centre.x, goal.y - this.centre.y];
-    const fraction = Math.hypot(x, y) < GOAL_TOLERANCE_MM ? 1 : 0.08;
-    this.centre = { x: this.centre.x + x * fraction, y: this.centre.y + y * fraction };
+    const [dx, dy] = [goal.x - this.centre.x, goal.y - this.centre.y];
+    const fraction = Math.hypot(dx, dy) < GOAL_TOLERANCE_MM ? 1 : 0.08;
+    this.centre = { x: this.centre.x + dx * fraction, y: this.centre.y + dy * fraction };
   }
 
   /** Makes the view follow both robots and fits the zoom to them. */
@@ -162,12 +163,12 @@ export class Floor {
    * Draws the last picture with another context, in CSS pixels, for SVG. Returns the scale bar's label, which the
    * caller must add.
    */
-  drawWith(context: CanvasRenderingContext2D): Label {
+  drawWith(context: CanvasRenderingContext2D): ScaleLabel {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    return this.paint(context, width, height);
+    return this.drawPicture(context, width, height);
   }
 
-  private paint(context: CanvasRenderingContext2D, width: number, height: number): Label {
+  private drawPicture(context: CanvasRenderingContext2D, width: number, height: number): ScaleLabel {
     const [plate, frame, secondFrame] = this.lastDrawn ?? [null, null, null];
     context.fillStyle = getPalette().floor;
     context.fillRect(0, 0, width, height);
@@ -190,7 +191,7 @@ export class Floor {
       context.restore();
     });
     context.restore();
-    return this.drawRuler(context, height);
+    return this.drawScaleBar(context, height);
   }
 
   private drawGrid(context: CanvasRenderingContext2D, width: number, height: number): void {
@@ -201,10 +202,10 @@ export class Floor {
     context.lineWidth = 1 / this.zoom;
     context.beginPath();
     for (let lineX = Math.ceil((x - halfWidth) / spacing) * spacing; lineX <= x + halfWidth; lineX += spacing) {
-      polyline(context, [lineX, y - halfHeight], [lineX, y + halfHeight]);
+      addPolyline(context, [lineX, y - halfHeight], [lineX, y + halfHeight]);
     }
     for (let lineY = Math.ceil((y - halfHeight) / spacing) * spacing; lineY <= y + halfHeight; lineY += spacing) {
-      polyline(context, [x - halfWidth, lineY], [x + halfWidth, lineY]);
+      addPolyline(context, [x - halfWidth, lineY], [x + halfWidth, lineY]);
     }
     context.stroke();
   }
@@ -218,13 +219,13 @@ export class Floor {
     context.stroke();
     // Marks the start.
     context.beginPath();
-    circle(context, 0, 0, 4);
-    polyline(context, [-9, 0], [9, 0]);
-    polyline(context, [0, -9], [0, 9]);
+    addCircle(context, 0, 0, 4);
+    addPolyline(context, [-9, 0], [9, 0]);
+    addPolyline(context, [0, -9], [0, 9]);
     context.stroke();
   }
 
-  private drawRuler(context: CanvasRenderingContext2D, height: number): Label {
+  private drawScaleBar(context: CanvasRenderingContext2D, height: number): ScaleLabel {
     const length = [10, 50, 100, 500].find((mm) => mm * this.zoom > 50) ?? 1000;
     // The scale bar is to the right of the on-screen stick.
     const [x, y] = [124, height - 18];
@@ -232,7 +233,7 @@ export class Floor {
     context.lineWidth = 1.5;
     context.beginPath();
     const endX = x + length * this.zoom;
-    polyline(context, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
+    addPolyline(context, [x, y - 4], [x, y], [endX, y], [endX, y - 4]);
     context.stroke();
     return { text: `${length} mm`, x: x + 4, y: y - 5 };
   }
@@ -278,7 +279,7 @@ export class Floor {
   }
 
   private handleKey(event: KeyboardEvent): void {
-    const moves: Record<string, () => void> = {
+    const actions: Record<string, () => void> = {
       ArrowLeft: () => this.pan(40, 0),
       ArrowRight: () => this.pan(-40, 0),
       ArrowUp: () => this.pan(0, 40),
@@ -287,9 +288,9 @@ export class Floor {
       '-': () => this.zoomBy(0.8),
       Home: () => this.setFollowing(true),
     };
-    const move = moves[event.key];
-    if (!move || event.defaultPrevented) return;
+    const action = actions[event.key];
+    if (!action || event.defaultPrevented) return;
     event.preventDefault();
-    move();
+    action();
   }
 }

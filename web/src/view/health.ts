@@ -1,10 +1,9 @@
 // The panel of the robot's status, which the page requests twice per second while it is visible.
 import type { Status } from '../robot';
 import type { Session } from '../session';
-import { element, setText } from './canvas';
-import { make } from './make';
+import { element, make, setText } from './elements';
 import { isShown } from './rooms';
-import type { Writer } from './writer';
+import type { BoardWriter } from './writer';
 
 const REQUEST_PERIOD_MS = 500;
 
@@ -20,17 +19,17 @@ const FORMATTERS: Record<string, (status: Status) => string> = {
   restarts: ({ resetCount }) => String(resetCount),
 };
 
-export class Health {
+export class HealthView {
   private readonly panel = element<HTMLDetailsElement>('power');
-  private readonly values = Object.entries(FORMATTERS).map(([name, format]) => ({ name, format, box: make('dd', {}, '–') }));
+  private readonly values = Object.entries(FORMATTERS).map(([label, format]) => ({ label, format, box: make('dd', {}, '–') }));
   /** True while a request has no answer. */
   private isPending = false;
 
   constructor(
     private readonly session: Session,
-    private readonly writer: Writer,
+    private readonly writer: BoardWriter,
   ) {
-    element('health').append(...this.values.map(({ name, box }) => make('div', {}, make('dt', {}, name), box)));
+    element('health').append(...this.values.map(({ label, box }) => make('div', {}, make('dt', {}, label), box)));
     setInterval(() => void this.requestStatus(), REQUEST_PERIOD_MS);
   }
 

@@ -1,11 +1,11 @@
 // The slider of one length. Its range has the values with which the robot walks; marks show the values with printable
 // parts.
 import type { Edits, Length } from '../robot';
-import { element } from './canvas';
+import { element } from './elements';
 import { makeEditsWithTwin } from './tried-lengths';
 
 /** Called with the edits of lengths while the slider is dragged; `isLast` is true at the end of the drag. */
-export type TryOut = (edits: Edits, isLast: boolean) => void;
+export type TryLengths = (edits: Edits, isLast: boolean) => void;
 
 export class LengthSlider {
   private readonly slider = element<HTMLInputElement>('length-slide');
@@ -22,7 +22,7 @@ export class LengthSlider {
    * initial length.
    */
   constructor(
-    tryOut: TryOut,
+    tryLengths: TryLengths,
     private readonly onChoice: () => void,
     private chosenKey = 'leg.crank',
   ) {
@@ -31,7 +31,7 @@ export class LengthSlider {
     this.symmetryBox.addEventListener('change', () => this.onChoice());
     const showAndTry = (isLast: boolean) => {
       this.showValue(this.slider.valueAsNumber);
-      tryOut(makeEditsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
+      tryLengths(makeEditsWithTwin(this.chosenKey, this.slider.valueAsNumber, this.lengths, this.symmetryBox.checked), isLast);
     };
     this.slider.addEventListener('input', () => showAndTry(false));
     this.slider.addEventListener('change', () => showAndTry(true));

@@ -1,12 +1,11 @@
 // The number inputs of the robot's lengths. Each change makes a new robot or is refused.
 import { type Edits, type Length, Robot } from '../robot';
 import type { Session } from '../session';
-import { element, showMessage } from './canvas';
 import { downloadRobot } from './download';
-import { make } from './make';
+import { element, make, showMessage } from './elements';
 import { describeRefusal, makeEditsWithTwin, showOffers } from './tried-lengths';
 
-export class Lengths {
+export class LengthsView {
   private readonly list = element('lengths');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
   private readonly refusalText = element('lengths-refusal');
@@ -22,7 +21,6 @@ export class Lengths {
     session.followRobot(({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Shows the lengths of the session's robot. */
   private showRobot(lengths: Length[]): void {
     if (lengths.length !== this.inputs.size) this.buildInputs(lengths);
     for (const { key, value } of lengths) {
@@ -52,7 +50,7 @@ export class Lengths {
     const value = input?.valueAsNumber;
     if (!input || value === undefined || !Number.isFinite(value)) return;
     const edits = makeEditsWithTwin(key, value, session.description.lengths, this.symmetryBox.checked);
-    const { text, refusal } = Robot.lengths(session.toml, edits, false);
+    const { text, refusal } = Robot.tryLengths(session.toml, edits, false);
     if (!refusal) return void (await session.change(text));
     const { lengths } = session.description;
     const refusedLengths = lengths.filter((length) => edits.some(([editedKey]) => editedKey === length.key));

@@ -1,6 +1,6 @@
 // The drawing of the robot from above, in mm of the chassis frame: x to the right, y forward.
 import type { Plate, Scene, Point } from '../robot';
-import { circle, polyline } from './canvas';
+import { addCircle, addPolyline } from './canvas';
 import { getPalette, getServoColour } from './palette';
 
 const FOOT_RADIUS_MM = 6;
@@ -16,14 +16,14 @@ function drawBar(context: Context, from: Point, to: Point, colour: string, width
   context.lineWidth = widthMm;
   context.lineCap = 'round';
   context.beginPath();
-  polyline(context, from, to);
+  addPolyline(context, from, to);
   context.stroke();
 }
 
 function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: string, edge?: string): void {
   context.fillStyle = fill;
   context.beginPath();
-  circle(context, x, y, radiusMm);
+  addCircle(context, x, y, radiusMm);
   context.fill();
   if (edge === undefined) return;
   context.strokeStyle = edge;
@@ -33,7 +33,6 @@ function drawDisc(context: Context, [x, y]: Point, radiusMm: number, fill: strin
 
 /** Number of coils of a drawn spring. */
 const SPRING_TURNS = 5;
-/** Half the width of a drawn spring. */
 const SPRING_HALF_WIDTH_MM = 2.4;
 
 /** Draws a coil spring between two hooks. */
@@ -50,7 +49,7 @@ function drawSpring(context: Context, [x1, y1]: Point, [x2, y2]: Point): void {
   context.lineJoin = 'round';
   context.beginPath();
   const windings = Array.from({ length: 2 * SPRING_TURNS }, (_, n) => pointAt(0.12 + (0.76 * (n + 0.5)) / (2 * SPRING_TURNS), n % 2 === 0 ? SPRING_HALF_WIDTH_MM : -SPRING_HALF_WIDTH_MM));
-  polyline(context, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
+  addPolyline(context, [x1, y1], pointAt(0.12, 0), ...windings, pointAt(0.88, 0), [x2, y2]);
   context.stroke();
 }
 
@@ -77,7 +76,7 @@ function drawSkin(context: Context, scene: Scene): void {
   for (const eyeX of [-9, 9]) drawDisc(context, [hx + eyeX, hy + 12], 2.3, getPalette().ink);
 }
 
-const SERVOS = [0, 1, 2, 3];
+const SERVO_INDICES = [0, 1, 2, 3];
 
 /** Draws a leg's bodies next to and below the plate: foot, leaf spring and coupler. `slideMm` is the foot's slide. */
 function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number): void {
@@ -95,16 +94,16 @@ function drawFoot(context: Context, scene: Scene, servo: number, slideMm: number
 /** Draws the plate, its arms with the legs' pivots, and the servos' cases. */
 function drawChassis(context: Context, plate: Plate): void {
   const colours = getPalette();
-  const [halfWidth, halfLength] = plate.half;
+  const [halfWidth, halfLength] = plate.half_size;
   for (const [rim, colour] of [[RIM_WIDTH_MM, colours['frame-edge']], [0, colours.frame]] as const) {
-    for (const [from, to] of plate.arms) drawBar(context, from, to, colour, 2 * (plate.arm + rim));
+    for (const [from, to] of plate.arms) drawBar(context, from, to, colour, 2 * (plate.arm_half_width + rim));
     context.fillStyle = colour;
     context.beginPath();
-    context.roundRect(-halfWidth - rim, -halfLength - rim, 2 * (halfWidth + rim), 2 * (halfLength + rim), plate.corner + rim);
+    context.roundRect(-halfWidth - rim, -halfLength - rim, 2 * (halfWidth + rim), 2 * (halfLength + rim), plate.corner_radius + rim);
     context.fill();
   }
-  const [width, length] = plate.case;
-  plate.cases.forEach(([x, y], servo) => {
+  const [width, length] = plate.case_size;
+  plate.case_centres.forEach(([x, y], servo) => {
     context.globalAlpha = 0.35;
     context.fillStyle = getServoColour(servo);
     context.beginPath();
@@ -161,9 +160,9 @@ function drawFiveBar(context: Context, scene: Scene, end: 0 | 1): void {
 /** Draws the robot, starting with the lowest bodies; `slides` are the feet's slides in this frame, mm. */
 export function drawLizard(context: Context, plate: Plate, scene: Scene, slides: readonly number[]): void {
   drawSkin(context, scene);
-  for (const servo of SERVOS) drawFoot(context, scene, servo, slides[servo] ?? 0);
+  for (const servo of SERVO_INDICES) drawFoot(context, scene, servo, slides[servo] ?? 0);
   drawChassis(context, plate);
-  for (const servo of SERVOS) drawLeg(context, scene, servo);
+  for (const servo of SERVO_INDICES) drawLeg(context, scene, servo);
   drawSlider(context, scene, 0);
   drawSlider(context, scene, 1);
   drawFiveBar(context, scene, 0);

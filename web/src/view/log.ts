@@ -1,11 +1,10 @@
 // The console: the sent and received lines, and an input for a line to send.
-import { element } from './canvas';
-import { make } from './make';
+import { element, make } from './elements';
 
 /** Largest number of kept lines. */
 const MAX_LINES = 400;
 
-export class Log {
+export class LogView {
   private readonly box = element('log');
   private readonly lineInput = element<HTMLInputElement>('typed');
   /** The lines that the user has entered, with the latest line at the end. */
@@ -32,7 +31,6 @@ export class Log {
     });
   }
 
-  /** Shows a line that was sent to the robot. */
   showSent(line: string): void {
     this.add(`> ${line}`, 'sent');
   }

@@ -2,7 +2,8 @@
 // robot's current pose.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
-import { element, prepareSurface } from './canvas';
+import { prepareSurface } from './canvas';
+import { element } from './elements';
 import { onPaletteChange, getPalette } from './palette';
 
 /** Number of poses in the trail. */
@@ -24,15 +25,14 @@ export class MapView {
     this.canvas = element<HTMLCanvasElement>(`map-${endIndex}`);
     onPaletteChange(() => (this.background = null));
     session.followRobot(() => {
-      this.map = session.robot.map(endIndex);
+      this.map = session.robot.singularityMap(endIndex);
       this.background = null;
       this.trail = [];
     });
   }
 
-  /** Adds the current pose to the trail. */
   addPose(scene: Scene): void {
-    this.trail.push(scene.map[this.endIndex]);
+    this.trail.push(scene.map_points[this.endIndex]);
     if (this.trail.length > TRAIL_LENGTH) this.trail.shift();
   }
 

@@ -1,8 +1,7 @@
 // The panel of the margins, the distances between the pose and the singularities.
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
-import { element, setText } from './canvas';
-import { make } from './make';
+import { element, make, setText } from './elements';
 import { isShown } from './rooms';
 
 export class MarginsView {

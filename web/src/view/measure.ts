@@ -4,21 +4,20 @@ import { transfer } from 'comlink';
 
 import type { RequestedWalk } from '../../generated/measure';
 import { files } from '../files';
-import { Helper } from '../helper';
-import { MIN_CYCLES, Interrupted, Protocol, type Walk } from '../measure/protocol';
+import { CallableWorker } from '../callable-worker';
+import { MIN_CYCLES, ProtocolInterrupted, Protocol, type Walk } from '../measure/protocol';
 import { TagTracker } from '../measure/tag-tracker';
-import { FrameSource } from '../measure/source';
+import { FrameSource } from '../measure/frame-source';
 import type { VideoWorkerApi } from '../measure/worker';
 import type { Predictor } from '../predictor';
 import type { Description, Gait } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
-import { element, setText } from './canvas';
 import { saveFile } from './download';
-import { make } from './make';
+import { element, make, setText } from './elements';
 import { ResultsView } from './results';
-import { setUpNumberInput, putNumber, type Range } from './number';
+import { setUpNumberInput, putNumber, type Range } from './number-input';
 import { ROOM_OPENED } from './rooms';
 import { drawTracking } from './draw-tracking';
 
@@ -39,14 +38,14 @@ const NUMBER_INPUTS: Record<string, Range & { value: number | null }> = {
  */
 type Task = 'idle' | 'record' | 'drive' | 'play' | 'compute';
 
-type VideoHelper = Helper<VideoWorkerApi>;
+type VideoWorker = CallableWorker<VideoWorkerApi>;
 
 /** Starts the worker that finds the tags in frames and measures the walks. */
-async function loadVideoHelper(): Promise<VideoHelper> {
-  const module = await files.measure();
-  const videoHelper: VideoHelper = new Helper(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
-  await videoHelper.call((video) => video.load(module));
-  return videoHelper;
+async function startVideoWorker(): Promise<VideoWorker> {
+  const module = await files.measureModule();
+  const videoWorker: VideoWorker = new CallableWorker(new Worker(new URL('../measure/worker.ts', import.meta.url), { type: 'module' }));
+  await videoWorker.call((video) => video.load(module));
+  return videoWorker;
 }
 
 export class MeasureView {
@@ -63,7 +62,7 @@ export class MeasureView {
   private readonly resultsView: ResultsView;
   private readonly source: FrameSource;
   /** The worker that stores and measures the video; null until it is needed. */
-  private videoHelper: Promise<VideoHelper> | null = null;
+  private videoWorker: Promise<VideoWorker> | null = null;
   private tracker = new TagTracker();
   private task: Task = 'idle';
   /** The protocol with which the page drives the robot; null while it does not drive. */
@@ -75,7 +74,7 @@ export class MeasureView {
   /** The gaits that the user has ticked (true) or unticked (false). */
   private readonly userTicks = new Map<string, boolean>();
 
-  /** `isSetupOpen` returns true while the setup is open: nothing may drive the robot then, because hands may be in it. */
+  /** `isSetupOpen` returns true while the setup is open: hands may then be in the robot, so nothing may drive it. */
   constructor(
     private readonly session: Session,
     private readonly predictor: Predictor,
@@ -142,14 +141,14 @@ export class MeasureView {
     this.updateControls();
   }
 
-  /** Notes a line that was sent to the robot. */
-  noteSent(line: string): void {
-    this.protocol?.noteSent(line);
+  /** Handles a line that was sent to the robot. */
+  handleSent(line: string): void {
+    this.protocol?.handleSent(line);
   }
 
-  /** Notes a line that the robot has sent. */
-  noteReceived(line: string): void {
-    this.protocol?.noteReceived(line);
+  /** Handles a line that the robot has sent. */
+  handleReceived(line: string): void {
+    this.protocol?.handleReceived(line);
   }
 
   /** Updates the texts about the latest frames; called several times per second. */
@@ -161,10 +160,10 @@ export class MeasureView {
     element('measure-seen').classList.toggle('refusal', hiddenTagsMessage !== '');
   }
 
-  private getVideoHelper(): Promise<VideoHelper> {
-    this.videoHelper ??= loadVideoHelper();
-    this.videoHelper.catch(() => (this.videoHelper = null));
-    return this.videoHelper;
+  private getVideoWorker(): Promise<VideoWorker> {
+    this.videoWorker ??= startVideoWorker();
+    this.videoWorker.catch(() => (this.videoWorker = null));
+    return this.videoWorker;
   }
 
   /** Runs an action of the user; shows the reason if it fails. */
@@ -185,7 +184,7 @@ export class MeasureView {
     }
     this.setMessage('Opening the camera…');
     this.hasVideo = false;
-    await this.getVideoHelper();
+    await this.getVideoWorker();
     await this.source.openCamera(() => {
       this.switchCameraOff();
       this.setMessage('The camera was disconnected.', true);
@@ -205,11 +204,11 @@ export class MeasureView {
 
   /** Finds the tags in a frame that was taken at `seconds`, and draws them over the video. */
   private async processFrame(frame: VideoFrame | ImageBitmap, seconds: number): Promise<void> {
-    const videoHelper = await this.getVideoHelper();
+    const videoWorker = await this.getVideoWorker();
     const isKept = this.task === 'record' || this.task === 'play' || (this.task === 'drive' && !this.isBeingPutBack);
     try {
-      this.tracker.addDetection(await videoHelper.call((video) => video.findTags(transfer(frame, [frame]), seconds, isKept)));
-      this.protocol?.setPlace(this.tracker.offsetToMiddle);
+      this.tracker.addDetection(await videoWorker.call((video) => video.findTags(transfer(frame, [frame]), seconds, isKept)));
+      this.protocol?.setOffset(this.tracker.offsetToCentre);
       drawTracking(this.view.querySelector('canvas') as HTMLCanvasElement, this.tracker);
     } catch (error) {
       this.setMessage(getMessage(error), true);
@@ -219,8 +218,8 @@ export class MeasureView {
   /** Reads a video file and measures the walks in it. */
   private async readVideo(file: File): Promise<void> {
     this.switchCameraOff();
-    const videoHelper = await this.getVideoHelper();
-    await videoHelper.call((video) => video.clear());
+    const videoWorker = await this.getVideoWorker();
+    await videoWorker.call((video) => video.clear());
     this.tracker = new TagTracker();
     this.task = 'play';
     this.hasVideo = false;
@@ -249,9 +248,9 @@ export class MeasureView {
     if (this.hasVideo) return this.measureWalks(this.wholeVideoWalks);
     const isPageDriving = this.driverList.value === 'page';
     const gaits = isPageDriving ? this.getDrivableGaits() : [];
-    const videoHelper = await this.getVideoHelper();
-    await videoHelper.call((video) => video.clear());
-    this.tracker.clear();
+    const videoWorker = await this.getVideoWorker();
+    await videoWorker.call((video) => video.clear());
+    this.tracker.clearPath();
     if (isPageDriving) return this.driveGaits(gaits);
     this.task = 'record';
     this.setMessage('Recording. Let the robot walk at least four cycles, then press Done.');
@@ -283,14 +282,14 @@ export class MeasureView {
       showProgress: (text) => this.setMessage(text),
     });
     this.protocol = protocol;
-    protocol.setPlace(this.tracker.offsetToMiddle);
+    protocol.setOffset(this.tracker.offsetToCentre);
     this.task = 'drive';
     this.updateControls();
     try {
       await protocol.run({ gaits, cycles: cycles ?? 8, speed, pause: pause ?? 1 });
       await this.measureWalks(this.withGaitNames(protocol.walks), speed);
     } catch (error) {
-      if (!(error instanceof Interrupted) || protocol.walks.length === 0) throw error;
+      if (!(error instanceof ProtocolInterrupted) || protocol.walks.length === 0) throw error;
       await this.measureWalks(this.withGaitNames(protocol.walks), speed, [`Ended before all gaits were walked: ${error.message}`]);
     } finally {
       this.protocol = null;
@@ -319,15 +318,15 @@ export class MeasureView {
     this.isBeingPutBack = false;
   }
 
-  /** Measures walks in the video. Shows the results, the given problems, and the reason for each walk without a result. */
+  /** Measures walks in the video. Shows the results, the given problems, and why other walks have no result. */
   private async measureWalks(walks: RequestedWalk[], speed = this.values.speed ?? 100, problems: string[] = []): Promise<void> {
     this.task = 'compute';
     this.setMessage('Measuring…');
     this.updateControls();
-    const videoHelper = await this.getVideoHelper();
+    const videoWorker = await this.getVideoWorker();
     const { height = null, ruler } = this.values;
     try {
-      const results = await videoHelper.call((video) => video.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
+      const results = await videoWorker.call((video) => video.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
       problems.push(...results.problems);
     } catch (error) {
@@ -340,8 +339,8 @@ export class MeasureView {
 
   private async saveSheet(): Promise<void> {
     const isLetter = element<HTMLSelectElement>('measure-paper').value === 'letter';
-    const videoHelper = await this.getVideoHelper();
-    saveFile('sheet.pdf', [await videoHelper.call((video) => video.sheet(isLetter))], 'application/pdf');
+    const videoWorker = await this.getVideoWorker();
+    saveFile('sheet.pdf', [await videoWorker.call((video) => video.drawSheet(isLetter))], 'application/pdf');
     this.setMessage('sheet.pdf: print it at 100 % ("actual size"), then measure the line of 100 mm on it.');
   }
 
@@ -361,7 +360,7 @@ export class MeasureView {
   }
 
   private setMessage(text: string, isProblem = false): void {
-    setText(element('measure-said'), text);
-    element('measure-said').classList.toggle('refusal', isProblem && text !== '');
+    setText(element('measure-message'), text);
+    element('measure-message').classList.toggle('refusal', isProblem && text !== '');
   }
 }

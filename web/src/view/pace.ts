@@ -1,9 +1,9 @@
 // The slider for the pace of all gaits, which also shows the reported pace.
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { element } from './canvas';
+import { element } from './elements';
 
-export class Pace {
+export class PaceView {
   private readonly slider = element<HTMLInputElement>('speed');
   private readonly valueText = element('speed-out');
   /** True between the user's first move of the slider and the answer to the line with its value. */

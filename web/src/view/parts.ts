@@ -1,13 +1,12 @@
 // The robot in 3D on the stage, and its panel: the parts, the steps of the building guide, and all files to print and
 // to cut. The 3D code is loaded only when 3D is shown or the panel is opened.
 import type { RobotView } from '../parts/robot-view';
-import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/workshop';
+import type { PartsArchive, Clash, Model, Progress, Solids } from '../parts/make-parts';
 import type { Frame, Place } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
-import { element, showMessage } from './canvas';
 import { saveFile } from './download';
-import { make } from './make';
+import { element, make, showMessage } from './elements';
 import { onPaletteChange } from './palette';
 import { isShown } from './rooms';
 
@@ -18,7 +17,7 @@ const toPlainText = (markdown: string) => markdown.replaceAll('**', '').replaceA
 
 export class PartsView {
   private readonly panel = element<HTMLDetailsElement>('parts');
-  private readonly view = element('view-3d');
+  private readonly view3d = element('view-3d');
   private readonly button3d = element<HTMLButtonElement>('button-3d');
   private readonly canvas = element<HTMLCanvasElement>('canvas-3d');
   private readonly explosionSlider = element<HTMLInputElement>('explosion');
@@ -28,7 +27,7 @@ export class PartsView {
   private robotView: RobotView | null = null;
   private solids: Solids | null = null;
   private model: Model | null = null;
-  /** The shown or loading robot.toml; empty for none. */
+  /** The robot.toml that is shown or being loaded; empty for none. */
   private shownToml = '';
   /** The robot.toml of the shown list of files. */
   private listedToml = '';
@@ -62,11 +61,11 @@ export class PartsView {
 
   /** True while the stage shows the robot in 3D. */
   get is3d(): boolean {
-    return !this.view.hidden;
+    return !this.view3d.hidden;
   }
 
   set3d(is3d: boolean): void {
-    this.view.hidden = !is3d;
+    this.view3d.hidden = !is3d;
     this.button3d.setAttribute('aria-pressed', String(is3d));
     this.showRobot();
   }
@@ -78,7 +77,7 @@ export class PartsView {
     if (this.listedToml !== toml) {
       this.listedToml = toml;
       this.listFiles([]);
-      if (!this.cancelMaking) this.setMessage('files-said', '');
+      if (!this.cancelMaking) this.setMessage('files-message', '');
     }
     this.show3d(toml);
   }
@@ -92,9 +91,9 @@ export class PartsView {
   }
 
   private async load(toml: string): Promise<void> {
-    this.setMessage('parts-said', 'Building the 3D model…');
+    this.setMessage('parts-message', 'Building the 3D model…');
     try {
-      const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/workshop'), import('../parts/robot-view')]);
+      const [{ Solids }, { RobotView }] = await Promise.all([import('../parts/make-parts'), import('../parts/robot-view')]);
       const { solids, model, meshes } = await Solids.make(toml);
       if (toml !== this.shownToml) return solids.dispose();
       // Until now, the previous robot was shown.
@@ -111,7 +110,7 @@ export class PartsView {
       if (toml !== this.shownToml) return;
       // A failed download is repeated when the 3D view is opened again.
       this.shownToml = '';
-      this.setMessage('parts-said', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
+      this.setMessage('parts-message', `Cannot make the parts of this robot: ${getMessage(error)}${this.model ? ' The previous robot is still shown.' : ''}`);
     }
   }
 
@@ -145,11 +144,11 @@ export class PartsView {
     this.step = step;
     this.requestedPose = '';
     const shownStep = step === null ? undefined : this.model.steps[step - 1];
-    const count = this.model.steps.length;
-    this.setMessage('step-title', shownStep ? `${step} of ${count}: ${shownStep.title}` : 'The whole robot');
+    const stepCount = this.model.steps.length;
+    this.setMessage('step-title', shownStep ? `${step} of ${stepCount}: ${shownStep.title}` : 'The whole robot');
     this.setMessage('step-words', shownStep ? toPlainText(shownStep.instructions) : '');
     element<HTMLButtonElement>('step-back').disabled = step === 1;
-    element<HTMLButtonElement>('step-on').disabled = step === count;
+    element<HTMLButtonElement>('step-on').disabled = step === stepCount;
     element<HTMLButtonElement>('step-all').disabled = step === null;
     this.updateRobotView();
   }
@@ -163,12 +162,12 @@ export class PartsView {
     const { clash } = this;
     if (clash) {
       const { first, second, mm } = clash;
-      this.setMessage('parts-said', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
-    } else if (!body) this.setMessage('parts-said', this.robotView ? 'Click a part for its name and its file.' : '');
-    else if (!part) this.setMessage('parts-said', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
+      this.setMessage('parts-message', `${first} and ${second} ${mm < 0 ? `overlap by ${(-mm).toFixed(2)} mm` : `are only ${mm.toFixed(2)} mm apart`}.`);
+    } else if (!body) this.setMessage('parts-message', this.robotView ? 'Click a part for its name and its file.' : '');
+    else if (!part) this.setMessage('parts-message', `${body.name}: ${body.kind}, bought; mounted in step ${body.step}.`);
     else {
       const countText = part.count === 1 ? 'printed once' : `printed ${part.count} times`;
-      this.setMessage('parts-said', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
+      this.setMessage('parts-message', `${body.name}: ${countText}, stl/${part.file}.stl and step/${part.file}.step; mounted in step ${body.step}.`);
     }
     this.updateRobotView();
   }
@@ -200,7 +199,7 @@ export class PartsView {
     const poseText = [...angles, ...lags].map((angle) => angle.toFixed(2)).join(' ');
     if (poseText !== this.requestedPose) {
       this.requestedPose = poseText;
-      void solids.pose(angles, lags).then((places) => {
+      void solids.computeMountPlaces(angles, lags).then((places) => {
         if (solids !== this.solids) return;
         if (places) robotView.placeMounts(places);
         // Another pose was being computed; this pose is requested again.
@@ -214,26 +213,26 @@ export class PartsView {
     // While files are being made, the button cancels the job.
     if (this.cancelMaking) return this.cancelMaking();
     const { toml, original, file } = this.session;
-    const bar = element<HTMLProgressElement>('parts-progress');
+    const progressBar = element<HTMLProgressElement>('parts-progress');
     const stageTexts = { prove: 'Proving that no two parts collide', make: 'Making the files' };
     const button = this.buttons[selection];
     const label = button.textContent;
-    bar.hidden = false;
-    bar.removeAttribute('value');
+    progressBar.hidden = false;
+    progressBar.removeAttribute('value');
     button.textContent = 'Stop';
     this.cancelMaking = () => {};
-    this.setMessage('files-said', 'Loading…');
+    this.setMessage('files-message', 'Loading…');
     this.listFiles([]);
     let isCancelled = false;
     let isOver = false;
     try {
-      const workshop = await import('../parts/workshop');
-      const { result, cancel } = workshop.makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
+      const { makeArchive } = await import('../parts/make-parts');
+      const { result, cancel } = makeArchive(toml, selection === 'all' ? null : original, ({ stage, done, total }: Progress) => {
         // Reports have their own channel: some arrive after the result, or after the worker was terminated.
         if (isOver) return;
-        bar.max = total;
-        bar.value = done;
-        this.setMessage('files-said', `${stageTexts[stage]}: ${done} of ${total}.`);
+        progressBar.max = total;
+        progressBar.value = done;
+        this.setMessage('files-message', `${stageTexts[stage]}: ${done} of ${total}.`);
       });
       const cancellation = new Promise<null>((resolve) => {
         this.cancelMaking = () => {
@@ -245,22 +244,22 @@ export class PartsView {
       const archive = await Promise.race([result, cancellation]).finally(() => (isOver = true));
       if (!archive) return;
       if (archive.paths.length > 0) saveFile(`${file || 'robot'}-${selection === 'all' ? 'parts' : 'changed-parts'}.zip`, [archive.zip], 'application/zip');
-      this.setMessage('files-said', this.describeArchive(archive, selection));
+      this.setMessage('files-message', this.describeArchive(archive, selection));
       if (selection === 'changed') this.listFiles(archive.paths);
     } catch (error) {
-      this.setMessage('files-said', `Cannot make the files: ${getMessage(error)}`);
+      this.setMessage('files-message', `Cannot make the files: ${getMessage(error)}`);
     } finally {
       this.cancelMaking = null;
-      bar.hidden = true;
+      progressBar.hidden = true;
       button.textContent = label;
-      if (isCancelled) this.setMessage('files-said', 'Stopped; nothing was saved.');
+      if (isCancelled) this.setMessage('files-message', 'Stopped; nothing was saved.');
     }
   }
 
-  private describeArchive({ paths, count, smallestMm }: PartsArchive, selection: 'all' | 'changed'): string {
-    const distanceText = smallestMm === null ? '' : ` No two parts come nearer than ${smallestMm.toFixed(2)} mm in any pose that the guard accepts.`;
-    if (selection === 'all') return `${count} files.${distanceText}`;
-    return paths.length === 0 ? `None of the ${count} files changed.` : `${paths.length} of ${count} files differ from the files of ${this.session.file}.toml:`;
+  private describeArchive({ paths, fileCount, minDistanceMm }: PartsArchive, selection: 'all' | 'changed'): string {
+    const distanceText = minDistanceMm === null ? '' : ` No two parts come nearer than ${minDistanceMm.toFixed(2)} mm in any pose that the guard accepts.`;
+    if (selection === 'all') return `${fileCount} files.${distanceText}`;
+    return paths.length === 0 ? `None of the ${fileCount} files changed.` : `${paths.length} of ${fileCount} files differ from the files of ${this.session.file}.toml:`;
   }
 
   private listFiles(paths: string[]): void {

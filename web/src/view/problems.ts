@@ -1,7 +1,6 @@
 // The list of problems, with one line per cause. A line stays until its cause is gone or the user dismisses it.
 import type { Cause } from '../problem';
-import { element } from './canvas';
-import { button, make, paragraph } from './make';
+import { button, element, make, paragraph } from './elements';
 
 /** The label and action of a button that solves a problem. */
 export interface Remedy {

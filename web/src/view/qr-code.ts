@@ -1,7 +1,7 @@
 // Draws a link as a QR code for a phone's camera.
 import { encode } from 'uqr';
 
-import { makeSvg } from './make';
+import { makeSvg } from './elements';
 
 /** Width of the empty border in modules (ISO/IEC 18004, 9.1). */
 const BORDER_MODULES = 4;

@@ -6,11 +6,10 @@ import { type Bars, type Description, type Four, type Frame, Robot } from '../ro
 import type { Session } from '../session';
 import { getMessage } from '../problem';
 import { WORDS } from '../words';
-import { element, setText } from './canvas';
 import { saveFile } from './download';
 import { formatDisplacement } from './drive';
-import type { Floor } from './floor';
-import { makeSvg } from './make';
+import type { FloorView } from './floor';
+import { element, makeSvg, setText } from './elements';
 import { getPalette } from './palette';
 import { isShown } from './rooms';
 
@@ -26,7 +25,7 @@ const VIDEO_FORMATS = [
 const FRAME_SECONDS = 0.02;
 
 /** Two robots that walk side by side; the page's robot is the first. */
-interface Pair {
+interface RobotPair {
   /** The robot.toml of the second robot. */
   toml: string;
   /** The commands that start the robots' gaits. */
@@ -50,21 +49,20 @@ export class RecordView {
    */
   private playback: { startedAt: number; startTime: number } | null = null;
   private isReplaying = false;
-  /** The recorder of the video; null for none. */
   private video: MediaRecorder | null = null;
   /** The second robot; null for none. */
   private companion: Companion | null = null;
-  private pair: Pair | null = null;
+  private pair: RobotPair | null = null;
   /** True until the robot starts its gait; the companion starts at the same time. */
   private isWaiting = false;
   /** Time that the companion is behind the robot, s. */
   private pendingSeconds = 0;
-  /** Takes the requested picture after the next drawing of the floor; null for none. */
-  private onDrawn: (() => void) | null = null;
+  /** Saves the requested picture after the next drawing of the floor; null if none is requested. */
+  private saveRequestedPicture: (() => void) | null = null;
 
   constructor(
     private readonly session: Session,
-    private readonly floor: Floor,
+    private readonly floor: FloorView,
   ) {
     const onClick = (id: string, action: () => void) => element(id).addEventListener('click', action);
     onClick('record', () => this.setRecording(!this.isRecording));
@@ -135,19 +133,19 @@ export class RecordView {
       this.timeSlider.value = String(time);
       if (time >= recording.duration) this.playback = null;
     }
-    return recording.findFrame(this.timeSlider.valueAsNumber)?.frame ?? current;
+    return recording.frameAt(this.timeSlider.valueAsNumber)?.frame ?? current;
   }
 
-  /** The companion's current frame; null without a companion. */
+  /** The companion's current frame; null if there is none. */
   get companionFrame(): Frame | null {
     return this.companion?.frame ?? null;
   }
 
-  /** Takes the requested picture, if any; called after each drawing of the floor. */
+  /** Saves the requested picture, if any; called after each drawing of the floor. */
   afterDrawing(): void {
-    this.onDrawn?.();
-    this.onDrawn = null;
-    this.floor.paintsAlways = this.video !== null;
+    this.saveRequestedPicture?.();
+    this.saveRequestedPicture = null;
+    this.floor.drawsAlways = this.video !== null;
   }
 
   /** Updates the texts with numbers; called several times per second. */
@@ -163,11 +161,10 @@ export class RecordView {
     if (!pair || !panel || !companion?.frame || this.isWaiting || !isShown(panel)) return;
     const { last } = this.session;
     const start = { x: 0, y: 0, heading: 0 };
-    const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.between(start, frame.place)) : '');
+    const displacementOf = (frame: Frame | null) => (frame ? formatDisplacement(Robot.displacementBetween(start, frame.place)) : '');
     this.setMessage(`${pair.names[0]}: ${displacementOf(last)}. ${pair.names[1]}: ${displacementOf(companion.frame)}.`, pair.output);
   }
 
-  /** Starts or ends the recording. */
   private setRecording(isOn: boolean): void {
     if (isOn === this.isRecording) return;
     this.isRecording = isOn;
@@ -194,8 +191,8 @@ export class RecordView {
 
   /** Requests a call of `save` after the next drawing of the floor, which is drawn even behind the robot in 3D. */
   private requestPicture(save: () => void): void {
-    this.onDrawn = save;
-    this.floor.paintsAlways = true;
+    this.saveRequestedPicture = save;
+    this.floor.drawsAlways = true;
   }
 
   /** The first format that the browser can record; undefined for none. */
@@ -245,9 +242,9 @@ export class RecordView {
     }
   }
 
-  private makePair(): Pair {
+  private makePair(): RobotPair {
     const gaits: [string, string] = [this.firstGaitList.value, this.secondGaitList.value];
-    return { toml: this.session.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-said') };
+    return { toml: this.session.toml, gaits, names: [gaits[0], `Beside it, ${gaits[1]}`], output: element('keep-message') };
   }
 
   /** Makes the page's robot walk the found gait of a search, and the second robot the previous gait. */
@@ -262,7 +259,7 @@ export class RecordView {
   }
 
   /** Starts both robots in the same frame, each from its own start. */
-  private async startBoth(pair: Pair): Promise<void> {
+  private async startBoth(pair: RobotPair): Promise<void> {
     const session = this.session;
     const { toml, floor, servos, volts } = session;
     this.removeCompanion();
@@ -308,5 +305,5 @@ export class RecordView {
     element<HTMLButtonElement>('alone').disabled = this.companion === null;
   }
 
-  private readonly setMessage = (text: string, box = element('keep-said')): void => setText(box, text);
+  private readonly setMessage = (text: string, box = element('keep-message')): void => setText(box, text);
 }

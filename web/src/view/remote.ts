@@ -1,11 +1,10 @@
 // The phone as a remote control: the page fills the screen in landscape, with the stick under one thumb and `stop`
 // under the other. The screen stays on, because the page stops the robot when the screen turns off.
-import { element } from './canvas';
+import { element } from './elements';
 
-/** Duration of a vibration, ms. */
 const VIBRATION_MS = 200;
 
-export class Remote {
+export class RemoteView {
   private readonly button = element('remote');
   private wakeLock: WakeLockSentinel | null = null;
 

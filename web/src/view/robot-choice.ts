@@ -1,6 +1,6 @@
 // The list of robots: the user's own robots, the page's robots, and, under a heading, the robots for tests.
 import { files } from '../files';
-import { element } from './canvas';
+import { element } from './elements';
 
 export class RobotChoice {
   private readonly list = element<HTMLSelectElement>('robot');
@@ -34,9 +34,7 @@ export class RobotChoice {
     return index < 0 ? null : index;
   }
 
-  /**
-   * Loads the list of the page's robots. Throws an error with a message for the user if the list is missing.
-   */
+  /** Loads the list of the page's robots. Throws an error with a message for the user if the list is missing. */
   static async load(): Promise<RobotChoice> {
     const { all, tests } = await files.robots();
     return new RobotChoice(all, tests);

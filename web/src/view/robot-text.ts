@@ -1,17 +1,17 @@
 // The panel with the robot.toml as text: the user can edit, open, drop, undo and share it.
 import { parseFragment } from '../address';
-import { makeLink, unpack } from '../link-text';
-import type { Refused } from '../robot';
+import { makeLink, unpack } from '../share-link';
+import type { Refusal } from '../robot';
 import type { Session } from '../session';
 import { getMessage } from '../problem';
-import { element, setText, showMessage } from './canvas';
+import { element, setText, showMessage } from './elements';
 import { reveal } from './rooms';
-import type { Writer } from './writer';
+import type { BoardWriter } from './writer';
 
 /** Largest number of changes that can be undone. */
 const MAX_UNDO_STEPS = 50;
 
-export class RobotText {
+export class RobotTextView {
   private readonly textBox = element<HTMLTextAreaElement>('robot-text');
   private readonly undoButton = element<HTMLButtonElement>('robot-undo');
   private readonly redoButton = element<HTMLButtonElement>('robot-redo');
@@ -22,12 +22,12 @@ export class RobotText {
   /** The last shown robot.toml of the session; empty before the first. */
   private shownToml = '';
   /** The refusal of the shown text; null if the session has loaded this text. */
-  refusal: Refused | null = null;
+  refusal: Refusal | null = null;
 
   /** `onChange` is called when the text or its refusal changes. */
   constructor(
     private readonly session: Session,
-    private readonly writer: Writer,
+    private readonly writer: BoardWriter,
     private readonly onChange: () => void,
   ) {
     element('robot-write').addEventListener('click', () => void this.loadAndWrite());
@@ -42,14 +42,14 @@ export class RobotText {
     this.redoButton.addEventListener('click', () => void this.redo());
     element('robot-line').addEventListener('click', () => this.selectErrorLine());
     element('robot-link').addEventListener('click', () => void this.copyLink());
-    element('robot-code').addEventListener('click', () => void this.toggleCode());
+    element('robot-code').addEventListener('click', () => void this.toggleQrCode());
     session.followRobot(() => this.showRobot());
-    const opener = element<HTMLInputElement>('robot-open');
-    opener.addEventListener('change', () => {
-      const file = opener.files?.[0];
+    const fileInput = element<HTMLInputElement>('robot-open');
+    fileInput.addEventListener('change', () => {
+      const file = fileInput.files?.[0];
       if (file) void this.openFile(file);
       // Without this reset, the same file could not be chosen again.
-      opener.value = '';
+      fileInput.value = '';
     });
     document.addEventListener('dragover', (event) => {
       if (event.dataTransfer?.types.includes('Files')) event.preventDefault();
@@ -130,7 +130,7 @@ export class RobotText {
     const session = this.session;
     if (this.textBox.value !== session.toml) await this.loadAndShow(this.textBox.value);
     if (this.textBox.value !== session.toml) return;
-    await this.writer.writeRobot({ message: element('robot-said'), progress: element('robot-progress') });
+    await this.writer.writeRobot({ message: element('robot-message'), progress: element('robot-progress') });
   }
 
   /** Undoes the last change: restores the previous robot, or the current one if the shown text is refused. */
@@ -169,15 +169,15 @@ export class RobotText {
   }
 
   /** Shows the link to the robot as a QR code, or hides it. */
-  private async toggleCode(): Promise<void> {
-    const codeBox = element('robot-drawn');
-    const isShown = codeBox.childElementCount === 0;
+  private async toggleQrCode(): Promise<void> {
+    const qrCodeBox = element('robot-drawn');
+    const isShown = qrCodeBox.childElementCount === 0;
     element('robot-code').setAttribute('aria-pressed', String(isShown));
-    codeBox.replaceChildren();
+    qrCodeBox.replaceChildren();
     if (!isShown) return this.setMessage('');
     try {
       const { makeQrCode } = await import('./qr-code');
-      codeBox.replaceChildren(makeQrCode(await makeLink(this.session.toml)));
+      qrCodeBox.replaceChildren(makeQrCode(await makeLink(this.session.toml)));
       const isLocal = ['localhost', '127.0.0.1', '[::1]'].includes(location.hostname);
       this.setMessage(isLocal ? 'This address works only on this computer: a phone needs the page’s address on a web server.' : 'Scan the code with a phone’s camera to open this robot.');
     } catch (error) {
@@ -185,7 +185,7 @@ export class RobotText {
     }
   }
 
-  private readonly setMessage = (text: string): void => setText(element('robot-said'), text);
+  private readonly setMessage = (text: string): void => setText(element('robot-message'), text);
 
   private selectErrorLine(): void {
     const line = this.refusal?.line;
@@ -197,7 +197,7 @@ export class RobotText {
     this.textBox.scrollTop = ((line - 4) / lines.length) * this.textBox.scrollHeight;
   }
 
-  private showRefusal(refusal: Refused | null): void {
+  private showRefusal(refusal: Refusal | null): void {
     this.refusal = refusal;
     showMessage(element('robot-refusal'), refusal?.refused ?? '');
     const button = element('robot-line');

@@ -1,14 +1,13 @@
 // The panel of routines: their steps, as in robot.toml, and a recorder that makes a routine from a drive.
 import { follow } from '../follow';
-import { type OnFloor, type Place, type Refused, Robot, type RoundPath, type Routine } from '../robot';
-import { createRobotQuestion } from '../robot-helper';
-import { Recorder } from '../routines/recorder';
+import { type OnFloor, type Place, type Refusal, Robot, type RoundPath, type Routine } from '../robot';
+import { createRobotQueue } from '../robot-requests';
+import { DriveRecorder } from '../routines/drive-recorder';
 import type { Session } from '../session';
-import { element, setText, showMessage } from './canvas';
-import { make } from './make';
+import { element, make, setText, showMessage } from './elements';
 import { isShown } from './rooms';
-import type { RobotText } from './robot-text';
-import type { Writer } from './writer';
+import type { RobotTextView } from './robot-text';
+import type { BoardWriter } from './writer';
 
 /** The first step of a new routine. */
 const FIRST_STEP = 'stand 1 s';
@@ -34,18 +33,17 @@ export class RoutinesView {
   private readonly refusalBox = element('routine-refusal');
   private readonly pathPicture = element<HTMLElement>('routine-path') as unknown as SVGSVGElement;
   private routines: Routine[] = [];
-  private recorder: Recorder | null = null;
+  private recorder: DriveRecorder | null = null;
   /** The recorded steps until the user stores or drops them. */
   private recordedSteps: string[] = [];
-  /** The index of the dragged step, and its new index after a release now; null without a drag. */
+  /** The index of the dragged step, and its new index after a release now; null if no step is dragged. */
   private drag: { from: number; to: number } | null = null;
-  /** Requests the predicted path. */
-  private readonly pathQuestion = createRobotQuestion((robot, question: OnFloor & { routine: string }) => robot.round(question), (path) => this.drawPath(path));
+  private readonly pathRequests = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(path));
 
   constructor(
     private readonly session: Session,
-    private readonly text: RobotText,
-    writer: Writer,
+    private readonly text: RobotTextView,
+    writer: BoardWriter,
   ) {
     const onClick = (id: string, action: () => void) => element(`routine-${id}`).addEventListener('click', action);
     this.panel.addEventListener('toggle', () => this.show());
@@ -56,15 +54,15 @@ export class RoutinesView {
     onClick('add', () => void this.addStep());
     onClick('undo', () => void this.text.undo());
     onClick('start', () => void this.startRoutine());
-    onClick('write', () => void writer.writeRobot({ message: element('routine-said'), progress: element('routine-progress') }));
+    onClick('write', () => void writer.writeRobot({ message: element('routine-message'), progress: element('routine-progress') }));
     const { state } = session;
     session.followRobot(() => this.recorder && this.toggleRecording());
     state.gait.subscribe((activity) => {
-      this.recorder?.setGait(activity, session.clock);
+      this.recorder?.setActivity(activity, session.clock);
       this.showRecording();
     });
     state.pace.subscribe((percent) => this.recorder?.setPace(percent, session.clock));
-    state.status.subscribe((answer) => answer && this.recorder?.setPhase(answer.phase, session.clock));
+    state.status.subscribe((status) => status && this.recorder?.setPhase(status.phase, session.clock));
     follow([state.floor, state.servos], () => this.predict());
   }
 
@@ -87,10 +85,10 @@ export class RoutinesView {
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
     const { floor, servos } = this.session;
-    this.pathQuestion.ask({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
+    this.pathRequests.submit({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
-  private readonly setMessage = (text: string): void => setText(element('routine-said'), text);
+  private readonly setMessage = (text: string): void => setText(element('routine-message'), text);
 
   /** The chosen routine, with a dragged step at its new index; null if there is no routine. */
   private get chosenRoutine(): Routine | null {
@@ -103,7 +101,7 @@ export class RoutinesView {
   private toggleRecording(): void {
     const { description, gait, pace, clock } = this.session;
     const steps = this.recorder?.listSteps(clock) ?? null;
-    this.recorder = steps ? null : new Recorder(description.gaits, gait, pace, clock);
+    this.recorder = steps ? null : new DriveRecorder(description.gaits, gait, pace, clock);
     const button = element('routine-record');
     button.setAttribute('aria-pressed', String(!steps));
     button.textContent = steps ? 'Record a drive' : 'Stop recording';
@@ -271,7 +269,7 @@ export class RoutinesView {
 }
 
 /** Returns the index of the step that a refusal names; null if it names no step. */
-function parseStepIndex({ refused }: Refused): number | null {
+function parseStepIndex({ refused }: Refusal): number | null {
   const stepText = /: step (\d+), /.exec(refused)?.[1];
   return stepText === undefined ? null : Number(stepText) - 1;
 }

@@ -3,9 +3,9 @@ import { effect } from '@preact/signals-core';
 
 import type { Description, Scene } from '../robot';
 import type { Session } from '../session';
-import { FREQUENCY_HZ } from '../uno/board';
-import { element, polyline, setText, prepareSurface } from './canvas';
-import { make } from './make';
+import { FREQUENCY_HZ } from '../uno/simulated-board';
+import { addPolyline, prepareSurface } from './canvas';
+import { element, make, setText } from './elements';
 import { getPalette, getServoColour } from './palette';
 import { isShown } from './rooms';
 
@@ -111,7 +111,7 @@ export class ScopeView {
         .filter((pulse) => pulse.servo === servo)
         .map(({ riseCycle, widthCycles }) => [toX(riseCycle), toX(riseCycle + widthCycles)])
         .filter(([, to]) => to >= 0);
-      polyline(context, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
+      addPolyline(context, [0, lowY], ...edges.flatMap(([from, to]): [number, number][] => [[from, lowY], [from, highY], [to, highY], [to, lowY]]), [width, lowY]);
       context.stroke();
     }
   }

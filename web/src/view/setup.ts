@@ -1,14 +1,13 @@
 // The dialog of the first connection, which sets up a new robot step by step. The user can enter and leave the steps in
 // any order.
-import type { Guide } from '../../generated/board';
+import type { Calibrator } from '../../generated/board';
 import { follow } from '../follow';
 import type { Link } from '../link/link';
 import { parseCalibration } from '../robot';
 import type { Session } from '../session';
-import { BoardGuide } from '../setup/guide';
+import { BoardCalibrator } from '../setup/board-calibrator';
 import { getMessage } from '../problem';
 import { GAITS, NOTHING_SAVED_LINE } from '../words';
-import { element, setText, showMessage } from './canvas';
 import { reveal } from './rooms';
 import { boardStep } from './setup/board';
 import { makeDrawing, SERVO_POSITIONS } from './setup/drawing';
@@ -16,21 +15,21 @@ import { firmwareStep } from './setup/firmware';
 import { hornsStep } from './setup/horns';
 import { keepStep } from './setup/keep';
 import { LimitsStep } from './setup/limits';
-import { button, make, row, paragraph } from './make';
+import { button, element, make, paragraph, row, setText, showMessage } from './elements';
 import { ScaleStep } from './setup/scale';
 import { SignsStep } from './setup/signs';
 import type { Step, StepTools } from './setup/step';
 import { trimsStep } from './setup/trims';
 import { walkStep } from './setup/walk';
-import type { WriteContent, Writer } from './writer';
+import type { WriteContent, BoardWriter } from './writer';
 
 const STEPS: readonly Step[] = [boardStep, firmwareStep, hornsStep, new SignsStep(), trimsStep, new ScaleStep(), new LimitsStep(), walkStep, keepStep];
 const LOST_MESSAGE = 'The board is no longer connected. Unsaved settings are lost. Connect it again and continue here.';
 const NO_ROBOT_MESSAGE = 'No robot with this firmware answers: connect the board and write the firmware first.';
 
 /** The dialog. The steps call its methods as plain functions; therefore these methods are arrow functions. */
-export class Setup implements StepTools {
-  guide: BoardGuide | null = null;
+export class SetupDialog implements StepTools {
+  calibrator: BoardCalibrator | null = null;
   servo = 0;
   private step: Step = boardStep;
   /** The names of the finished steps, and the keys of the finished parts of steps. */
@@ -38,10 +37,10 @@ export class Setup implements StepTools {
   private readonly dialog = element('setup');
   private readonly stepList = element('setup-steps');
   private readonly title = element('setup-step');
-  private readonly content = element('setup-what');
+  private readonly content = element('setup-content');
   private readonly servoButtons = element('setup-servos');
   private readonly drawingBox = element('setup-drawing');
-  private readonly message = element('setup-said');
+  private readonly message = element('setup-message');
   private readonly progress = element<HTMLProgressElement>('setup-progress');
   /** Number of started or dropped actions so far; identifies the result of an outdated action. */
   private actionCount = 0;
@@ -49,7 +48,7 @@ export class Setup implements StepTools {
   /** True if the dialog itself started the running action; a button's action then waits until it ends. */
   private isAutomatic = false;
   /** The button's action that starts after the running action; null for none. */
-  private waitingAction: (() => Promise<string>) | null = null;
+  private queuedAction: (() => Promise<string>) | null = null;
   /** Settles at the end of the last action. */
   private runningAction: Promise<void> = Promise.resolve();
   private lastLink: Link | null = null;
@@ -64,7 +63,7 @@ export class Setup implements StepTools {
 
   constructor(
     readonly session: Session,
-    readonly writer: Writer,
+    readonly writer: BoardWriter,
     private readonly connectBoard: () => Promise<void>,
   ) {
     element('setup-open').addEventListener('click', () => this.open(this.step));
@@ -92,7 +91,6 @@ export class Setup implements StepTools {
     return !this.dialog.hidden;
   }
 
-  /** Opens the dialog at a step. */
   private open(step: Step): void {
     this.session.stopIfWalking();
     this.dialog.hidden = false;
@@ -114,7 +112,7 @@ export class Setup implements StepTools {
   }
 
   /** Evaluates a line from the robot. */
-  noteReceived(line: string): void {
+  handleReceived(line: string): void {
     if (line.startsWith(NOTHING_SAVED_LINE)) this.isUncalibrated = true;
   }
 
@@ -134,8 +132,8 @@ export class Setup implements StepTools {
 
   /** Updates the view after a possible change of board or robot. */
   private update(): void {
-    if (this.guide && !this.guide.isCurrent) {
-      const { isChanged } = this.guide;
+    if (this.calibrator && !this.calibrator.isCurrent) {
+      const { isChanged } = this.calibrator;
       this.dropAction(isChanged);
       this.setMessage(isChanged ? 'The board has restarted. Unsaved settings are lost.' : 'The board has restarted.');
     }
@@ -146,20 +144,20 @@ export class Setup implements StepTools {
   private dropAction(areSettingsLost = true): void {
     this.actionCount += 1;
     this.setBusy(false);
-    this.waitingAction = null;
-    this.guide = null;
+    this.queuedAction = null;
+    this.calibrator = null;
     if (areSettingsLost) this.doneSteps.clear();
     for (const step of STEPS) step.reset?.();
   }
 
   /** Closes the dialog after the current action; restores the previous calibration if settings are unsaved. */
   private async leave(): Promise<void> {
-    if (this.guide?.isCurrent) await this.runningAction;
+    if (this.calibrator?.isCurrent) await this.runningAction;
     let message = '';
-    const { guide } = this;
-    if (guide?.isCurrent) {
+    const { calibrator } = this;
+    if (calibrator?.isCurrent) {
       try {
-        if (await guide.run((board) => board.restore())) message = 'You have left the first connection; the robot has its previous calibration.';
+        if (await calibrator.run((calibrator) => calibrator.restore())) message = 'You have left the first connection; the robot has its previous calibration.';
       } catch (error) {
         message = `You have left the first connection; the robot may have an unsaved calibration until its next reset: ${getMessage(error)}`;
       }
@@ -180,7 +178,7 @@ export class Setup implements StepTools {
   readonly connect = (): void => void this.connectBoard();
 
   readonly write = (content: WriteContent): void => {
-    this.guide = null;
+    this.calibrator = null;
     this.runAction(async () => {
       const { message, progress } = this;
       if (await this.writer.write(content, { message, progress })) this.markDone('Firmware');
@@ -191,33 +189,33 @@ export class Setup implements StepTools {
   readonly setCalibration = (text: string, name: string): void => {
     this.runAction(async () => {
       const calibration = parseCalibration(text, name);
-      const guide = await this.requireGuide();
-      await guide.run((board) => board.replace(calibration));
+      const calibrator = await this.requireCalibrator();
+      await calibrator.run((calibrator) => calibrator.replace(calibration));
       return `The robot has the calibration of ${name}, which is not saved yet.`;
     });
   };
 
-  readonly run = (action: (guide: Guide) => Promise<string>): void => this.runAction(async () => (await this.requireGuide()).run(action));
+  readonly run = (action: (calibrator: Calibrator) => Promise<string>): void => this.runAction(async () => (await this.requireCalibrator()).run(action));
 
   readonly stand = (): void =>
-    this.run(async (guide) => {
-      await guide.stand();
+    this.run(async (calibrator) => {
+      await calibrator.stand();
       this.step.reset?.();
       return 'The robot stands.';
     });
 
-  /** Returns the guide for the connected robot; starts the guide if needed. */
-  private async requireGuide(): Promise<BoardGuide> {
+  /** Returns the calibrator for the connected robot; starts the calibrator if needed. */
+  private async requireCalibrator(): Promise<BoardCalibrator> {
     if (this.isLost) throw new Error(LOST_MESSAGE);
     if (!this.session.isFirmwareAnswering) throw new Error(NO_ROBOT_MESSAGE);
-    this.guide ??= await BoardGuide.begin(this.session);
-    return this.guide;
+    this.calibrator ??= await BoardCalibrator.begin(this.session);
+    return this.calibrator;
   }
 
   /** Runs an action unless another action is running; `isAutomatic` is true if the dialog itself starts the action. */
   private runAction(action: () => Promise<string>, isAutomatic = false): void {
     if (this.isBusy) {
-      if (this.isAutomatic && !isAutomatic) this.waitingAction = action;
+      if (this.isAutomatic && !isAutomatic) this.queuedAction = action;
       return;
     }
     this.isAutomatic = isAutomatic;
@@ -231,9 +229,9 @@ export class Setup implements StepTools {
         this.setBusy(false);
         this.setMessage(message);
         this.update();
-        const { waitingAction } = this;
-        this.waitingAction = null;
-        if (waitingAction) this.runAction(waitingAction);
+        const { queuedAction } = this;
+        this.queuedAction = null;
+        if (queuedAction) this.runAction(queuedAction);
       });
   }
 
@@ -264,9 +262,9 @@ export class Setup implements StepTools {
     this.title.focus({ preventScroll: true });
     if (!step.needsRobot || !this.session.isFirmwareAnswering || this.isLost) return;
     // Servos that the previous step turned return to neutral.
-    const { guide } = this;
-    if (!guide) this.runAction(async () => this.requireGuide().then(() => ''), true);
-    else if (this.session.gait !== GAITS.stand) this.runAction(async () => guide.run((board) => board.stand()).then(() => ''), true);
+    const { calibrator } = this;
+    if (!calibrator) this.runAction(async () => this.requireCalibrator().then(() => ''), true);
+    else if (this.session.gait !== GAITS.stand) this.runAction(async () => calibrator.run((calibrator) => calibrator.stand()).then(() => ''), true);
   }
 
   readonly redraw = (): void => {

@@ -1,37 +1,36 @@
 // A drawing of the robot with joints that the user can drag, and a slider for one length. Invalid lengths are refused
 // during the drag.
 import type { Edits, Length, Scene, Point } from '../robot';
-import { createRobotQuestion } from '../robot-helper';
+import { createRobotQueue } from '../robot-requests';
 import type { RobotWorkerApi } from '../robot-worker';
 import type { Session } from '../session';
 import { type Joint, listBars, listJoints } from '../sketch/joints';
-import { element } from './canvas';
 import type { FitView } from './fit';
 import { LengthSlider } from './length-slider';
-import { setAttributes, makeSvg } from './make';
+import { element, makeSvg, setAttributes } from './elements';
 import { followShownRobot } from './rooms';
 import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 
-type Question = Parameters<RobotWorkerApi['lengths']>[0];
-type Answer = ReturnType<RobotWorkerApi['lengths']>;
+type LengthsRequest = Parameters<RobotWorkerApi['tryLengths']>[0];
+type LengthsResponse = ReturnType<RobotWorkerApi['tryLengths']>;
 
 /** Movement of the pointer beyond which a press is a drag, CSS pixels. */
 const DRAG_THRESHOLD_PX = 3;
 /** Margin around the robot in the drawing. */
 const MARGIN_MM = 14;
 
-export class Sketch {
+export class SketchView {
   private readonly picture = element<HTMLElement>('sketch') as unknown as SVGSVGElement;
-  private readonly message = element('sketch-said');
+  private readonly message = element('sketch-message');
   private readonly symmetryBox = element<HTMLInputElement>('alike');
   private readonly barGroup = this.picture.appendChild(makeSvg('g', {}));
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Tries other lengths in a worker. */
-  private readonly lengthsQuestion = createRobotQuestion((robot, question: Question) => robot.lengths(question), (answer: Answer) => this.handleAnswer(answer));
-  private readonly slider = new LengthSlider((edits, isLast) => this.tryOut(edits, isLast), () => this.requestDrawing());
-  /** The dragged joint, in its state at the start of the drag; null without a drag. */
+  private readonly lengthsRequests = createRobotQueue((robot, request: LengthsRequest) => robot.tryLengths(request), (response: LengthsResponse) => this.handleResponse(response));
+  private readonly slider = new LengthSlider((edits, isLast) => this.tryLengths(edits, isLast), () => this.requestDrawing());
+  /** The dragged joint, in its state at the start of the drag; null if none is dragged. */
   private draggedJoint: Joint | null = null;
-  /** True between the end of a drag and the answer for its last position. */
+  /** True between the end of a drag and the response for its last position. */
   private isDragEnding = false;
 
   constructor(
@@ -50,25 +49,25 @@ export class Sketch {
 
   /** Requests a drawing of the session's robot and the range of the slider's length. */
   private requestDrawing(): void {
-    this.lengthsQuestion.ask({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
+    this.lengthsRequests.submit({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
   /** Tries the lengths of a drag; `isLast` is true at the end of the drag. */
-  private tryOut(edits: Edits, isLast: boolean): void {
+  private tryLengths(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast, keys: [] });
+    this.lengthsRequests.submit({ toml: this.session.toml, edits, isLast, keys: [] });
   }
 
   /** Searches for valid alternatives to refused lengths and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.lengthsQuestion.ask({ toml: this.session.toml, edits, isLast: true, keys: [] });
+    this.lengthsRequests.submit({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
 
-  private handleAnswer({ edits, text, refusal, scene, nearest, without, isLast, range }: Answer): void {
+  private handleResponse({ edits, text, refusal, scene, nearest, without, isLast, range }: LengthsResponse): void {
     if (scene) this.draw(scene, edits.length === 0);
     if (range) this.applyRange(range);
     if (edits.length === 0) return;
-    // This answer belongs to `offerValidLengths`: the user has typed a number that was refused.
+    // This response belongs to `offerValidLengths`: the user has typed a number that was refused.
     if (isLast && !this.isDragEnding) return showOffers({ nearest, without }, this.session);
     if (!isLast) this.fit.checkDragged(refusal ? null : text);
     const { lengths } = this.session.description;
@@ -87,7 +86,6 @@ export class Sketch {
     else this.showUnchanged();
   }
 
-  /** Shows the session's unchanged robot again. */
   private showUnchanged(): void {
     const { lengths } = this.session.description;
     this.showRobot(lengths);
@@ -155,7 +153,7 @@ export class Sketch {
     const matrix = this.picture.getScreenCTM();
     if (!matrix) return;
     const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-    this.tryOut(joint.makeEdits([x, -y], this.symmetryBox.checked), isLast);
+    this.tryLengths(joint.makeEdits([x, -y], this.symmetryBox.checked), isLast);
   }
 
   /** Selects the number input for the length of a clicked bar. */

@@ -4,7 +4,7 @@ import type { PredictedGait, Predictor } from '../predictor';
 import type { Displacement } from '../robot';
 import type { Session } from '../session';
 import { WORDS } from '../words';
-import { element } from './canvas';
+import { element } from './elements';
 
 /** A steering direction; `forward` and `left` are from -1 to 1. */
 export interface Direction {
@@ -53,14 +53,14 @@ const KEY_DIRECTIONS: Record<string, Direction> = {
 export function chooseGait({ forward, left }: Direction, gaits: PredictedGait[]): string | null {
   const deflection = Math.hypot(forward, left);
   if (deflection < DEAD_ZONE) return null;
-  const findLargest = (getComponent: (displacement: Displacement) => number | null) => Math.max(...gaits.map(({ displacement }) => Math.abs(getComponent(displacement) ?? 0)), 0);
-  const [largestForward, largestTurn] = [findLargest(({ forward }) => forward), findLargest(({ turn }) => turn)];
+  const findMax = (getComponent: (displacement: Displacement) => number | null) => Math.max(...gaits.map(({ displacement }) => Math.abs(getComponent(displacement) ?? 0)), 0);
+  const [maxForward, maxTurn] = [findMax(({ forward }) => forward), findMax(({ turn }) => turn)];
   // Drift counts as zero, even if no turning gait is predicted yet and the drift would be the largest turn.
-  const toFraction = (value: number | null, smallest: number, largest: number) => (value !== null && Math.abs(value) >= smallest ? value / largest : 0);
+  const toFraction = (value: number | null, min: number, max: number) => (value !== null && Math.abs(value) >= min ? value / max : 0);
   let best: { command: string; score: number } | null = null;
   for (const { command, displacement } of gaits) {
-    const forwardFraction = toFraction(displacement.forward, MIN_DISPLACEMENT.forwardMm, largestForward);
-    const turnFraction = toFraction(displacement.turn, MIN_DISPLACEMENT.turnDeg, largestTurn);
+    const forwardFraction = toFraction(displacement.forward, MIN_DISPLACEMENT.forwardMm, maxForward);
+    const turnFraction = toFraction(displacement.turn, MIN_DISPLACEMENT.turnDeg, maxTurn);
     if (forwardFraction === 0 && turnFraction === 0) continue;
     const length = Math.hypot(forwardFraction, turnFraction);
     const cosine = (forwardFraction * forward + turnFraction * left) / (length * deflection);

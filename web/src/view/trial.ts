@@ -2,11 +2,10 @@
 // and the buttons that use the gait.
 import { applyGait, tryGait } from '../gaits/try-gait';
 import { type EditedGait, type GaitParameter, isRefused, type OnFloor, type RefusedTrial, type Trial } from '../robot';
-import { createRobotQuestion } from '../robot-helper';
+import { createRobotQueue } from '../robot-requests';
 import type { Session } from '../session';
-import { element, setText } from './canvas';
-import { button } from './make';
-import type { Writer } from './writer';
+import { button, element, setText } from './elements';
+import type { BoardWriter } from './writer';
 
 /** The trial's access to the gait editor. */
 export interface TrialEditor {
@@ -22,14 +21,14 @@ export interface TrialEditor {
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
 /** Formats the results of a trial; `unit` selects the walking speed, mm/s, or the turning speed. */
-export function formatResults({ forward, turn, period, least, limit, margin, servo, speed }: Trial, unit = 'mm/s') {
+export function formatResults({ forward, turn, period, margin_name, min_margin, margin_limit, fastest_servo, max_servo_speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
-    way: formatNumber(forward, ' mm'),
+    distance: formatNumber(forward, ' mm'),
     speed: displacement === null ? '–' : formatNumber(displacement / period, speedUnit),
     turn: formatNumber(turn, '°'),
-    least: `${least.toFixed(3)} of ${limit} (${margin.replaceAll('_', ' ')})`,
-    fastest: `${servo}, ${speed.toFixed(0)} °/s`,
+    margin: `${min_margin.toFixed(3)} of ${margin_limit} (${margin_name.replaceAll('_', ' ')})`,
+    fastest: `${fastest_servo}, ${max_servo_speed.toFixed(0)} °/s`,
     cycle: `${period} s`,
   };
 }
@@ -42,13 +41,13 @@ const OFFER_LABELS: Record<GaitParameter, (value: number) => string> = {
 };
 
 export class TrialView {
-  private readonly trialQuestion = createRobotQuestion<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, question) => robot.trial(question), (trial) => this.handleAnswer(trial));
+  private readonly trialRequests = createRobotQueue<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, request) => robot.tryGait(request), (trial) => this.showResult(trial));
   /** The result of the last trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
     private readonly session: Session,
-    private readonly writer: Writer,
+    private readonly writer: BoardWriter,
     private readonly editor: TrialEditor,
   ) {
     this.element('try').addEventListener('click', () => void this.tryEditedGait());
@@ -61,28 +60,28 @@ export class TrialView {
     const { toml, floor, servos } = this.session;
     const gait = this.editor.editedGait();
     if (!gait || toml === '') return;
-    this.trialQuestion.ask({ toml, floor, servos, gait });
+    this.trialRequests.submit({ toml, floor, servos, gait });
   }
 
   /** Shows a message beside the editor's buttons. */
-  readonly setMessage = (text: string): void => setText(this.element('said'), text);
+  readonly setMessage = (text: string): void => setText(this.element('message'), text);
 
   private element<E extends HTMLElement = HTMLElement>(name: string): E {
     return element<E>(`${this.editor.prefix}-${name}`);
   }
 
-  private handleAnswer(trial: Trial | RefusedTrial | null): void {
+  private showResult(trial: Trial | RefusedTrial | null): void {
     const refusal = trial && isRefused(trial) ? trial : null;
     const validTrial = trial && !isRefused(trial) ? trial : null;
     this.trial = validTrial;
     for (const name of ['try', 'write', 'copy']) this.element<HTMLButtonElement>(name).disabled = !validTrial;
     const show = (name: string, text: string) => setText(this.element(name), text);
     const results = validTrial && formatResults(validTrial);
-    for (const name of ['way', 'speed', 'turn', 'least', 'fastest'] as const) show(name, results?.[name] ?? '–');
+    for (const name of ['distance', 'speed', 'turn', 'margin', 'fastest'] as const) show(name, results?.[name] ?? '–');
     show('table', validTrial?.table ?? '');
-    this.element('no').hidden = refusal === null;
+    this.element('refused').hidden = refusal === null;
     show('refusal', refusal?.refused ?? '');
-    this.element('instead').replaceChildren(
+    this.element('alternatives').replaceChildren(
       ...(refusal?.alternatives ?? []).map(({ parameter, value }) => button(OFFER_LABELS[parameter](value), () => this.editor.change(parameter, value))),
     );
     this.setMessage('');
@@ -102,7 +101,7 @@ export class TrialView {
     const { session } = this;
     const refusal = session.isReal ? await applyGait(session, gait) : null;
     if (refusal) return this.setMessage(refusal.refused);
-    const message = this.element('said');
+    const message = this.element('message');
     if (!(await this.writer.writeRobot({ message, progress: this.element<HTMLProgressElement>('progress') }))) return;
     this.setMessage(`${message.textContent}. The board has restarted; ${gait.name.replaceAll('-', ' ')} has a button in Drive.`);
   }

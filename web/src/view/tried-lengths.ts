@@ -1,8 +1,7 @@
 // Lengths that the user has tried: their text, the reason for a refusal, and buttons with valid alternatives.
-import type { Edits, Length, Refused, TriedLengths } from '../robot';
+import type { Edits, Length, Refusal, TriedLengths } from '../robot';
 import type { Session } from '../session';
-import { element } from './canvas';
-import { button } from './make';
+import { button, element } from './elements';
 
 /** Makes the edit of a length and, if `isSymmetric`, the same edit of its twin on the opposite side. */
 export function makeEditsWithTwin(key: string, value: number, lengths: Length[], isSymmetric: boolean): Edits {
@@ -19,10 +18,10 @@ export function formatLengths(edits: Edits, lengths: Length[]): string {
 }
 
 /**
- * Returns a sentence with the reason for refusing lengths; `lengthsText` names these lengths, and `lengths` are the
+ * Returns a message with the reason for refusing lengths; `lengthsText` names these lengths, and `lengths` are the
  * current robot's lengths.
  */
-export function describeRefusal(lengthsText: string, edits: Edits, { refused, consequence, key }: Refused, lengths: Length[]): string {
+export function describeRefusal(lengthsText: string, edits: Edits, { refused, consequence, key }: Refusal, lengths: Length[]): string {
   const lengthByKey = new Map(lengths.map((length) => [length.key, length]));
   const changes = edits.map(([editedKey, value]) => value - (lengthByKey.get(editedKey)?.value ?? value));
   const [more, less] = edits.every(([editedKey]) => lengthByKey.get(editedKey)?.unit === 'deg') ? ['large', 'small'] : ['long', 'short'];
@@ -36,7 +35,7 @@ export function describeRefusal(lengthsText: string, edits: Edits, { refused, co
 export function showOffers(alternatives: Pick<TriedLengths, 'nearest' | 'without'> | null, session: Session): void {
   const { nearest = null, without = null } = alternatives ?? {};
   const changeTo = (text: string) => () => void session.change(text);
-  element('lengths-instead').replaceChildren(
+  element('lengths-alternatives').replaceChildren(
     ...(nearest ? [button(`Try ${formatLengths(nearest.lengths, session.description.lengths).replace(/^[^,]* = ([^,]*)$/, '$1')}`, changeTo(nearest.text))] : []),
     ...(without ? [button(`Drop “${without.gait.replaceAll('-', ' ')}”`, changeTo(without.text))] : []),
   );

@@ -2,8 +2,7 @@
 // robot's inputs.
 import { canLag, type Floor, type LegDrive, type ServoModel } from '../robot';
 import type { Session } from '../session';
-import { element } from './canvas';
-import { make } from './make';
+import { element, make } from './elements';
 
 /** Number of decimals of each slider's value; the unit is in the slider's label. */
 const DECIMALS = { force: 1, play: 1, leaf: 1, twist: 1, friction: 2, ratio: 2, mass: 0 };
@@ -13,7 +12,7 @@ const SLIDER_NAMES = Object.keys(DECIMALS) as SliderName[];
 /** The label of each of the robot's inputs: the event that closes its contact. */
 const CONTACT_LABELS: Record<string, string> = { button: 'button pressed', nose: 'wall at the nose' };
 
-export class World {
+export class WorldView {
   private readonly driveList = element<HTMLSelectElement>('drive');
   private readonly servoList = element<HTMLSelectElement>('servos');
   private readonly voltsInput = element<HTMLInputElement>('servo-volts');
@@ -51,7 +50,7 @@ export class World {
       this.showText(input, floor[name].toFixed(DECIMALS[name]));
     }
     this.enableSliders(floor);
-    this.servoList.replaceChildren(...description.models.map((model) => new Option(formatServo(model), model.name)));
+    this.servoList.replaceChildren(...description.models.map((model) => new Option(formatServoModel(model), model.name)));
     this.showServos();
     this.supplyInput.value = String(this.session.volts);
     this.showVolts(this.supplyInput);
@@ -129,7 +128,7 @@ export class World {
 }
 
 /** Formats a servo model's label in the list. */
-function formatServo({ name, ratings }: ServoModel): string {
+function formatServoModel({ name, ratings }: ServoModel): string {
   if (!ratings) return 'ideal: follows its pulse at once';
   const [torqueKgCm, seconds, volts] = ratings;
   return `${name === 'own' ? 'as in robot.toml' : name}: ${torqueKgCm} kg cm, ${seconds} s for 60° at ${volts} V`;

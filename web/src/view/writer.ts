@@ -1,12 +1,12 @@
 // Writes the firmware, the robot or both to a board, and shows the progress and the result in the caller's elements.
 import { signal } from '@preact/signals-core';
 
-import type { Progress, Session } from '../session';
+import type { ReportProgress, Session } from '../session';
 import { getMessage } from '../problem';
-import { setText } from './canvas';
+import { setText } from './elements';
 
 /** The elements that show the progress and the result. */
-export interface Display {
+export interface WriteDisplay {
   progress: HTMLProgressElement;
   message: HTMLElement;
 }
@@ -14,7 +14,6 @@ export interface Display {
 /** The content to write: the page's robot alone, firmware and robot, or the image of a chosen file. */
 export type WriteContent = 'robot' | 'all' | Uint8Array;
 
-/** The message if no board is connected. */
 const NO_BOARD_MESSAGE = 'No board is connected: press Connect a board… in the room Board. The simulated board already has this robot.';
 
 /** The message of each step, and the progress bar's percentages at its start and its end. */
@@ -25,21 +24,21 @@ const PROGRESS_STEPS = {
   verifying: ['verifying…', 75, 100],
 } as const;
 
-export class Writer {
+export class BoardWriter {
   /** True while the boot loader uses the link. */
   readonly isBusy = signal(false);
 
   constructor(private readonly session: Session) {}
 
   /** Writes the page's robot alone to a real board; returns true if the board then reports this robot. */
-  async writeRobot(display: Display): Promise<boolean> {
+  async writeRobot(display: WriteDisplay): Promise<boolean> {
     if (this.session.isReal) return this.write('robot', display);
     display.message.textContent = NO_BOARD_MESSAGE;
     return false;
   }
 
   /** Writes and verifies, then waits for the board's banner; returns true if all steps succeed. */
-  async write(content: WriteContent, { progress, message }: Display): Promise<boolean> {
+  async write(content: WriteContent, { progress, message }: WriteDisplay): Promise<boolean> {
     if (this.isBusy.value) return false;
     const session = this.session;
     const { isReal } = session;
@@ -51,7 +50,7 @@ export class Writer {
     progress.value = 0;
     message.textContent = 'calling the boot loader…';
     let isWritten = false;
-    const showProgress: Progress = (step, done, total) => {
+    const showProgress: ReportProgress = (step, done, total) => {
       const [text, from, to] = PROGRESS_STEPS[step];
       // The bar never moves back, although the program's first page is written after all other pages are verified.
       progress.value = step === 'again' ? 0 : Math.max(progress.value, from + ((to - from) * done) / total);

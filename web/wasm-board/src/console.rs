@@ -59,7 +59,7 @@ fn string_or_empty(value: JsValue) -> String {
         .map_or(String::new(), Into::into)
 }
 
-/// Converts an error to the thrown value: the page's own error, or a sentence about the robot's reply.
+/// Converts an error to the thrown value: the page's own error, or a message about the robot's reply.
 pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
     match error {
         ConsoleError::Reply(BadReply::Refused { line, reason }) => {
@@ -67,7 +67,7 @@ pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
             let reason = reason.trim_start_matches(|c: char| c.is_ascii_digit());
             make_js_error(&format!("The robot refuses \"{line}\":{reason}."))
         }
-        ConsoleError::Reply(BadReply::Unclear { .. }) => {
+        ConsoleError::Reply(BadReply::UnknownFormat { .. }) => {
             make_js_error("The robot's answer is unknown to this page; write this firmware first.")
         }
         ConsoleError::Link(error) => error,

@@ -12,13 +12,13 @@
 #![warn(clippy::missing_errors_doc)]
 
 mod calibration;
+mod calibrator;
 mod console;
-mod guide;
 mod line;
 mod upload;
 
 pub use calibration::read_calibration;
+pub use calibrator::Calibrator;
 pub use console::Console;
-pub use guide::Guide;
 pub use line::SerialLine;
 pub use upload::{Board, identify, is_lizard, needs_uno, parse_image, upload};

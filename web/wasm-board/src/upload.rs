@@ -19,13 +19,13 @@ pub fn parse_image(hex: &str) -> Result<Vec<u8>, JsError> {
 /// Returns true if an image contains this firmware, in any version.
 #[wasm_bindgen(js_name = isLizard)]
 pub fn is_lizard(image: &[u8]) -> bool {
-    Mark::find(image).is_some()
+    Mark::read(image).is_some()
 }
 
-/// Returns true if an image from address 0 up to `end` reaches into a Nano's boot section.
+/// Returns true if an image from address 0 up to `end_address` reaches into a Nano's boot section.
 #[wasm_bindgen(js_name = needsUno)]
-pub fn needs_uno(end: usize) -> bool {
-    end > lizard_upload::NANO_BOOT_ADDRESS
+pub fn needs_uno(end_address: usize) -> bool {
+    end_address > lizard_upload::NANO_BOOT_ADDRESS
 }
 
 /// The kind of board that the user names; `Unknown` if the page did not ask.
@@ -45,7 +45,7 @@ pub enum Board {
 /// number; or `again` if the board is reset for another attempt.
 ///
 /// # Errors
-/// Rejects with a sentence for the user that states the flash's current content.
+/// Rejects with a message for the user that states the flash's current content.
 #[wasm_bindgen]
 pub async fn upload(
     line: SerialLine,
@@ -88,7 +88,7 @@ pub async fn upload(
 /// Resets a board, identifies its model by its boot loader, and starts its program; returns `UNO` or `Nano`.
 ///
 /// # Errors
-/// Rejects with a sentence for the user if the board is neither a UNO nor a Nano, or does not answer.
+/// Rejects with a message for the user if the board is neither a UNO nor a Nano, or does not answer.
 #[wasm_bindgen]
 pub async fn identify(line: SerialLine) -> Result<String, JsError> {
     let mut loader = Loader::new(JsBoard(line));

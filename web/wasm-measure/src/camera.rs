@@ -1,6 +1,6 @@
 //! Stores the video that the page records, and measures the gaits in it.
 
-use lizard_measure::{Gaits, NamedVideo, Report, board_height};
+use lizard_measure::{Gaits, NamedVideo, Report, compute_board_height};
 use lizard_robot::Robot;
 use lizard_video::{Frame, Setup, Tag, Video, sheet};
 use serde::{Deserialize, Serialize};
@@ -8,12 +8,12 @@ use tsify::Tsify;
 
 /// A refusal with its reason.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Tsify)]
-pub struct Refused {
-    /// The reason, as a sentence for the user.
+pub struct Refusal {
+    /// The reason, as a message for the user.
     pub refused: String,
 }
 
-impl Refused {
+impl Refusal {
     pub(crate) fn new(reason: impl ToString) -> Self {
         Self {
             refused: reason.to_string(),
@@ -62,7 +62,7 @@ pub struct Results {
     /// The gaits as `lizard measure --json` prints them; walks of the same gait are combined.
     #[tsify(type = "Report[]")]
     pub gaits: serde_json::Value,
-    /// For each walk that cannot be measured, a sentence with its gait and the reason.
+    /// For each walk that cannot be measured, a message with its gait and the reason.
     pub problems: Vec<String>,
 }
 
@@ -86,9 +86,9 @@ impl Camera {
     ///
     /// # Errors
     /// Fails if the frame does not fit the video, or shows a tag twice.
-    pub fn add_frame(&mut self, frame: &Frame, seconds: f64) -> Result<Vec<TagEntry>, Refused> {
+    pub fn add_frame(&mut self, frame: &Frame, seconds: f64) -> Result<Vec<TagEntry>, Refusal> {
         self.cached_analysis = None;
-        let tags = self.video.add_frame(seconds, frame).map_err(Refused::new)?;
+        let tags = self.video.add_frame(seconds, frame).map_err(Refusal::new)?;
         let to_entry = |(id, corners): (usize, &Option<_>)| {
             Some(TagEntry {
                 id,
@@ -103,11 +103,11 @@ impl Camera {
     /// # Errors
     /// Fails if robot.toml is invalid, if the robot does not have a requested gait, if the video cannot be measured, or
     /// if a walk without a requested gait does not clearly match one.
-    pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Refused> {
-        let robot = Robot::parse(&request.toml).map_err(Refused::new)?;
+    pub fn measure(&mut self, request: &MeasureRequest) -> Result<Results, Refusal> {
+        let robot = Robot::parse(&request.toml).map_err(Refusal::new)?;
         let find_gait = |walk: &RequestedWalk| {
             let gait = robot.gait(&walk.gait).filter(|gait| gait.has_movement());
-            gait.ok_or_else(|| Refused::new(format!("no gait `{}` moves this robot", walk.gait)))
+            gait.ok_or_else(|| Refusal::new(format!("no gait `{}` moves this robot", walk.gait)))
         };
         let named_gaits: Vec<_> = request
             .walks
@@ -116,21 +116,23 @@ impl Camera {
             .collect::<Result<_, _>>()?;
         let setup = Setup {
             print_scale: request.ruler / sheet::RULER_LENGTH,
-            deck_height: request.height.unwrap_or_else(|| board_height(&robot)),
+            deck_height: request
+                .height
+                .unwrap_or_else(|| compute_board_height(&robot)),
         };
         let gaits = Gaits::predict(&robot, &named_gaits, f64::from(request.speed) / 100.0);
         let video = match self.cached_analysis.take() {
             Some((cached_setup, video)) if cached_setup == setup => video,
             _ => NamedVideo {
                 name: "the video".to_owned(),
-                analysis: self.video.analyse(setup).map_err(Refused::new)?,
+                analysis: self.video.analyse(setup).map_err(Refusal::new)?,
             },
         };
         let (_, video) = self.cached_analysis.insert((setup, video));
         let videos = std::slice::from_ref(&*video);
         let mut problems = Vec::new();
         let walks = match request.walks.is_empty() {
-            true => gaits.measure_walks(videos).map_err(Refused::new)?,
+            true => gaits.measure_walks(videos).map_err(Refusal::new)?,
             false => {
                 let measured_walks = request.walks.iter().enumerate().filter_map(|(i, walk)| {
                     let measured_walk = gaits.measure_walk(i, &videos[0], walk.during);
@@ -144,7 +146,7 @@ impl Camera {
         let report = Report::compute(&robot, request.speed, setup, videos, &gaits, &walks);
         let report = report.with_ranges(&robot).with_mujoco(&request.toml);
         Ok(Results {
-            gaits: serde_json::to_value(&report.gaits).map_err(Refused::new)?,
+            gaits: serde_json::to_value(&report.gaits).map_err(Refusal::new)?,
             problems,
         })
     }

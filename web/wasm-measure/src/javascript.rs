@@ -1,12 +1,12 @@
 //! The JavaScript class that tracks the robot in frames and measures its gaits.
 
 use js_sys::JSON;
-use lizard_measure::Paper;
+use lizard_measure::PaperSize;
 use lizard_video::Frame;
 use serde::Serialize;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
-use crate::camera::{Camera, Refused};
+use crate::camera::{Camera, Refusal};
 
 #[wasm_bindgen(typescript_custom_section)]
 const TYPES: &str = "
@@ -52,8 +52,8 @@ export interface Range {
 }
 ";
 
-impl From<Refused> for JsError {
-    fn from(refusal: Refused) -> Self {
+impl From<Refusal> for JsError {
+    fn from(refusal: Refusal) -> Self {
         Self::new(&refusal.refused)
     }
 }
@@ -119,8 +119,13 @@ impl PageCamera {
 
     /// Draws the sheet of tags as PDF, for US Letter paper if `is_letter`, otherwise for A4.
     #[must_use]
-    pub fn sheet(is_letter: bool) -> Vec<u8> {
-        let paper = if is_letter { Paper::Letter } else { Paper::A4 };
+    #[wasm_bindgen(js_name = drawSheet)]
+    pub fn draw_sheet(is_letter: bool) -> Vec<u8> {
+        let paper = if is_letter {
+            PaperSize::Letter
+        } else {
+            PaperSize::A4
+        };
         paper.draw_tag_sheet()
     }
 }

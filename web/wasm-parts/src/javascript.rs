@@ -1,10 +1,10 @@
-//! The JavaScript class that makes a robot's parts. It throws a refusal as a [`Refused`].
+//! The JavaScript class that makes a robot's parts. It throws a [`Refusal`] if they cannot be made.
 
 use js_sys::{Function, JSON};
 use serde::Serialize;
 use wasm_bindgen::prelude::{JsValue, wasm_bindgen};
 
-use crate::model::{Model, Refused};
+use crate::model::{Model, Refusal};
 use crate::solids::Triangles;
 
 #[wasm_bindgen(typescript_custom_section)]
@@ -15,8 +15,8 @@ export interface Clash {
   second: string;
   /** Their distance, mm; negative if they overlap. */
   mm: number;
-  /** Servo angles of a pose in which they overlap or come too close, deg; null if no such pose is known, or if
-   *  they overlap in every pose. */
+  /** Servo angles of a pose at which they overlap or come too close, deg; null if no such pose is known, or if
+   *  they overlap at every pose. */
   pose: number[] | null;
 }
 ";
@@ -26,9 +26,9 @@ fn to_js(value: impl Serialize) -> JsValue {
     JSON::parse(&text).unwrap_or(JsValue::NULL)
 }
 
-impl From<Refused> for JsValue {
-    fn from(refused: Refused) -> Self {
-        to_js(refused)
+impl From<Refusal> for JsValue {
+    fn from(refusal: Refusal) -> Self {
+        to_js(refusal)
     }
 }
 
@@ -51,10 +51,10 @@ impl Parts {
     /// Makes the parts for a robot.toml.
     ///
     /// # Errors
-    /// Fails for an invalid robot.toml, or for a robot whose parts cannot be made.
+    /// Fails if robot.toml is invalid, or if the robot's parts cannot be made.
     #[wasm_bindgen(constructor)]
-    pub fn new(toml: &str) -> Result<Self, Refused> {
-        Ok(Self(Model::read(toml)?))
+    pub fn new(toml: &str) -> Result<Self, Refusal> {
+        Ok(Self(Model::from_toml(toml)?))
     }
 
     /// Describes the model for the page, without triangles.
@@ -68,8 +68,8 @@ impl Parts {
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body.
-    pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
-        self.0.solids()
+    pub fn solids(&self) -> Result<Vec<Triangles>, Refusal> {
+        self.0.make_solids()
     }
 
     /// Returns x, y, cosine and sine of every mount for servo angles and leg lags in deg; undefined if a loop does not
@@ -80,10 +80,8 @@ impl Parts {
         #[wasm_bindgen(unchecked_param_type = "number[]")] angles: &[f64],
         #[wasm_bindgen(unchecked_param_type = "number[]")] lags: &[f64],
     ) -> Option<Vec<f64>> {
-        let places = self
-            .0
-            .place_mounts(angles.try_into().ok()?, lags.try_into().ok()?)?;
-        Some(places.into_flattened())
+        let (angles, lags) = (angles.try_into().ok()?, lags.try_into().ok()?);
+        Some(self.0.place_mounts(angles, lags)?.into_flattened())
     }
 
     /// Proves that no two parts overlap or come too close; returns the smallest distance, mm, or undefined if no pair
@@ -95,7 +93,7 @@ impl Parts {
         &self,
         #[wasm_bindgen(unchecked_param_type = "(done: number, total: number) => void")]
         progress: &Function,
-    ) -> Result<Option<f64>, Refused> {
+    ) -> Result<Option<f64>, Refusal> {
         self.0.prove(|done, total| {
             // An error of the callback is ignored: a page that no longer needs the proof terminates the worker.
             let _ = progress.call2(&JsValue::NULL, &done.into(), &total.into());
@@ -106,8 +104,8 @@ impl Parts {
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
-    pub fn files(&self, group: usize) -> Result<Vec<PartFile>, Refused> {
-        let files = self.0.files(group)?.into_iter();
+    pub fn files(&self, group: usize) -> Result<Vec<PartFile>, Refusal> {
+        let files = self.0.make_files(group)?.into_iter();
         Ok(files
             .map(|file| PartFile {
                 path: file.path,

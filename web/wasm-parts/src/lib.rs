@@ -1,4 +1,4 @@
-//! The page's parts of the robot: the same solids that `lizard parts` writes.
+//! The robot's parts for the web page: the same solids that `lizard parts` writes.
 //!
 //! A browser that shows the robot in 3D needs the triangles once and then, for each frame, the position of every body.
 //! Bodies that move together share a mount; therefore each mount needs only a rotation and a translation in the plane,
@@ -14,5 +14,5 @@ mod model;
 mod solids;
 
 pub use javascript::{PartFile, Parts};
-pub use model::{BodyEntry, Model, ModelEntry, PartEntry, Refused, StepEntry};
+pub use model::{BodyEntry, Model, ModelEntry, PartEntry, Refusal, StepEntry};
 pub use solids::Triangles;

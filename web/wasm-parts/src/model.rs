@@ -2,8 +2,8 @@
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, Bill, BuildError, CollidingPair, File, Mount, Part, Placement, PrintToBody, Step,
-    build_coupon, build_steps, make_documents, make_part_files,
+    Assembly, Bill, BuildError, CollidingPair, Mount, OutputFile, Part, Placement, PrintTransform,
+    Step, build_coupon, build_steps, make_documents, make_part_files,
 };
 use lizard_robot::Robot;
 use lizard_robot::servo::FORWARD_TURN_SIGN;
@@ -12,7 +12,7 @@ use tsify::Tsify;
 
 /// The reason why the parts of a robot cannot be made.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct Refused {
+pub struct Refusal {
     /// The reason, as a message.
     pub refused: String,
     /// The two parts that overlap or come too close; `None` if there is another reason.
@@ -20,7 +20,7 @@ pub struct Refused {
     pub clash: Option<CollidingPair>,
 }
 
-impl Refused {
+impl Refusal {
     fn without_clash(error: impl ToString) -> Self {
         Self {
             refused: error.to_string(),
@@ -29,7 +29,7 @@ impl Refused {
     }
 }
 
-impl From<BuildError> for Refused {
+impl From<BuildError> for Refusal {
     fn from(error: BuildError) -> Self {
         Self {
             clash: error.colliding_pair(),
@@ -56,8 +56,9 @@ pub struct BodyEntry {
     /// The index of the body's printed part; `None` for bought bodies.
     pub part: Option<usize>,
     /// The solid's placement in the mount's frame: the columns of a homogeneous 4 x 4 matrix.
-    pub place: [f64; 16],
-    /// The index of the body's solid in [`Model::solids`].
+    #[serde(rename = "place")]
+    pub matrix: [f64; 16],
+    /// The index of the body's solid in [`Model::make_solids`].
     pub solid: usize,
 }
 
@@ -91,11 +92,13 @@ pub struct ModelEntry {
     /// The steps of the guide.
     pub steps: Vec<StepEntry>,
     /// The number of mounts.
-    pub mounts: usize,
+    #[serde(rename = "mounts")]
+    pub mount_count: usize,
     /// Distance from the plate's top down to the soles of the feet, mm.
     pub floor: f64,
-    /// The number of groups of files, which [`Model::files`] makes one per call.
-    pub files: usize,
+    /// The number of groups of files, of which each call of [`Model::make_files`] makes one.
+    #[serde(rename = "files")]
+    pub file_group_count: usize,
 }
 
 /// A robot's parts.
@@ -110,9 +113,9 @@ impl Model {
     /// Makes the model for a robot.toml.
     ///
     /// # Errors
-    /// Fails for an invalid robot.toml, or for a robot whose parts cannot be made.
-    pub fn read(toml: &str) -> Result<Self, Refused> {
-        let robot = Robot::parse(toml).map_err(Refused::without_clash)?;
+    /// Fails if robot.toml is invalid, or if the robot's parts cannot be made.
+    pub fn from_toml(toml: &str) -> Result<Self, Refusal> {
+        let robot = Robot::parse(toml).map_err(Refusal::without_clash)?;
         let assembly = Assembly::new(&robot);
         assembly.check_dimensions()?;
         let mut mounts: Vec<Mount> = Vec::new();
@@ -138,7 +141,7 @@ impl Model {
             sole_z = sole_z.min(body.z()[0]);
             let has_body = |part: &Part| part.body_names.contains(&body.name);
             let part = self.needed_parts().position(has_body);
-            let motion = part.map(|part| self.parts[part].print_to_body(body));
+            let transform = part.map(|part| self.parts[part].transform_to_body(body));
             let step = self.steps.iter().position(|step| step.adds(body));
             let solid = part.unwrap_or_else(|| {
                 next_bought_index += 1;
@@ -147,12 +150,12 @@ impl Model {
             BodyEntry {
                 name: body.name.clone(),
                 kind: body.kind.word(),
-                mount: self.find_mount(body.mount),
+                mount: self.mount_index(body.mount),
                 servo: body.mount.servo(),
                 step: step.map_or(0, |step| step + 1),
                 lift: step.map_or(0.0, |step| (self.steps[step].lift)(body)),
                 part,
-                place: to_matrix(motion),
+                matrix: to_matrix(transform),
                 solid,
             }
         });
@@ -170,9 +173,9 @@ impl Model {
             bodies,
             parts: self.needed_parts().map(make_part_entry).collect(),
             steps: self.steps.iter().map(make_step_entry).collect(),
-            mounts: self.mounts.len(),
+            mount_count: self.mounts.len(),
             floor: -sole_z,
-            files: self.ordered_parts().count() + 1,
+            file_group_count: self.ordered_parts().count() + 1,
         }
     }
 
@@ -184,10 +187,10 @@ impl Model {
 
     /// Returns the parts of which the robot is built, without their alternatives.
     pub(crate) fn needed_parts(&self) -> impl Iterator<Item = &Part> {
-        self.parts.iter().filter(|part| part.instead_of.is_none())
+        self.parts.iter().filter(|part| part.replaces.is_none())
     }
 
-    fn find_mount(&self, mount: Mount) -> usize {
+    fn mount_index(&self, mount: Mount) -> usize {
         let index = self.mounts.iter().position(|candidate| *candidate == mount);
         index.expect("every body's mount is in the list")
     }
@@ -199,37 +202,37 @@ impl Model {
     pub fn place_mounts(&self, angles: [f64; 4], lags: [f64; 4]) -> Option<Vec<[f64; 4]>> {
         let pose = self.assembly.robot().lizard().solve(&angles.into()).ok()?;
         let plans = &self.assembly.layout().legs;
-        let places = self.mounts.iter().map(|&mount| {
-            let driven_place = self.assembly.placement(mount, &pose);
-            let place_leg = |servo: usize| {
+        let placements = self.mounts.iter().map(|&mount| {
+            let driven_placement = self.assembly.placement(mount, &pose);
+            let angle_and_points = |servo: usize| {
                 let angle = angles[servo] - FORWARD_TURN_SIGN[servo] * lags[servo];
                 (angle, plans[servo].points_at(angles[servo], angle))
             };
             let Placement { origin, x_axis } = match mount {
                 Mount::Crank(servo) | Mount::Follower(servo) => Placement {
-                    x_axis: Vector::direction(place_leg(servo).0),
-                    ..driven_place
+                    x_axis: Vector::from_angle(angle_and_points(servo).0),
+                    ..driven_placement
                 },
                 Mount::Foot(servo) => Placement {
-                    origin: place_leg(servo).1.joints[0],
-                    ..driven_place
+                    origin: angle_and_points(servo).1.joints[0],
+                    ..driven_placement
                 },
                 Mount::Strut(servo) => {
-                    let [from, to] = place_leg(servo).1.strut_anchors;
+                    let [from, to] = angle_and_points(servo).1.strut_anchors;
                     let direction = to - from;
                     Placement {
                         origin: from,
                         x_axis: direction * (1.0 / direction.length()),
                     }
                 }
-                _ => driven_place,
+                _ => driven_placement,
             };
             [origin.x, origin.y, x_axis.x, x_axis.y]
         });
-        Some(places.collect())
+        Some(placements.collect())
     }
 
-    /// Returns all parts in the order of `lizard parts`: the coupon, if any, and the robot's parts with their
+    /// Returns all parts in the order of `lizard parts`: the coupon with its rod, and the robot's parts with their
     /// alternatives.
     fn ordered_parts(&self) -> impl Iterator<Item = Part> {
         let coupon = build_coupon(self.assembly.robot().parts());
@@ -241,7 +244,7 @@ impl Model {
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body, or if a screw cannot be reached.
-    pub fn files(&self, group: usize) -> Result<Vec<File>, Refused> {
+    pub fn make_files(&self, group: usize) -> Result<Vec<OutputFile>, Refusal> {
         let robot = self.assembly.robot();
         let count = self.ordered_parts().count();
         if let Some(part) = self.ordered_parts().nth(group) {
@@ -253,17 +256,17 @@ impl Model {
         let pose = robot
             .lizard()
             .solve(&robot.neutral_pose())
-            .map_err(Refused::without_clash)?;
+            .map_err(Refusal::without_clash)?;
         let bill = Bill::compute(&self.assembly, &self.parts, &pose);
         Ok(make_documents(&self.assembly, &bill, &pose)?)
     }
 
-    /// Proves that no two parts overlap or come too close in any pose that the guard accepts. Returns the smallest
+    /// Proves that no two parts overlap or come too close at any pose that the guard accepts. Returns the smallest
     /// distance between two parts that are not designed to touch, mm; `None` if no such pair was checked.
     ///
     /// # Errors
     /// Returns the two parts that overlap most, or else come closest.
-    pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refused> {
+    pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refusal> {
         let proof = self.assembly.prove(progress);
         proof.judge().map_err(BuildError::from)?;
         Ok(proof.nearest_separate_pair().map(|pair| pair.lower_bound))
@@ -272,17 +275,17 @@ impl Model {
 
 /// Returns the homogeneous matrix, column by column, of a solid's placement in its mount's frame; `None` gives the
 /// identity.
-fn to_matrix(motion: Option<PrintToBody>) -> [f64; 16] {
-    let identity = PrintToBody {
+fn to_matrix(transform: Option<PrintTransform>) -> [f64; 16] {
+    let identity = PrintTransform {
         is_flipped: false,
         lift: 0.0,
         frame: Placement::CHASSIS,
     };
-    let PrintToBody {
+    let PrintTransform {
         is_flipped,
         lift,
         frame,
-    } = motion.unwrap_or(identity);
+    } = transform.unwrap_or(identity);
     let Placement { origin, x_axis } = frame;
     let z_sign = if is_flipped { -1.0 } else { 1.0 };
     let y_axis = x_axis.rotated_left() * z_sign;

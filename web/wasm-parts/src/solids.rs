@@ -1,9 +1,9 @@
-//! The triangles of all solids, as arrays for a graphics chip.
+//! The triangles of all solids, as arrays for the graphics processor.
 
 use lizard_parts::{Body, Mesh, Prism, Solid};
 use wasm_bindgen::prelude::wasm_bindgen;
 
-use crate::model::{Model, Refused};
+use crate::model::{Model, Refusal};
 
 /// The triangles of a solid.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ impl Model {
     ///
     /// # Errors
     /// Fails if the layers of a part do not form a closed body.
-    pub fn solids(&self) -> Result<Vec<Triangles>, Refused> {
+    pub fn make_solids(&self) -> Result<Vec<Triangles>, Refusal> {
         let printed = self
             .needed_parts()
             .map(|part| make_triangles(&part.name, &part.build_printed_layers().0));
@@ -42,7 +42,7 @@ impl Model {
     }
 }
 
-fn make_triangles(name: &str, prisms: &[Prism]) -> Result<Triangles, Refused> {
+fn make_triangles(name: &str, prisms: &[Prism]) -> Result<Triangles, Refusal> {
     let mesh = Mesh::from_solid(&Solid::from_prisms(prisms));
     if !mesh.is_closed() {
         return Err(lizard_parts::BuildError::OpenSurface(name.to_owned()).into());

@@ -5,7 +5,7 @@ use lizard_core::console::word::Word;
 use lizard_core::numbers::section::START_ADDRESS;
 use lizard_kinematics::Check;
 use lizard_robot::edit::HIP_KEYS;
-use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
+use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Plate, Robot, ServoType, healthy_rail_mv};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub struct GaitEntry {
 
 /// A length of the robot that the user may change.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct LinkEntry {
+pub struct LengthEntry {
     /// Key in robot.toml, such as `links.l1`.
     pub key: String,
     /// Name for the user.
@@ -59,14 +59,10 @@ pub struct MarginEntry {
 pub struct ServoEntry {
     /// Name, A1 to A4.
     pub name: &'static str,
-    /// Name of the servo's leg: LF, RF, RH or LH.
-    pub leg: &'static str,
     /// Arduino number of the servo's pin; 14 to 19 are A0 to A5.
     pub pin: u8,
     /// Neutral angle, deg, chassis frame.
     pub neutral: f64,
-    /// Travel, deg from neutral.
-    pub travel: (f64, f64),
 }
 
 /// Name of the servo model that describes the servos in robot.toml.
@@ -132,29 +128,29 @@ pub(crate) fn find_servo_model(robot: &Robot, name: &str) -> Option<ServoModel> 
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct PlateEntry {
     /// Half the width and half the length, without the arms.
-    pub half: Point,
+    pub half_size: Point,
     /// Radius of the corners.
-    pub corner: f64,
+    pub corner_radius: f64,
     /// Ends of the arms that carry the legs' pivots.
     pub arms: Vec<[Point; 2]>,
     /// Half the width of an arm.
-    pub arm: f64,
+    pub arm_half_width: f64,
     /// Centres of the servos' cases.
-    pub cases: [Point; 4],
+    pub case_centres: [Point; 4],
     /// Width and length of a case.
-    pub case: Point,
+    pub case_size: Point,
 }
 
 impl From<Plate> for PlateEntry {
     fn from(plate: Plate) -> Self {
         let arms = plate.arms.as_flattened().iter();
         Self {
-            half: plate.half_size.into(),
-            corner: plate.corner_radius,
+            half_size: plate.half_size.into(),
+            corner_radius: plate.corner_radius,
             arms: arms.map(|arm| arm.map(Point::from)).collect(),
-            arm: plate.arm_half_width,
-            cases: plate.case_centres.map(Point::from),
-            case: plate.case_size.into(),
+            arm_half_width: plate.arm_half_width,
+            case_centres: plate.case_centres.map(Point::from),
+            case_size: plate.case_size.into(),
         }
     }
 }
@@ -178,13 +174,11 @@ pub struct Description {
     /// Console commands that start a routine, in the order of the file.
     pub routines: Vec<String>,
     /// Lengths that the user may change.
-    pub lengths: Vec<LinkEntry>,
+    pub lengths: Vec<LengthEntry>,
     /// Chassis plate seen from above.
     pub plate: PlateEntry,
     /// Limits of the margins, in the order of [`crate::Scene::margins`].
     pub margins: Vec<MarginEntry>,
-    /// Smallest and largest travel of the sliders, mm from nominal.
-    pub stroke: (f64, f64),
     /// Thresholds of the board's supply below which the robot slows down, stops, and rests, V.
     pub supply: [f64; 3],
     /// Pace limit below the first threshold of `supply`, percent of a gait's nominal pace.
@@ -212,10 +206,8 @@ impl Description {
             .enumerate()
             .map(|(i, servo)| ServoEntry {
                 name: SERVO_NAMES[i],
-                leg: LEG_NAMES[i],
                 pin: servo.pin,
                 neutral: servo.neutral,
-                travel: servo.travel(),
             });
         let gaits = robot.gaits().iter().map(|gait| GaitEntry {
             name: gait.name().to_string(),
@@ -251,7 +243,6 @@ impl Description {
                 list_margins(&Check::LEG, limits.leg),
             ]
             .concat(),
-            stroke: (limits.stroke_min, limits.stroke_max),
             rail: healthy_rail_mv(&core.supplies())
                 .zip(core.rail_pin())
                 .map(|(mv, pin)| (pin - 14, mv / 1000.0)),
@@ -278,7 +269,7 @@ fn list_reserved_words() -> Vec<&'static str> {
     words.map(|word| word.text()).collect()
 }
 
-/// The label of each link, l0 to l19, and the number of its mirror image; a base has its own number.
+/// The label of each link, l0 to l19, and the number of its twin, its mirror image; a base is its own twin.
 const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
     ("head base", 0),
     ("head crank, left", 4),
@@ -303,9 +294,9 @@ const LINK_LABELS_AND_TWINS: [(&str, usize); 20] = [
 ];
 
 /// Returns the lengths of a robot that the user may change, with their current values.
-fn list_lengths(robot: &Robot) -> Vec<LinkEntry> {
+fn list_lengths(robot: &Robot) -> Vec<LengthEntry> {
     let (leg, feet) = (robot.lizard().leg, robot.ground().feet);
-    let make_entry = |key: &str, label, twin: &str, value| LinkEntry {
+    let make_entry = |key: &str, label, twin: &str, value| LengthEntry {
         key: key.to_string(),
         label,
         twin: twin.to_string(),

@@ -1,6 +1,6 @@
 //! The values of the page's sliders: floor, mass, feet and leg drive.
 
-use lizard_robot::{Body, Drive, DriveKind, Ground, Robot, Stance};
+use lizard_robot::{Body, Drive, DriveKind, GroundContact, Robot, Stance};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
@@ -102,9 +102,9 @@ impl Floor {
 
     /// Returns the robot's ground with these values.
     #[must_use]
-    pub fn to_ground(self, robot: &Robot) -> Ground {
+    pub fn to_ground(self, robot: &Robot) -> GroundContact {
         let (floor, ground) = (self.with_valid_values(robot), robot.ground());
-        Ground {
+        GroundContact {
             friction_coefficient: floor.friction,
             friction_ratio: floor.ratio,
             body: Body {

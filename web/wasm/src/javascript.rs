@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use wasm_bindgen::prelude::{JsError, JsValue, wasm_bindgen};
 
 use crate::lengths::{self, TriedLengths};
-use crate::page::Page;
+use crate::page::PageState;
 use crate::place::Place;
 use crate::prediction::Displacement;
 
@@ -60,11 +60,11 @@ pub(crate) fn from_js<T: DeserializeOwned>(value: &JsValue) -> Result<T, JsError
 /// The page's robot, its place on the floor, its core, and the search for a faster gait.
 #[wasm_bindgen]
 #[derive(Default)]
-pub struct Robot(Page);
+pub struct Robot(PageState);
 
 #[wasm_bindgen]
 impl Robot {
-    /// Creates a page without a robot.
+    /// Creates an instance without a robot.
     #[must_use]
     #[wasm_bindgen(constructor)]
     pub fn new() -> Self {
@@ -72,14 +72,14 @@ impl Robot {
     }
 
     /// Loads the robot from a robot.toml. If the text is refused, the previous robot stays.
-    #[wasm_bindgen(unchecked_return_type = "Description | Refused")]
+    #[wasm_bindgen(unchecked_return_type = "Description | Refusal")]
     pub fn read(&mut self, toml: &str) -> JsValue {
         result_to_js(self.0.read(toml))
     }
 
     /// Tries other lengths in a robot.toml; if `searches`, also searches for valid alternatives to refused lengths.
-    #[wasm_bindgen(unchecked_return_type = "TriedLengths")]
-    pub fn lengths(
+    #[wasm_bindgen(js_name = tryLengths, unchecked_return_type = "TriedLengths")]
+    pub fn try_lengths(
         toml: &str,
         #[wasm_bindgen(unchecked_param_type = "Edits")] edits: &JsValue,
         searches: bool,
@@ -97,38 +97,38 @@ impl Robot {
     }
 
     /// Returns the robot.toml with this floor, mass, feet and leg drive, and its refusal, if any.
-    #[wasm_bindgen(js_name = editFloor, unchecked_return_type = "Edited | Refused")]
+    #[wasm_bindgen(js_name = editFloor, unchecked_return_type = "EditedToml | Refusal")]
     pub fn edit_floor(
         toml: &str,
         #[wasm_bindgen(unchecked_param_type = "Floor")] floor: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(result_to_js(Page::edit_floor(toml, from_js(floor)?)))
+        Ok(result_to_js(PageState::edit_floor(toml, from_js(floor)?)))
     }
 
-    /// Makes the robot's section of flash, with the certified cells of its guard; empty without a robot. Takes some
-    /// hundredths of a second.
+    /// Makes the robot's section of flash, with the certified cells of its guard; empty if no robot is loaded. Takes
+    /// some hundredths of a second.
     #[must_use]
     pub fn section(&self) -> Vec<u8> {
         self.0.section().unwrap_or_default()
     }
 
-    /// Moves the robot for a frame with these pulse widths in CPU cycles, 0 for no pulse; null without a robot.
-    #[wasm_bindgen(unchecked_return_type = "Frame | null")]
-    pub fn pulses(
+    /// Moves the robot for a frame with these pulse widths in CPU cycles, 0 for no pulse; null if no robot is loaded.
+    #[wasm_bindgen(js_name = followPulses, unchecked_return_type = "Frame | null")]
+    pub fn follow_pulses(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Four<number>")] widths: &JsValue,
     ) -> Result<JsValue, JsError> {
         Ok(to_js(self.0.follow_pulses(from_js(widths)?)))
     }
 
-    /// Moves the robot to a pose, deg, in `frames` frames; null without a robot.
-    #[wasm_bindgen(unchecked_return_type = "Frame | null")]
-    pub fn pose(
+    /// Moves the robot to a pose, deg, in `frame_count` frames; null if no robot is loaded.
+    #[wasm_bindgen(js_name = followPose, unchecked_return_type = "Frame | null")]
+    pub fn follow_pose(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "Four<number>")] angles: &JsValue,
-        frames: u32,
+        frame_count: u32,
     ) -> Result<JsValue, JsError> {
-        Ok(to_js(self.0.follow_pose(from_js(angles)?, frames)))
+        Ok(to_js(self.0.follow_pose(from_js(angles)?, frame_count)))
     }
 
     /// Returns the robot to its start on the floor.
@@ -137,8 +137,11 @@ impl Robot {
     }
 
     /// Returns the displacement from one place to another, in the frame of the first place; mm and deg.
-    #[wasm_bindgen(unchecked_return_type = "{ forward: number; left: number; turn: number }")]
-    pub fn between(
+    #[wasm_bindgen(
+        js_name = displacementBetween,
+        unchecked_return_type = "{ forward: number; left: number; turn: number }"
+    )]
+    pub fn displacement_between(
         #[wasm_bindgen(unchecked_param_type = "Place")] from: &JsValue,
         #[wasm_bindgen(unchecked_param_type = "Place")] to: &JsValue,
     ) -> Result<JsValue, JsError> {
@@ -172,11 +175,11 @@ impl Robot {
         to_js(self.0.predict(gait))
     }
 
-    /// Makes the map of singularities of the head (0) or the tail (1); null without a robot.
+    /// Makes the map of singularities of the head (0) or the tail (1); null if no robot is loaded.
     #[must_use]
-    #[wasm_bindgen(unchecked_return_type = "SingularityMap | null")]
-    pub fn map(&self, end: usize) -> JsValue {
-        to_js(self.0.map(end))
+    #[wasm_bindgen(js_name = singularityMap, unchecked_return_type = "SingularityMap | null")]
+    pub fn singularity_map(&self, end: usize) -> JsValue {
+        to_js(self.0.singularity_map(end))
     }
 
     /// Returns the reversed gait.
@@ -195,10 +198,10 @@ impl Robot {
         to_js(self.0.bars(gait))
     }
 
-    /// Tries a gait on the page's robot; takes tenths of a second. Returns null without a robot, or for a drawn line
-    /// without length.
-    #[wasm_bindgen(unchecked_return_type = "Trial | RefusedTrial | null")]
-    pub fn trial(
+    /// Tries a gait on the page's robot; takes tenths of a second. Returns null if no robot is loaded or a drawn
+    /// line has no length.
+    #[wasm_bindgen(js_name = tryGait, unchecked_return_type = "Trial | RefusedTrial | null")]
+    pub fn try_gait(
         &self,
         #[wasm_bindgen(unchecked_param_type = "EditedGait")] edited_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
@@ -229,28 +232,28 @@ impl Robot {
 
     /// Returns the robot.toml with a routine of these steps, and its refusal, if any.
     #[must_use]
-    #[wasm_bindgen(js_name = putSteps, unchecked_return_type = "Edited")]
+    #[wasm_bindgen(js_name = putSteps, unchecked_return_type = "EditedToml")]
     pub fn put_steps(toml: &str, name: &str, steps: Vec<String>) -> JsValue {
-        to_js(Page::put_steps(toml, name, &steps))
+        to_js(PageState::put_steps(toml, name, &steps))
     }
 
     /// Simulates one round of a routine; takes tenths of a second. Returns null if there is no such routine.
     #[must_use]
-    #[wasm_bindgen(unchecked_return_type = "RoundPath | null")]
-    pub fn round(&self, routine: &str) -> JsValue {
-        to_js(self.0.round_path(routine))
+    #[wasm_bindgen(js_name = simulateRound, unchecked_return_type = "RoundPath | null")]
+    pub fn simulate_round(&self, routine: &str) -> JsValue {
+        to_js(self.0.simulate_round(routine))
     }
 
     /// Returns the end point's smoothed path; null if the drawn line has no length.
-    #[wasm_bindgen(unchecked_return_type = "[number, number][] | null")]
-    pub fn path(
+    #[wasm_bindgen(js_name = smoothedPath, unchecked_return_type = "[number, number][] | null")]
+    pub fn smoothed_path(
         &self,
         #[wasm_bindgen(unchecked_param_type = "DrawnGait")] drawn_gait: &JsValue,
     ) -> Result<JsValue, JsError> {
-        Ok(to_js(self.0.drawn_path(&from_js(drawn_gait)?)))
+        Ok(to_js(self.0.smoothed_path(&from_js(drawn_gait)?)))
     }
 
-    /// Returns the workspace of the end point of the head (0) or the tail (1); null without a robot.
+    /// Returns the workspace of the end point of the head (0) or the tail (1); null if no robot is loaded.
     #[must_use]
     #[wasm_bindgen(unchecked_return_type = "Workspace | null")]
     pub fn workspace(&self, end: usize) -> JsValue {
@@ -258,16 +261,16 @@ impl Robot {
     }
 
     /// Starts the firmware's core with this robot.
-    #[wasm_bindgen(js_name = runCore)]
-    pub fn run_core(&mut self) {
-        self.0.run_core();
+    #[wasm_bindgen(js_name = startCore)]
+    pub fn start_core(&mut self) {
+        self.0.start_core();
     }
 
     /// Runs the core for a frame of 20 ms with a board supply of `volts`; the core first receives `line` from the
-    /// serial line. Returns null before `runCore`.
-    #[wasm_bindgen(js_name = coreFrame, unchecked_return_type = "CoreFrame | null")]
-    pub fn core_frame(&mut self, line: &str, volts: f64) -> JsValue {
-        to_js(self.0.core_frame(line.as_bytes(), volts))
+    /// serial line. Returns null before `startCore`.
+    #[wasm_bindgen(js_name = runCoreFrame, unchecked_return_type = "CoreFrame | null")]
+    pub fn run_core_frame(&mut self, line: &str, volts: f64) -> JsValue {
+        to_js(self.0.run_core_frame(line.as_bytes(), volts))
     }
 }
 
@@ -276,9 +279,9 @@ impl Robot {
 #[wasm_bindgen]
 impl Robot {
     /// Prepares the search for a faster gait; returns the number of gaits to try and the speed that no servo may
-    /// exceed. Returns null without a robot.
-    #[wasm_bindgen(js_name = makeFaster, unchecked_return_type = "SearchExtent | Refused")]
-    pub fn make_faster(
+    /// exceed. Returns null if no robot is loaded.
+    #[wasm_bindgen(js_name = beginSearch, unchecked_return_type = "SearchExtent | Refusal")]
+    pub fn begin_search(
         &mut self,
         #[wasm_bindgen(unchecked_param_type = "SearchTask")] task: &JsValue,
     ) -> Result<JsValue, JsError> {
@@ -287,19 +290,16 @@ impl Robot {
     }
 
     /// Tries one more gait; returns the progress, with the score of the best gait so far.
-    #[wasm_bindgen(js_name = fasterStep, unchecked_return_type = "Progress")]
-    pub fn faster_step(&mut self) -> JsValue {
+    #[wasm_bindgen(js_name = tryNextGait, unchecked_return_type = "Progress")]
+    pub fn try_next_gait(&mut self) -> JsValue {
         to_js(self.0.search().map(|search| search.try_next()))
     }
 
     /// Compares the best gait so far with the gait to beat on `robotCount` random robots; null until a valid gait is
     /// found.
-    #[wasm_bindgen(js_name = fasterFound, unchecked_return_type = "Found | null")]
-    pub fn faster_found(&mut self, robot_count: usize) -> JsValue {
-        to_js(
-            self.0
-                .search()
-                .and_then(|search| search.compare_best(robot_count)),
-        )
+    #[wasm_bindgen(js_name = compareBestGait, unchecked_return_type = "FoundGait | null")]
+    pub fn compare_best_gait(&mut self, robot_count: usize) -> JsValue {
+        let search = self.0.search();
+        to_js(search.and_then(|search| search.compare_best(robot_count)))
     }
 }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use tsify::Tsify;
 
 use crate::description::Description;
-use crate::refused::Refused;
+use crate::refusal::Refusal;
 
 /// Step of the offered lengths, mm, or deg for an angle.
 const LENGTH_STEP: f64 = 0.5;
@@ -24,7 +24,7 @@ pub struct TriedLengths {
     /// The text with the requested lengths.
     text: String,
     /// The refusal of `text`; `None` if it is a valid robot.
-    refusal: Option<Refused>,
+    refusal: Option<Refusal>,
     /// The accepted lengths nearest to the requested lengths; `None` if not needed, not searched for, or not found.
     nearest: Option<NearestLengths>,
     /// The requested lengths without the gait that forbids them; `None` if not needed, not searched for, or if the text
@@ -79,7 +79,7 @@ impl TriedLengths {
         }
     }
 
-    fn without_alternatives(text: String, refusal: Option<Refused>) -> Self {
+    fn without_alternatives(text: String, refusal: Option<Refusal>) -> Self {
         Self {
             text,
             refusal,

@@ -4,23 +4,23 @@ use lizard_core::virtual_board::Eeprom;
 use lizard_kinematics::End;
 use lizard_robot::edit::{with_number, with_steps, with_string, without_key};
 use lizard_robot::servo::FORWARD_TURN_SIGN;
-use lizard_robot::{Bars, Place as RobotPlace, Robot};
+use lizard_robot::{Bars, BodyPose, Robot};
 use lizard_twin::{ServoModel, State, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
-use crate::core_run::{CoreFrame, CoreRun};
 use crate::description::{Description, find_servo_model};
-use crate::drawn::DrawnGait;
+use crate::drawn_gait::DrawnGait;
 #[cfg(feature = "tune")]
-use crate::faster::{FasterSearch, SearchExtent, SearchTask};
+use crate::faster_search::{FasterSearch, SearchExtent, SearchTask};
 use crate::floor::{Floor, LegDrive};
-use crate::map::SingularityMap;
 use crate::place::Place;
 use crate::prediction::GaitPrediction;
-use crate::refused::Refused;
-use crate::round::RoundPath;
+use crate::refusal::Refusal;
+use crate::round_path::RoundPath;
+use crate::running_core::{CoreFrame, RunningCore};
 use crate::scene::Scene;
+use crate::singularity_map::SingularityMap;
 use crate::trial::{EditedGait, RefusedTrial, Trial};
 use crate::workspace::Workspace;
 
@@ -46,43 +46,43 @@ pub struct Frame {
 
 /// The text of a robot.toml after a change, and its refusal.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
-pub struct Edited {
+pub struct EditedToml {
     /// The changed text.
     text: String,
     /// The refusal of the changed text; `None` if it is a valid robot.
-    refusal: Option<Refused>,
+    refusal: Option<Refusal>,
 }
 
-impl Edited {
+impl EditedToml {
     fn check(text: String) -> Self {
-        let refusal = Robot::parse(&text).err().map(Refused::from);
+        let refusal = Robot::parse(&text).err().map(Refusal::from);
         Self { text, refusal }
     }
 }
 
 /// The page's robot on the floor, its core, and the search for a faster gait.
 #[derive(Default)]
-pub struct Page {
+pub struct PageState {
     twin: Option<Twin>,
     /// Latest target angles of the servos, deg, chassis frame.
-    targets: [f64; 4],
+    target_angles: [f64; 4],
     /// Name of the servo model that the page set; `None` for the robot's own servos.
     model_name: Option<String>,
-    core_run: Option<CoreRun>,
+    running_core: Option<RunningCore>,
     #[cfg(feature = "tune")]
     search: Option<FasterSearch>,
 }
 
-impl Page {
+impl PageState {
     /// Reads a robot.toml and puts the robot at the start on the floor, with its servos at neutral.
     ///
     /// # Errors
     /// Returns the first mistake in the text; the page keeps the previous robot.
-    pub fn read(&mut self, text: &str) -> Result<Description, Refused> {
+    pub fn read(&mut self, text: &str) -> Result<Description, Refusal> {
         let robot = Robot::parse(text)?;
         let description = Description::for_robot(&robot);
-        self.targets = robot.neutral_pose().into();
-        self.core_run = None;
+        self.target_angles = robot.neutral_pose().into();
+        self.running_core = None;
         #[cfg(feature = "tune")]
         {
             self.search = None;
@@ -100,7 +100,7 @@ impl Page {
         self.twin.as_ref().map(Twin::robot)
     }
 
-    /// Makes the robot's section of flash; `None` without a robot. Takes some hundredths of a second, because the
+    /// Makes the robot's section of flash; `None` if no robot is loaded. Takes some hundredths of a second, because the
     /// guard's certified cells must be proved.
     #[must_use]
     pub fn section(&self) -> Option<Vec<u8>> {
@@ -112,7 +112,7 @@ impl Page {
     ///
     /// # Errors
     /// Fails if the text is not a valid robot, or if a number cannot be added to it.
-    pub fn edit_floor(text: &str, floor: Floor) -> Result<Edited, Refused> {
+    pub fn edit_floor(text: &str, floor: Floor) -> Result<EditedToml, Refusal> {
         let robot = Robot::parse(text)?;
         let own_floor = Floor::for_robot(&robot);
         // The robot's own values replace values out of range.
@@ -150,33 +150,33 @@ impl Page {
                 text = with_number(&text, key, new_value)?;
             }
         }
-        Ok(Edited::check(text))
+        Ok(EditedToml::check(text))
     }
 
     /// Moves the robot for a frame with these pulse widths in CPU cycles; 0 is no pulse, which leaves the servo at its
-    /// angle. `None` without a robot.
+    /// angle. `None` if no robot is loaded.
     pub fn follow_pulses(&mut self, widths: [u32; 4]) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         let to_us = |width: u32| f64::from(width) / CYCLES_PER_US;
         let state = twin.simulate_pulses(widths.map(|width| (width > 0).then(|| to_us(width))));
-        self.targets = std::array::from_fn(|i| state.angles[i] + state.errors[i]);
+        self.target_angles = std::array::from_fn(|i| state.angles[i] + state.errors[i]);
         Some(make_frame(twin, &state, state.slips))
     }
 
-    /// Moves the robot to a pose that a real robot reports `frames` frames after its previous pose; angles in deg,
-    /// chassis frame. Frames in between are interpolated. `None` without a robot, or if an angle is not finite.
-    pub fn follow_pose(&mut self, angles: [f64; 4], frames: u32) -> Option<Frame> {
+    /// Moves the robot to a pose that a real robot reports `frame_count` frames after its previous pose; angles in
+    /// deg, chassis frame. Frames in between are interpolated. `None` if no robot is loaded or an angle is not finite.
+    pub fn follow_pose(&mut self, angles: [f64; 4], frame_count: u32) -> Option<Frame> {
         let twin = self.twin.as_mut()?;
         if angles.iter().any(|angle| !angle.is_finite()) {
             return None;
         }
-        let from = twin.robot().sweeps(self.targets);
+        let from = twin.robot().sweeps(self.target_angles);
         let to = twin.robot().sweeps(angles);
         let neutral: [f64; 4] = twin.robot().neutral_pose().into();
-        let frames = frames.clamp(1, MAX_INTERPOLATED_FRAMES);
+        let frame_count = frame_count.clamp(1, MAX_INTERPOLATED_FRAMES);
         let mut slides = [0.0; 4];
         let mut advance = |n: u32| {
-            let fraction = f64::from(n) / f64::from(frames);
+            let fraction = f64::from(n) / f64::from(frame_count);
             let sweep_at = |i: usize| from[i] + fraction * (to[i] - from[i]);
             let state = twin.simulate_angles(std::array::from_fn(|i| {
                 neutral[i] + FORWARD_TURN_SIGN[i] * sweep_at(i)
@@ -184,18 +184,18 @@ impl Page {
             slides = std::array::from_fn(|i| slides[i] + state.slips[i]);
             state
         };
-        (1..frames).for_each(|n| {
+        (1..frame_count).for_each(|n| {
             advance(n);
         });
-        let state = advance(frames);
-        self.targets = angles;
+        let state = advance(frame_count);
+        self.target_angles = angles;
         Some(make_frame(twin, &state, slides))
     }
 
     /// Returns the robot to its start on the floor.
     pub fn restart(&mut self) {
         if let Some(twin) = &mut self.twin {
-            twin.set_place(RobotPlace::START);
+            twin.set_body_pose(BodyPose::START);
         }
     }
 
@@ -219,21 +219,21 @@ impl Page {
         }
     }
 
-    /// Predicts a cycle of the gait with this index, on the current floor with the current servos; `None` without a
-    /// robot or such a gait.
+    /// Predicts a cycle of the gait with this index, on the current floor with the current servos; `None` if no robot
+    /// is loaded or there is no such gait.
     pub fn predict(&self, gait: usize) -> Option<GaitPrediction> {
         let twin = self.twin.as_ref()?;
         let gait = twin.robot().gaits().get(gait)?;
         Some(GaitPrediction::predict(twin, gait))
     }
 
-    /// Returns the gait with this index as bars; `None` without a robot or such a gait, or if the gait stands or
-    /// follows a path.
+    /// Returns the gait with this index as bars; `None` if no robot is loaded, or if there is no such gait,
+    /// or the gait stands or follows a path.
     pub fn bars(&self, gait: usize) -> Option<Bars> {
         self.robot()?.gaits().get(gait)?.bars()
     }
 
-    /// Tries a gait on the page's robot; `None` without a robot, or if the drawn line has no length.
+    /// Tries a gait on the page's robot; `None` if no robot is loaded or the drawn line has no length.
     ///
     /// # Errors
     /// Returns the first limit that the gait violates, with valid alternatives.
@@ -242,7 +242,7 @@ impl Page {
     }
 
     /// Returns the text of a robot.toml with this gait. The gait replaces the gait of the same name, or else is added
-    /// at the end. `None` without a robot, or if the drawn line has no length.
+    /// at the end. `None` if no robot is loaded or the drawn line has no length.
     pub fn put_gait(&self, text: &str, edited_gait: &EditedGait) -> Option<String> {
         edited_gait.put_into(text, self.robot()?)
     }
@@ -250,22 +250,22 @@ impl Page {
     /// Sets the steps of a routine in the text of a robot.toml, or adds the routine. The page's robot does not
     /// change.
     #[must_use]
-    pub fn put_steps(text: &str, name: &str, steps: &[String]) -> Edited {
-        Edited::check(with_steps(text, name, steps))
+    pub fn put_steps(text: &str, name: &str, steps: &[String]) -> EditedToml {
+        EditedToml::check(with_steps(text, name, steps))
     }
 
-    /// Simulates one round of a routine on the current floor with the current servos; `None` without a robot or such a
-    /// routine.
-    pub fn round_path(&self, routine: &str) -> Option<RoundPath> {
+    /// Simulates one round of a routine on the current floor with the current servos; `None` if no robot is loaded or
+    /// there is no such routine.
+    pub fn simulate_round(&self, routine: &str) -> Option<RoundPath> {
         RoundPath::simulate(self.twin.as_ref()?, routine)
     }
 
-    /// Prepares the search for a faster gait of the page's robot; `None` without a robot.
+    /// Prepares the search for a faster gait of the page's robot; `None` if no robot is loaded.
     ///
     /// # Errors
     /// Returns the reason if the search cannot start.
     #[cfg(feature = "tune")]
-    pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refused>> {
+    pub fn begin_search(&mut self, task: &SearchTask) -> Option<Result<SearchExtent, Refusal>> {
         let search = FasterSearch::begin(self.twin.as_ref()?, task);
         Some(search.map(|search| self.search.insert(search).extent()))
     }
@@ -276,37 +276,37 @@ impl Page {
         self.search.as_mut()
     }
 
-    /// Returns points of the end point's path in a drawn gait; `None` without a robot, or if the drawn line has no
+    /// Returns points of the end point's path in a drawn gait; `None` if no robot is loaded or the drawn line has no
     /// length.
-    pub fn drawn_path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
+    pub fn smoothed_path(&self, drawn_gait: &DrawnGait) -> Option<Vec<[f64; 2]>> {
         drawn_gait.shown_points(self.robot()?)
     }
 
-    /// Returns the workspace of the end point of the head (0) or the tail (1); `None` without a robot.
+    /// Returns the workspace of the end point of the head (0) or the tail (1); `None` if no robot is loaded.
     pub fn workspace(&self, end: usize) -> Option<Workspace> {
         Some(Workspace::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
-    /// Makes the map of singularities of the head (0) or the tail (1); `None` without a robot.
-    pub fn map(&self, end: usize) -> Option<SingularityMap> {
+    /// Makes the map of singularities of the head (0) or the tail (1); `None` if no robot is loaded.
+    pub fn singularity_map(&self, end: usize) -> Option<SingularityMap> {
         Some(SingularityMap::compute(self.robot()?, *End::ALL.get(end)?))
     }
 
     /// Starts the core as at power-on with this robot; the EEPROM keeps the contents of the previous run, unless the
     /// robot was read again since.
-    pub fn run_core(&mut self) {
+    pub fn start_core(&mut self) {
         let memory = self
-            .core_run
+            .running_core
             .take()
-            .map_or_else(Eeprom::default, CoreRun::into_memory);
+            .map_or_else(Eeprom::default, RunningCore::into_memory);
         let robot = self.robot();
-        self.core_run = robot.map(|robot| CoreRun::power_on(*robot.firmware(), memory));
+        self.running_core = robot.map(|robot| RunningCore::power_on(*robot.firmware(), memory));
     }
 
     /// Runs the core for a frame with a board supply of `volts`; the core first receives `bytes` from the serial line.
-    /// `None` before [`Page::run_core`].
-    pub fn core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
-        Some(self.core_run.as_mut()?.run_frame(bytes, volts))
+    /// `None` before [`PageState::start_core`].
+    pub fn run_core_frame(&mut self, bytes: &[u8], volts: f64) -> Option<CoreFrame> {
+        Some(self.running_core.as_mut()?.run_frame(bytes, volts))
     }
 }
 
@@ -319,7 +319,7 @@ fn make_frame(twin: &Twin, state: &State, slides: [f64; 4]) -> Frame {
     Frame {
         scene: scene.ok(),
         fault,
-        place: state.place.into(),
+        place: state.body_pose.into(),
         slides,
         lag: state.lags,
         errors: state.errors,

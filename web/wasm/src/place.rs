@@ -1,6 +1,6 @@
 //! The body's place on the floor, in the page's coordinates.
 
-use lizard_robot::{Place as RobotPlace, Travel};
+use lizard_robot::{BodyPose, Travel};
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
@@ -19,12 +19,12 @@ impl Place {
     /// Returns the displacement from this place to another, in this place's frame.
     #[must_use]
     pub fn displacement_to(self, other: Self) -> Travel {
-        RobotPlace::from(other).travel_from(self.into())
+        BodyPose::from(other).travel_from(self.into())
     }
 }
 
-impl From<RobotPlace> for Place {
-    fn from(place: RobotPlace) -> Self {
+impl From<BodyPose> for Place {
+    fn from(place: BodyPose) -> Self {
         Self {
             x: -place.left,
             y: place.forward,
@@ -33,7 +33,7 @@ impl From<RobotPlace> for Place {
     }
 }
 
-impl From<Place> for RobotPlace {
+impl From<Place> for BodyPose {
     fn from(place: Place) -> Self {
         Self {
             forward: place.y,
@@ -56,7 +56,7 @@ mod tests {
             .hypot(displacement.turn - 5.0);
         assert!(error < 1e-12, "{displacement:?}");
         let place = place_at(3.0, -4.0, 170.0);
-        let converted_place = Place::from(RobotPlace::from(place));
+        let converted_place = Place::from(BodyPose::from(place));
         let error = (converted_place.x - 3.0).hypot(converted_place.y + 4.0)
             + (converted_place.heading - 170.0).abs();
         assert!(error < 1e-12, "{converted_place:?}");

@@ -1,7 +1,7 @@
 //! The prediction of a gait for the page: the displacement per cycle on the current floor, and the servos' load at each
 //! pace, as a fraction of their torque-speed line.
 
-use lizard_robot::{CheckedGait, DriveEffect, Effort, Ground, Prediction, Travel};
+use lizard_robot::{CheckedGait, DriveEffect, Effort, GroundContact, Prediction, Travel};
 use lizard_twin::{ServoModel, Twin};
 use serde::Serialize;
 use tsify::Tsify;
@@ -82,7 +82,7 @@ impl GaitPrediction {
     }
 
     /// Predicts a gait with ideal servos.
-    fn with_ideal_servos(gait: &CheckedGait, ground: &Ground) -> Self {
+    fn with_ideal_servos(gait: &CheckedGait, ground: &GroundContact) -> Self {
         let effect = DriveEffect::compute(gait, ground);
         let prediction = effect.map_or_else(|| gait.predict(ground), |effect| effect.movement);
         Self {

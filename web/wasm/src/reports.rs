@@ -19,13 +19,13 @@ export interface Status {
   gait: string;
   /** Phase of the gait's cycle, 0 to 1; 0 while no gait runs. */
   phase: number;
-  /** Pace, percent; null without a robot in the flash. */
+  /** Pace, percent; null if there is no robot in the flash. */
   pace: number | null;
-  /** Smallest margin; null without a robot in the flash. */
+  /** Smallest margin; null if there is no robot in the flash. */
   margin: number | null;
   /** True if the guard holds the robot in its last safe pose. */
   isHeld: boolean;
-  /** The fault's name; null without a fault. */
+  /** The fault's name; null if there is none. */
   fault: string | null;
   /** Voltage of the board, V; null until it is measured. */
   vcc: number | null;

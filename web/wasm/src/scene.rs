@@ -6,7 +6,7 @@ use lizard_twin::{Shape, Twin};
 use serde::Serialize;
 use tsify::Tsify;
 
-use crate::map::{self, MapPoint};
+use crate::singularity_map::{self, MapPoint};
 
 /// A point, mm, chassis frame: x to the right, y forward.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Tsify)]
@@ -79,12 +79,10 @@ pub struct Scene {
     pub legs: Vec<LegScene>,
     /// All margins.
     pub margins: Vec<Margin>,
-    /// The smallest margin.
-    pub smallest: Margin,
     /// The message about the limit that this pose violates; `None` if the pose is allowed.
     pub refusal: Option<String>,
     /// The pose's points on the maps of singularities of head and tail.
-    pub map: [MapPoint; 2],
+    pub map_points: [MapPoint; 2],
 }
 
 impl Scene {
@@ -116,9 +114,8 @@ impl Scene {
                 .into(),
             legs: shape.legs.map(|leg| LegScene::new(leg, has_spring)).into(),
             margins: solution.margins.iter().map(to_margin).collect(),
-            smallest: to_margin(solution.margins.min()),
             refusal: refusal.map(|violation| violation.to_string()),
-            map: End::ALL.map(|end| map::to_map_point(end, &pose)),
+            map_points: End::ALL.map(|end| singularity_map::to_map_point(end, &pose)),
         })
     }
 }

@@ -9,9 +9,9 @@ use lizard_twin::Twin;
 use serde::{Deserialize, Serialize};
 use tsify::Tsify;
 
-use crate::drawn::DrawnGait;
+use crate::drawn_gait::DrawnGait;
 use crate::prediction::GaitPrediction;
-use crate::refused::Refused;
+use crate::refusal::Refusal;
 
 /// Size of the smallest offered gait, in tenths of a degree of amplitude or hundredths of the drawn size.
 const MIN_SIZE_STEPS: i64 = 5;
@@ -37,15 +37,15 @@ pub struct Trial {
     /// The gait's table for robot.toml.
     pub table: String,
     /// Name of the margin that comes nearest to its limit.
-    pub margin: &'static str,
+    pub margin_name: &'static str,
     /// Smallest value of that margin, the sine of an angle.
-    pub least: f64,
+    pub min_margin: f64,
     /// Limit of that margin, the sine of an angle.
-    pub limit: f64,
+    pub margin_limit: f64,
     /// Name of the servo that turns fastest.
-    pub servo: &'static str,
+    pub fastest_servo: &'static str,
     /// Largest speed of that servo, deg/s.
-    pub speed: f64,
+    pub max_servo_speed: f64,
     /// Duration of a cycle, s.
     pub period: f64,
 }
@@ -65,7 +65,7 @@ pub struct Alternative {
 pub struct RefusedTrial {
     /// The refusal.
     #[serde(flatten)]
-    pub refused: Refused,
+    pub refusal: Refusal,
     /// The nearest valid values; each of them alone makes the gait valid.
     pub alternatives: Vec<Alternative>,
 }
@@ -93,8 +93,8 @@ impl EditedGait {
     #[must_use]
     pub fn try_on(&self, twin: &Twin) -> Option<Result<Trial, RefusedTrial>> {
         let table = self.format_table(twin.robot())?;
-        Some(try_table(table, twin).map_err(|refused| RefusedTrial {
-            refused,
+        Some(try_table(table, twin).map_err(|refusal| RefusedTrial {
+            refusal,
             alternatives: self.find_alternatives(twin.robot()),
         }))
     }
@@ -147,8 +147,8 @@ impl EditedGait {
 }
 
 /// Tries a gait; `table` has the format of robot.toml.
-fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
-    let robot = twin.robot().with_gait(&table).map_err(Refused::for_gait)?;
+fn try_table(table: String, twin: &Twin) -> Result<Trial, Refusal> {
+    let robot = twin.robot().with_gait(&table).map_err(Refusal::for_gait)?;
     let mut trial_twin = Twin::new(&robot, twin.servo_model());
     trial_twin.set_ground(*twin.ground());
     let gait = &robot.gaits()[1];
@@ -158,18 +158,18 @@ fn try_table(table: String, twin: &Twin) -> Result<Trial, Refused> {
         (audit.type1, limits.type1),
         (audit.leg, limits.leg),
     ];
-    let (nearest_margin, limit) = margins
+    let (nearest_margin, margin_limit) = margins
         .into_iter()
         .min_by(|a, b| (a.0.value - a.1).total_cmp(&(b.0.value - b.1)))
         .expect("there are three margins");
     Ok(Trial {
         prediction: GaitPrediction::predict(&trial_twin, gait),
         table,
-        margin: nearest_margin.check.name(),
-        least: nearest_margin.value,
-        limit,
-        servo: SERVO_NAMES[audit.peak_speed.servo],
-        speed: audit.peak_speed.speed,
+        margin_name: nearest_margin.check.name(),
+        min_margin: nearest_margin.value,
+        margin_limit,
+        fastest_servo: SERVO_NAMES[audit.peak_speed.servo],
+        max_servo_speed: audit.peak_speed.speed,
         period: gait.period(),
     })
 }

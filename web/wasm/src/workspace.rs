@@ -90,14 +90,14 @@ impl Workspace {
             spacing,
             columns: columns.clone().count(),
             allowed: allowed.collect(),
-            neutral: find_neutral_point(robot, end),
+            neutral: compute_neutral_point(robot, end),
             shafts: [[-half_base, 0.0], [half_base, 0.0]],
         }
     }
 }
 
 /// Returns the end point of head or tail in the neutral pose, mm, in the end's own frame.
-pub fn find_neutral_point(robot: &Robot, end: End) -> [f64; 2] {
+pub fn compute_neutral_point(robot: &Robot, end: End) -> [f64; 2] {
     let solution = robot.lizard().solve(&robot.neutral_pose());
     let point = solution.map(|solution| solution.end(end).end_point);
     point.map_or([0.0; 2], |point| [point.x, point.y])

@@ -1,5 +1,5 @@
-// Eight servos hold still while the board echoes whatever its serial line, 115200 baud, receives. Send it a large file:
-// the horns do not move. With <Servo.h> in place of <ServoPulses.h> they tremble.
+// Eight servos hold still while the board echoes every byte that its serial port receives at 115200 baud. Send it a
+// large file: the horns do not move. With <Servo.h> in place of <ServoPulses.h>, they jitter.
 #include <ServoPulses.h>
 
 const uint8_t PINS[8] = {2, 3, 7, 8, 9, 12, A0, A5};

@@ -1,4 +1,4 @@
-// A servo on pin 9 follows a potentiometer: its ends on 5V and GND, its wiper on A0.
+// A servo on pin 9 follows a potentiometer whose ends are on 5V and GND and whose wiper is on A0.
 #include <ServoPulses.h>
 
 Servo servo;

@@ -11,8 +11,8 @@ const EVEN_LOADS: [f64; 4] = [1.0; 4];
 const STOP_TORQUE: f64 = 250.0;
 const PAD_POSITIONS: [Point; 4] = [[55.0, 80.0], [55.0, -80.0], [-55.0, -80.0], [-55.0, 80.0]];
 
-/// Pads with equal loads and the same friction in all directions, on rigid legs.
-fn rigid_pads(positions: [Point; 4], swings: [Point; 4]) -> Pads {
+/// Creates pads with equal loads and the same friction in all directions, on rigid legs.
+fn rigid_leg_pads(positions: [Point; 4], swings: [Point; 4]) -> Pads {
     Pads {
         positions,
         swings,
@@ -43,9 +43,9 @@ fn compute_cost(pads: &Pads, displacement: &Displacement) -> f64 {
 }
 
 /// Computes a lower bound of the minimum cost by duality, from the friction forces of a displacement's slides. The
-/// forces do the work `sum f . swing`, and their torques can release a largest energy from the springs. If the forces
-/// balance each other, every displacement of the body costs at least this work minus this energy. Returns the net
-/// force and torque, and the duality gap: the displacement's cost minus the lower bound.
+/// forces do the work `sum f . swing`, and their torques can release at most a certain energy from the springs. If the
+/// forces balance each other, every displacement of the body costs at least this work minus this energy. Returns the
+/// net force and torque, and the duality gap: the displacement's cost minus the lower bound.
 fn compute_dual_certificate(pads: &Pads, displacement: &Displacement) -> ([f64; 3], f64) {
     /// Length that converts the net torque to a force, mm.
     const TORQUE_LEVER_ARM: f64 = 100.0;
@@ -112,7 +112,7 @@ fn the_minimum_is_found_when_two_feet_nearly_balance_the_other_two() {
             let (a, b) = (foot_position_at(i, start), foot_position_at(i, end));
             [b[0] - a[0], b[1] - a[1]]
         });
-        assert_minimal(&rigid_pads(positions, swings));
+        assert_minimal(&rigid_leg_pads(positions, swings));
     }
 }
 
@@ -128,7 +128,7 @@ fn three_pads_that_swing_alike_hold_while_the_fourth_slides() {
     for sliding_pad in 0..4 {
         let mut swings = [[-1.0, 0.0]; 4];
         swings[sliding_pad] = [3.0, 0.0];
-        let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+        let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
         assert_twist_near(twist, [1.0, 0.0, 0.0]);
     }
 }
@@ -136,7 +136,7 @@ fn three_pads_that_swing_alike_hold_while_the_fourth_slides() {
 #[test]
 fn a_single_swinging_pad_does_not_move_the_body() {
     let swings = [[5.0, 1.0], [0.0; 2], [0.0; 2], [0.0; 2]];
-    let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+    let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert_twist_near(twist, [0.0; 3]);
 }
 
@@ -144,7 +144,7 @@ fn a_single_swinging_pad_does_not_move_the_body() {
 fn legs_that_swing_against_each_other_turn_the_body() {
     // The pads turn by -0.01 rad about the body's centre, so the body turns by 0.01 rad, and no pad slides.
     let swings = PAD_POSITIONS.map(|[x, y]| [0.01 * y, -0.01 * x]);
-    let twist = rigid_pads(PAD_POSITIONS, swings).minimise_cost().twist;
+    let twist = rigid_leg_pads(PAD_POSITIONS, swings).minimise_cost().twist;
     assert_twist_near(twist, [0.0, 0.0, 0.01]);
 }
 

@@ -7,11 +7,11 @@ use crate::console::command::LineError;
 use crate::control::refusal::Refusal;
 use crate::numbers::gaits::GaitId;
 
-/// The next line of an answer.
+/// A line of an answer, or a part of a line, that is printed in one go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 // Discriminants start at 1, so that `Option::None` is all zeros: see `Main::new`.
 #[repr(u8)]
-pub enum Answer {
+pub enum AnswerPart {
     /// `ok`, followed by the received line in lower case.
     Done = 1,
     /// A line of help that lists as many gaits as fit, from this one on.
@@ -24,14 +24,14 @@ pub enum Answer {
     HelpDone,
     /// The first of the three parts of a `status` line: `ok`, the activity and the pose. Each part is written
     /// separately, so that a frame is delayed by at most one part.
-    Status,
+    StatusStart,
     /// The second part of a `status` line: the margin, whose computation takes most of a frame; the speed; and the
     /// frame count.
     StatusMargin,
     /// The last part of a `status` line: counters, faults, resets and supplies.
     StatusHealth,
     /// The line of `cal` with this index, starting at 0; the last line is `ok cal`.
-    Settings(u8),
+    CalLine(u8),
     /// `err`, because the line is not a valid command; nothing has changed.
     Invalid(LineError),
     /// `err`, because the robot refuses the order; nothing has changed.

@@ -9,7 +9,7 @@ use crate::console::text::Text;
 use crate::console::word::{Effect, RESERVED_COUNT, Word};
 use crate::control::order::{Order, Setting};
 use crate::memory::settings::Boot;
-use crate::numbers::gaits::{GaitId, Name};
+use crate::numbers::gaits::{GaitId, GaitName};
 use crate::numbers::part::Servo;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::{Angle, CENTIDEG_PER_TURN, Sweep};
@@ -96,7 +96,7 @@ struct ArgumentForm {
 }
 
 flash! {
-    /// All forms, indexed by [`form_index`].
+    /// The forms of all commands with numbers, indexed by [`form_index`].
     const FORMS: [ArgumentForm; 8] = [
         ArgumentForm { takes_servo: false, number_count: 4, syntax: Syntax::Degrees, min: 0, max: MAX_CENTIDEG, usage_message: Text::PoseUsage, range_message: Text::Empty },
         ArgumentForm { takes_servo: false, number_count: 1, syntax: Syntax::Whole, min: 10, max: 100, usage_message: Text::SpeedUsage, range_message: Text::SpeedRange },
@@ -109,7 +109,7 @@ flash! {
     ];
 }
 
-/// Returns the index of a word's form in `FORMS`; `None` for a word without arguments, and for `boot`, whose argument
+/// Returns the index of a word's form in `FORMS`; `None` if the word takes no arguments, and for `boot`, whose argument
 /// is a name.
 const fn form_index(word: Word) -> Option<usize> {
     match word {
@@ -185,13 +185,13 @@ fn parse_with_priority<const FIRST_YIELDING_INDEX: usize>(
     }))
 }
 
-/// Returns the effect of a line on the servos: that of its command word, [`Effect::Moves`] for a gait, or
+/// Returns the effect of a line on the servos: that of its command word, [`Effect::Motion`] for a gait, or
 /// [`Effect::None`] for a line that is not a valid command.
 pub fn effect(line: &str, robot: &Robot) -> Effect {
     let line = line.as_bytes();
     match parse(line, robot) {
         Err(_) => Effect::None,
-        Ok(Command::Order(Order::Gait(..))) => Effect::Moves,
+        Ok(Command::Order(Order::Gait(..))) => Effect::Motion,
         Ok(_) => Word::find(Words(line).next()).map_or(Effect::None, Word::effect),
     }
 }
@@ -304,9 +304,9 @@ fn parse_gait(line: &[u8], robot: &Robot) -> Result<(GaitId, u16), LineError> {
 }
 
 /// Compares a line with a gait's name. Returns the count of cycles after the name, 0 if there is none. Stops at the
-/// first byte that differs, because there may be many names and a frame may be due.
+/// first byte that differs, because there may be many names, and a frame may be pending.
 #[inline(never)]
-fn match_gait_name(line: &[u8], name: Name) -> Result<u16, LineError> {
+fn match_gait_name(line: &[u8], name: GaitName) -> Result<u16, LineError> {
     let mut rest = line;
     for byte in name {
         match rest {

@@ -4,11 +4,11 @@
 //! for a whole line, the caller lets the console write a line. Therefore nothing blocks: a long list is written line by
 //! line between the frames, and a slow receiver never delays a frame.
 
-use crate::console::answer::{Answer, Counters};
+use crate::console::answer::{AnswerPart, Counters};
 use crate::console::autobaud::RateDetector;
 use crate::console::command::{self, Command, LineError};
 use crate::console::digits;
-use crate::console::line::{GARBLED_BYTE, Line, LineEnd};
+use crate::console::line::{GARBLED_BYTE, Line, LineKind};
 use crate::console::output::Output;
 use crate::console::print;
 use crate::console::refusal;
@@ -31,8 +31,8 @@ pub const MAX_OUTPUT_LINE_BYTES: u8 = 250;
 enum PendingLine {
     /// The firmware's version and the robot's name, once after power-on.
     Banner,
-    /// The answer to the last received line, or a part of the answer.
-    Answer(Answer),
+    /// A part of the answer to the last received line.
+    Answer(AnswerPart),
     /// An unsolicited notice.
     Notice(Notice),
     /// The hazard because of which the guard holds the robot.
@@ -50,7 +50,7 @@ pub struct Console {
     rate_detector: RateDetector,
     has_printed_banner: bool,
     /// The next part of the answer to the last line; `None` once the answer is written.
-    answer: Option<Answer>,
+    answer: Option<AnswerPart>,
     watch: Watch,
 }
 
@@ -110,13 +110,13 @@ impl Console {
         control.record_byte();
         self.silence_ms = 0;
         self.rate_detector.record_byte(byte);
-        let Some(line_end) = self.line.push(byte) else {
+        let Some(line_kind) = self.line.push(byte) else {
             return;
         };
-        let answer = match line_end {
-            LineEnd::Line => self.execute_line(control),
-            LineEnd::TooLong => Err(Answer::Invalid(LineError::TooLong)),
-            LineEnd::Garbled => Err(Answer::Invalid(LineError::Garbled)),
+        let answer = match line_kind {
+            LineKind::Valid => self.execute_line(control),
+            LineKind::TooLong => Err(AnswerPart::Invalid(LineError::TooLong)),
+            LineKind::Garbled => Err(AnswerPart::Invalid(LineError::Garbled)),
         };
         self.answer = answer.unwrap_or_else(Some);
     }
@@ -124,7 +124,7 @@ impl Console {
     /// Executes the received line. Returns `Ok(None)` if the order must wait for the EEPROM; the caller then reports
     /// its outcome with [`Console::finish_order`].
     #[inline(never)]
-    fn execute_line(&mut self, control: &mut Controller) -> Result<Option<Answer>, Answer> {
+    fn execute_line(&mut self, control: &mut Controller) -> Result<Option<AnswerPart>, AnswerPart> {
         let robot = control.motion().robot();
         let text = self.line.text();
         let mut command = command::parse(text, robot);
@@ -136,22 +136,22 @@ impl Console {
             Ok(Command::Help | Command::Status | Command::Watch(_))
         );
         if robot.is_none() && !needs_no_robot {
-            return Err(Answer::Refused(Refusal::NoRobot));
+            return Err(AnswerPart::Refused(Refusal::NoRobot));
         }
-        let command = command.map_err(Answer::Invalid)?;
+        let command = command.map_err(AnswerPart::Invalid)?;
         // Only a valid command proves that a user is connected, so noise and partial lines do not restart the `deadman`
         // timeout.
         control.record_command();
         Ok(match command {
-            Command::Help => Some(Answer::HelpGaits(GaitId::STAND)),
-            Command::Status => Some(Answer::Status),
-            Command::Cal => Some(Answer::Settings(0)),
+            Command::Help => Some(AnswerPart::HelpGaits(GaitId::STAND)),
+            Command::Status => Some(AnswerPart::StatusStart),
+            Command::Cal => Some(AnswerPart::CalLine(0)),
             Command::Watch(frames) => {
                 self.watch = Watch::new(frames);
-                Some(Answer::Done)
+                Some(AnswerPart::Done)
             }
-            Command::Order(order) => match control.execute(&order).map_err(Answer::Refused)? {
-                Acceptance::Done => Some(Answer::Done),
+            Command::Order(order) => match control.execute(&order).map_err(AnswerPart::Refused)? {
+                Acceptance::Done => Some(AnswerPart::Done),
                 Acceptance::Pending => None,
             },
         })
@@ -160,8 +160,8 @@ impl Console {
     /// Reports the outcome of an order that has waited for the EEPROM.
     pub fn finish_order(&mut self, outcome: Result<(), Refusal>) {
         self.answer = Some(match outcome {
-            Ok(()) => Answer::Done,
-            Err(refusal) => Answer::Refused(refusal),
+            Ok(()) => AnswerPart::Done,
+            Err(refusal) => AnswerPart::Refused(refusal),
         });
     }
 
@@ -182,7 +182,7 @@ impl Console {
             }
             Some(PendingLine::Answer(answer)) => {
                 self.answer = print::print_answer(out, answer, &self.line, control, counters);
-                if matches!(answer, Answer::Status | Answer::StatusMargin) {
+                if matches!(answer, AnswerPart::StatusStart | AnswerPart::StatusMargin) {
                     return;
                 }
             }
@@ -197,7 +197,7 @@ impl Console {
                 }
             }
             Some(PendingLine::PoseReport) => {
-                self.watch.is_due = false;
+                self.watch.is_report_pending = false;
                 Text::WatchTime.print(out);
                 digits::print_number(out, control.motion().frame_count(), 0);
                 print::print_pose(out, control.motion());
@@ -217,7 +217,7 @@ impl Console {
             Some(PendingLine::Notice(notice))
         } else if control.has_hold_reason() {
             Some(PendingLine::HoldReason)
-        } else if self.watch.is_due {
+        } else if self.watch.is_report_pending {
             Some(PendingLine::PoseReport)
         } else {
             None

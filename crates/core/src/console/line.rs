@@ -10,9 +10,9 @@ pub const MAX_LINE_BYTES: usize = 63;
 
 /// The kind of line that a line end completes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LineEnd {
-    /// A valid line; [`Line::text`] is its text.
-    Line,
+pub enum LineKind {
+    /// A complete line without garbled bytes; [`Line::text`] is its text.
+    Valid,
     /// A line longer than [`MAX_LINE_BYTES`], which is dropped as a whole.
     TooLong,
     /// A line with a garbled byte. Its other bytes may form a command that was not sent.
@@ -45,7 +45,7 @@ impl Line {
 
     /// Appends a byte; the byte after a line end begins a new line. Returns the kind of line that the byte completes,
     /// or `None` if the byte is not a line end or the line is blank.
-    pub fn push(&mut self, byte: u8) -> Option<LineEnd> {
+    pub fn push(&mut self, byte: u8) -> Option<LineKind> {
         if self.has_ended {
             *self = Self::new();
         }
@@ -78,16 +78,16 @@ impl Line {
         self.bytes.trim_ascii()
     }
 
-    fn end(&mut self) -> Option<LineEnd> {
+    fn end(&mut self) -> Option<LineKind> {
         self.has_ended = true;
         if self.is_garbled {
-            Some(LineEnd::Garbled)
+            Some(LineKind::Garbled)
         } else if self.is_too_long {
-            Some(LineEnd::TooLong)
+            Some(LineKind::TooLong)
         } else if self.text().is_empty() {
             None
         } else {
-            Some(LineEnd::Line)
+            Some(LineKind::Valid)
         }
     }
 }
@@ -101,15 +101,15 @@ mod tests {
 
     use super::*;
 
-    /// Returns the text of every line that the bytes complete; `None` for a line that is too long or garbled.
+    /// Returns the text of every line that the bytes complete; `None` if the line is too long or garbled.
     fn split_lines(bytes: &[u8]) -> Vec<Option<String>> {
         let mut line = Line::new();
         let mut lines = Vec::new();
         for byte in bytes {
             match line.push(*byte) {
                 None => {}
-                Some(LineEnd::TooLong | LineEnd::Garbled) => lines.push(None),
-                Some(LineEnd::Line) => {
+                Some(LineKind::TooLong | LineKind::Garbled) => lines.push(None),
+                Some(LineKind::Valid) => {
                     lines.push(Some(line.text().iter().copied().map(char::from).collect()));
                 }
             }
@@ -203,14 +203,14 @@ mod tests {
         for index in 0..8 {
             let mut bytes = b"speed 90".to_vec();
             bytes[index] = GARBLED_BYTE;
-            for deletion in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
+            for correction in ["", "\x08", "\x08\x08\x08\x08\x08\x08\x08\x08\x08speed 90"] {
                 let mut line = Line::new();
-                let sent_bytes = [&bytes, deletion.as_bytes(), b"\rstop\r"].concat();
-                let line_ends: Vec<LineEnd> = sent_bytes
+                let sent_bytes = [&bytes, correction.as_bytes(), b"\rstop\r"].concat();
+                let line_kinds: Vec<LineKind> = sent_bytes
                     .iter()
                     .filter_map(|byte| line.push(*byte))
                     .collect();
-                assert_eq!(line_ends, [LineEnd::Garbled, LineEnd::Line]);
+                assert_eq!(line_kinds, [LineKind::Garbled, LineKind::Valid]);
                 assert_eq!(line.text(), b"stop");
             }
         }

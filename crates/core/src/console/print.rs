@@ -1,6 +1,6 @@
 //! Prints the console's lines.
 
-use crate::console::answer::{Answer, Counters};
+use crate::console::answer::{AnswerPart, Counters};
 use crate::console::digits;
 use crate::console::line::Line;
 use crate::console::output::Output;
@@ -21,9 +21,9 @@ use crate::numbers::robot::Robot;
 use crate::numbers::section::SectionError;
 use crate::numbers::units::{Angle, Sweep, thousandths_from_phase};
 
-/// The largest length of a line of gait names without its line end. The limit exists because a frame may have to wait
-/// until the line is written.
-pub(super) const MAX_GAITS_LINE_BYTES: u8 = 125;
+/// The greatest length of a line of gait names, excluding the line end. The limit exists because a frame may have to
+/// wait until the line is written.
+pub(super) const MAX_GAIT_NAMES_LINE_BYTES: u8 = 125;
 
 /// The index of the `boot` line in the answer to `cal`; lines 0 to 3 belong to the servos.
 const CAL_BOOT_LINE: u8 = 4;
@@ -32,54 +32,54 @@ const CAL_DEADMAN_LINE: u8 = 5;
 /// The index of the last line of the answer to `cal`, `ok cal`.
 const CAL_LAST_LINE: u8 = 6;
 
-/// Prints a line of an answer or a part of a line. Returns the line or part to print next, if any.
+/// Prints a part of an answer. Returns the part to print next, if any.
 #[inline(never)]
 pub(super) fn print_answer(
     out: &mut impl Output,
-    answer: Answer,
+    answer: AnswerPart,
     line: &Line,
     control: &Controller,
     counters: Counters,
-) -> Option<Answer> {
+) -> Option<AnswerPart> {
     match answer {
-        Answer::Invalid(line_error) => {
+        AnswerPart::Invalid(line_error) => {
             Text::Err.print(out);
             line_error.print(control.motion(), out);
         }
-        Answer::Refused(refusal) => {
+        AnswerPart::Refused(refusal) => {
             Text::Err.print(out);
             refusal.print(control.motion(), out);
         }
-        Answer::HelpGaits(first_gait) => {
-            let next_gait = print_gaits(out, first_gait, control.motion().robot());
-            return Some(next_gait.map_or(Answer::HelpCommands, Answer::HelpGaits));
+        AnswerPart::HelpGaits(first_gait) => {
+            let next_gait = print_gait_names(out, first_gait, control.motion().robot());
+            return Some(next_gait.map_or(AnswerPart::HelpCommands, AnswerPart::HelpGaits));
         }
-        Answer::HelpCommands => {
+        AnswerPart::HelpCommands => {
             Text::HelpCommands.print(out);
             Word::print_all::<RESERVED_COUNT>(out, control.motion().robot());
-            return Some(Answer::HelpUsage);
+            return Some(AnswerPart::HelpUsage);
         }
-        Answer::HelpUsage => {
+        AnswerPart::HelpUsage => {
             Text::HelpUsage.print(out);
-            return Some(Answer::HelpDone);
+            return Some(AnswerPart::HelpDone);
         }
-        Answer::HelpDone => Text::OkHelp.print(out),
-        Answer::Done => {
+        AnswerPart::HelpDone => Text::OkHelp.print(out),
+        AnswerPart::Done => {
             Text::Ok.print(out);
             digits::print_ascii(out, line.text().iter().copied());
         }
-        Answer::Status => {
-            print_status(out, control);
-            return Some(Answer::StatusMargin);
+        AnswerPart::StatusStart => {
+            print_status_start(out, control);
+            return Some(AnswerPart::StatusMargin);
         }
-        Answer::StatusMargin => {
+        AnswerPart::StatusMargin => {
             print_margin(out, control.motion());
-            return Some(Answer::StatusHealth);
+            return Some(AnswerPart::StatusHealth);
         }
-        Answer::StatusHealth => print_health(out, control, counters),
-        Answer::Settings(line_index) => {
-            if print_settings_line(out, line_index, control) {
-                return Some(Answer::Settings(line_index + 1));
+        AnswerPart::StatusHealth => print_health(out, control, counters),
+        AnswerPart::CalLine(line_index) => {
+            if print_cal_line(out, line_index, control) {
+                return Some(AnswerPart::CalLine(line_index + 1));
             }
         }
     }
@@ -87,9 +87,9 @@ pub(super) fn print_answer(
 }
 
 /// Prints `# gaits: stand|walk|...` with as many names as fit. Returns the first gait that does not fit, if any.
-fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Option<GaitId> {
+fn print_gait_names(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Option<GaitId> {
     Text::HelpGaits.print(out);
-    // Without a robot, the flash contains no names.
+    // If there is no robot, the flash contains no names.
     if robot.is_none() {
         return None;
     }
@@ -97,7 +97,7 @@ fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Opti
     let mut gait = first_gait;
     loop {
         let name = robot.gait_name(gait);
-        if name.remaining() >= MAX_GAITS_LINE_BYTES - length {
+        if name.remaining() >= MAX_GAIT_NAMES_LINE_BYTES - length {
             return Some(gait);
         }
         length += 1 + name.remaining();
@@ -112,7 +112,7 @@ fn print_gaits(out: &mut impl Output, first_gait: GaitId, robot: &Robot) -> Opti
 
 /// Prints `ok gait=walk phase=0.250 pose=138.59,41.41,318.59,221.41`.
 #[inline(never)]
-fn print_status(out: &mut impl Output, control: &Controller) {
+fn print_status_start(out: &mut impl Output, control: &Controller) {
     let motion = control.motion();
     let robot = motion.robot();
     Text::OkGait.print(out);
@@ -126,7 +126,7 @@ fn print_status(out: &mut impl Output, control: &Controller) {
         Activity::Stop => Text::Stop.print(out),
         Activity::Rest => Text::Rest.print(out),
     }
-    // Without a robot there is no pose and no margin.
+    // If there is no robot, there is no pose and no margin.
     if robot.is_none() {
         return;
     }
@@ -142,10 +142,7 @@ fn print_margin(out: &mut impl Output, motion: &Motion) {
         return;
     }
     Text::StatusMargin.print(out);
-    digits::print_sine(
-        out,
-        Clearance::measure(robot, motion.pose()).smallest_margin(),
-    );
+    digits::print_sine(out, Clearance::measure(robot, motion.pose()).min_margin());
     digits::print_count(out, Text::StatusSpeed, motion.speed_percent().into());
     digits::print_count(out, Text::StatusFrames, motion.frame_count())
 }
@@ -172,7 +169,7 @@ fn print_health(out: &mut impl Output, control: &Controller, counters: Counters)
     digits::print_count(out, Text::StatusResets, control.reset_count().into());
     let robot = control.motion().robot();
     let reading = control.safety().supply().reading();
-    // Without a robot no voltage can be computed, because the reference voltage is unknown.
+    // If there is no robot, no voltage can be computed, because the reference voltage is unknown.
     if robot.is_none() || reading.reference == 0 {
         return;
     }
@@ -187,7 +184,7 @@ fn print_health(out: &mut impl Output, control: &Controller, counters: Counters)
 
 /// Prints the line of `cal` with this index. Returns false after the last line, `ok cal`.
 #[inline(never)]
-fn print_settings_line(out: &mut impl Output, line_index: u8, control: &Controller) -> bool {
+fn print_cal_line(out: &mut impl Output, line_index: u8, control: &Controller) -> bool {
     let settings = control.settings();
     match line_index {
         CAL_BOOT_LINE => {
@@ -263,7 +260,8 @@ pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Cont
             .print(out)
         }
         Notice::Supply => {
-            digits::print_hundredths(out, Text::NoticeSupply, control.voltage().centivolts());
+            let centivolts = control.limiting_voltage().centivolts();
+            digits::print_hundredths(out, Text::NoticeSupply, centivolts);
             out.write_byte(b' ');
             out.write_byte(b'V');
             match control.safety().supply().level() {
@@ -294,7 +292,7 @@ pub(super) fn print_notice(out: &mut impl Output, notice: Notice, control: &Cont
 
 /// Prints ` pose=`, followed by the chassis angles of the four servos.
 pub(super) fn print_pose(out: &mut impl Output, motion: &Motion) {
-    Text::WatchPose.print(out);
+    Text::PoseField.print(out);
     digits::print_angles(out, motion.pose(), motion.robot())
 }
 
@@ -329,7 +327,7 @@ pub(super) fn print_banner(out: &mut impl Output, robot: &Robot) {
     Text::BannerEnd.print(out)
 }
 
-/// Returns the word for a fault in `status`.
+/// Returns the word by which `status` names a fault.
 const fn fault_word(fault: Fault) -> Text {
     match fault {
         Fault::Guard => Text::FaultGuard,
@@ -357,7 +355,7 @@ const fn fault_message(fault: Fault) -> Text {
     }
 }
 
-/// Returns the word for a reset's cause in `status`.
+/// Returns the word by which `status` names the cause of a reset.
 const fn cause_word(cause: Cause) -> Text {
     match cause {
         Cause::Power => Text::CausePower,

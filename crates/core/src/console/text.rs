@@ -13,7 +13,7 @@ macro_rules! texts {
         /// A text that the robot prints: a message or a part of one.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
-        #[allow(missing_docs, reason = "each name is followed by its text")]
+        #[allow(missing_docs, reason = "each variant is named after its text")]
         pub enum Text { $($name),* }
 
         const TEXTS: &[&str] = &[$($text),*];
@@ -28,7 +28,7 @@ texts! {
     BannerNoRobot = " without a robot";
     BannerEnd = ", send help for the commands";
     WatchTime = "# t=";
-    WatchPose = " pose=";
+    PoseField = " pose=";
     Held = "# held in the last safe pose: ";
     InfoPrefix = "# ";
     Space = " ";

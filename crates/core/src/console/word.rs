@@ -12,15 +12,15 @@ pub enum Effect {
     /// No pulse changes: the command is a query, or a setting that takes effect later.
     None,
     /// A motion begins, and every servo gets pulses.
-    Moves,
+    Motion,
     /// The pose is frozen.
-    Freezes,
+    Freeze,
     /// The pulses end.
-    Rests,
+    Rest,
     /// The speed of gaits changes.
-    Paces,
-    /// The calibration of a servo changes: its pulse for an angle, or its travel.
-    Calibrates,
+    SpeedChange,
+    /// The calibration of a servo changes: the pulse for an angle, or the travel.
+    CalibrationChange,
 }
 
 macro_rules! words {
@@ -40,7 +40,7 @@ macro_rules! words {
         /// A command word of the console.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
-        #[allow(missing_docs, reason = "each name is followed by its word")]
+        #[allow(missing_docs, reason = "each variant is named after its word")]
         pub enum Word { $($name),* }
 
         impl Word {
@@ -76,21 +76,21 @@ words! {
     reserved: {
         Help = "help" "", None;
         QuestionMark = "?" "", None;
-        Stop = "stop" "", Freezes;
-        Rest = "rest" "", Rests;
+        Stop = "stop" "", Freeze;
+        Rest = "rest" "", Rest;
         Status = "status" "", None;
-        Pose = "pose" " 155 41.41 318.59 221.41", Moves;
-        Speed = "speed" " 50", Paces;
+        Pose = "pose" " 155 41.41 318.59 221.41", Motion;
+        Speed = "speed" " 50", SpeedChange;
         Watch = "watch" " 5", None;
-        Trim = "trim" " 1 8", Calibrates;
-        Limit = "limit" " 4 200 240", Calibrates;
-        Dir = "dir" " 2 -", Calibrates;
-        Scale = "scale" " 3 12", Calibrates;
+        Trim = "trim" " 1 8", CalibrationChange;
+        Limit = "limit" " 4 200 240", CalibrationChange;
+        Dir = "dir" " 2 -", CalibrationChange;
+        Scale = "scale" " 3 12", CalibrationChange;
         Cal = "cal" "", None;
-        Center = "center" "", Moves;
+        Center = "center" "", Motion;
         Save = "save" "", None;
-        Load = "load" "", Calibrates;
-        Factory = "factory" "", Calibrates;
+        Load = "load" "", CalibrationChange;
+        Factory = "factory" "", CalibrationChange;
         Boot = "boot" " rest", None;
         Deadman = "deadman" " 2000", None;
     }
@@ -99,8 +99,8 @@ words! {
     }
 }
 
-/// The character after each word of `WORD_LIST`.
-const BAR: u8 = b'|';
+/// The character that ends each word of `WORD_LIST`.
+const TERMINATOR: u8 = b'|';
 
 flash! {
     const CHARACTERS: [u8; WORD_LIST.len()] = *WORD_LIST.as_bytes().first_chunk().unwrap();
@@ -117,8 +117,8 @@ impl Word {
         for index in 0..WORD_LIST.len() {
             let character = CHARACTERS.at(index).load();
             unmatched = match unmatched {
-                Some([]) if character == BAR => return Some(WORDS.at(word_index).load()),
-                _ if character == BAR => {
+                Some([]) if character == TERMINATOR => return Some(WORDS.at(word_index).load()),
+                _ if character == TERMINATOR => {
                     word_index += 1;
                     Some(spelling)
                 }
@@ -134,23 +134,23 @@ impl Word {
         (self as usize) < RESERVED_COUNT
     }
 
-    /// Prints all words, separated by bars. Omits a word if its index is at least `FIRST_YIELDING_INDEX` and the robot
-    /// has a gait of the same name.
+    /// Prints all words, separated by bars, except yielding words that are also the name of a gait.
+    /// `FIRST_YIELDING_INDEX` is the index of the first yielding word.
     pub(crate) fn print_all<const FIRST_YIELDING_INDEX: usize>(
         out: &mut impl Output,
         robot: &Robot,
     ) {
         let mut word_index = 0;
-        let mut is_printed = true;
+        let mut prints_word = true;
         for index in 0..WORD_LIST.len() - 1 {
             let character = CHARACTERS.at(index).load();
             // Compiles to nothing while no word yields.
-            if FIRST_YIELDING_INDEX < Self::ALL.len() && character == BAR {
+            if FIRST_YIELDING_INDEX < Self::ALL.len() && character == TERMINATOR {
                 word_index += 1;
-                is_printed =
+                prints_word =
                     word_index < FIRST_YIELDING_INDEX || !is_gait_name_at(index + 1, robot);
             }
-            if is_printed {
+            if prints_word {
                 out.write_byte(character);
             }
         }
@@ -162,7 +162,7 @@ fn is_gait_name_at(index: usize, robot: &Robot) -> bool {
     GaitId::all(robot.gait_count()).any(|id| {
         let letters = (index..WORD_LIST.len()).map(|index| CHARACTERS.at(index).load());
         letters
-            .take_while(|letter| *letter != BAR)
+            .take_while(|letter| *letter != TERMINATOR)
             .eq(robot.gait_name(id))
     })
 }
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn every_word_is_found_by_its_exact_spelling_only() {
+    fn every_word_is_found_only_by_its_exact_spelling() {
         for word in Word::ALL {
             let text = word.text();
             assert_eq!(Word::find(text.as_bytes()), Some(*word), "{text}");

@@ -30,8 +30,8 @@ use job::Job;
 use routine::Routine;
 
 mod adjust;
+mod getters;
 mod job;
-mod report;
 mod routine;
 
 /// Frames without a reset after which the supply counts as good again: 30 s.
@@ -54,8 +54,8 @@ pub struct Controller {
     reset_cause: Cause,
     /// Resets since power-on, at most 255.
     reset_count: u8,
-    /// True if a weak supply may have caused the last reset. Becomes false once a command proves that a computer opened
-    /// the port.
+    /// True if a weak supply may have caused the last reset. Becomes false once a command proves that a computer has
+    /// opened the port.
     is_supply_suspected: bool,
     /// Consecutive resets, including the last one, that a weak supply may have caused.
     suspected_brown_outs: u8,
@@ -81,7 +81,7 @@ impl Default for Controller {
 }
 
 impl Controller {
-    /// Returns a controller without a robot; [`Controller::begin`] must follow.
+    /// Creates a controller that has no robot; [`Controller::begin`] must follow.
     pub const fn new() -> Self {
         Self {
             settings: Settings::NONE,
@@ -171,7 +171,7 @@ impl Controller {
     pub fn compute_frame(&mut self, health: &Health) -> Pulses {
         self.check_health(health);
         let was_held = self.motion.hazard().is_some();
-        let pulses = self.motion.tick();
+        let pulses = self.motion.advance_frame();
         let hazard = self.motion.hazard();
         if !was_held && let Some(hazard) = hazard {
             self.hold_reason = Some(hazard);
@@ -201,7 +201,7 @@ impl Controller {
         self.safety.is_lit()
     }
 
-    /// The time without a command after which a gait ends, ms; 0 for never.
+    /// The time without a command after which a gait ends, ms; 0 if it never ends.
     pub fn deadman_ms(&self) -> u16 {
         self.settings.deadman_ms()
     }
@@ -234,12 +234,12 @@ impl Controller {
         self.safety.clear_notice(notice);
     }
 
-    /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
+    /// The voltage of the chip's supply or of the servo rail, whichever restricts the robot more.
     #[inline(never)]
-    pub fn voltage(&self) -> Voltage {
+    pub fn limiting_voltage(&self) -> Voltage {
         self.safety
             .supply()
-            .worst_voltage(&self.motion.robot().supplies())
+            .limiting_voltage(&self.motion.robot().supplies())
     }
 
     /// The current activity: the running routine, unless the routine rests; otherwise the activity of the motion.
@@ -266,7 +266,7 @@ impl Controller {
 
     /// Checks the board's health and reacts to a fault.
     fn check_health(&mut self, health: &Health) {
-        // Without a robot there is no motion to stop and no threshold of the supply.
+        // If there is no robot, there is no motion to stop and no threshold of the supply.
         if self.motion.robot().is_none() {
             return;
         }
@@ -288,13 +288,13 @@ impl Controller {
                 self.stop();
                 self.motion.rest();
             }
-            Reaction::Boot => self.boot(state),
+            Reaction::Boot => self.execute_boot(state),
         }
         self.motion.set_slow(self.safety.is_slow());
     }
 
     /// Executes the `boot` setting, unless the robot is already in the required state.
-    fn boot(&mut self, state: State) {
+    fn execute_boot(&mut self, state: State) {
         let boot = self.settings.boot(self.motion.robot());
         let is_resting = state == State::Resting;
         match boot {

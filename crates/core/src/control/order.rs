@@ -8,8 +8,8 @@ use crate::numbers::units::{Angle, Sweep};
 /// An order whose arguments are within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
-    /// Change to a gait for a number of cycles, or endlessly for 0; or start a routine for a number of rounds, or for
-    /// the number in robot.toml for 0. `stand` also wakes the servos.
+    /// Change to a gait for a number of cycles, or endlessly if that is 0; or start a routine for a number of rounds,
+    /// or for the number in robot.toml if that is 0. `stand` also wakes the servos.
     Gait(GaitId, u16),
     /// Go to a pose, given as chassis angles in servo order.
     Pose([Angle; 4]),
@@ -25,7 +25,7 @@ pub enum Order {
     Set(Servo, Setting),
     /// Set the action three seconds after power-on.
     Boot(Boot),
-    /// End a gait when no command has been received for this number of milliseconds; 0 for never.
+    /// End a gait when no command has been received for this number of milliseconds, or never if that is 0.
     Deadman(u16),
     /// Save the settings in the EEPROM.
     Save,

@@ -222,9 +222,9 @@ impl Safety {
         }
     }
 
-    /// Advances the LED by a frame. `is_guarded` is true while the guard holds the robot.
-    pub fn advance_led(&mut self, is_guarded: bool) {
-        let fault = if is_guarded {
+    /// Advances the LED by a frame. `is_held` is true while the guard holds the robot.
+    pub fn advance_led(&mut self, is_held: bool) {
+        let fault = if is_held {
             Some(Fault::Guard)
         } else {
             self.fault

@@ -33,7 +33,7 @@ pub enum Event {
     Rest,
     /// The command `save`.
     Save,
-    /// The `boot` action is due: the program has run for three seconds without a received byte or a fault.
+    /// The time of `boot` has come: the program has run for three seconds without a received byte or a fault.
     BootDue,
     /// No command has been received within the `deadman` time.
     Silence,
@@ -129,7 +129,7 @@ pub const fn response(event: Event, supply: Option<Level>, state: State) -> Resp
 /// supply down again.
 pub const BROWN_OUTS_TO_REST: u8 = 3;
 
-/// The state of the servos before the reset.
+/// The state of the servos before a reset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ServosBefore {
     /// The state is unknown.

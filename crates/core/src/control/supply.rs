@@ -1,8 +1,8 @@
-//! The supply's voltage, which is measured in every frame and converted to a level that limits the robot.
+//! The supply voltage, which is measured in every frame and converted to a level that limits the robot.
 //!
 //! Four servos that start at once pull a weak supply down. Below 2.7 V the chip resets; even well above 2.7 V, a servo
 //! may lose its position, and a write to the EEPROM may store a wrong byte. The chip measures its own supply without an
-//! external part, by comparing the supply with a reference of about 1.1 V on the chip. The servos' rail can be
+//! external part, by comparing the supply with a reference of about 1.1 V on the chip. The servo rail can be
 //! measured, too, if a voltage divider connects it to an analogue pin.
 //!
 //! The reference differs by up to a tenth from chip to chip. robot.toml has its measured value, and the voltages below
@@ -10,7 +10,7 @@
 
 use lizard_avr::mul_unsigned;
 
-use crate::numbers::root::quotient;
+use crate::numbers::integer_math::saturating_div;
 use crate::numbers::supplies::{Supplies, Thresholds};
 
 /// The number of steps of the analogue-to-digital converter.
@@ -21,7 +21,7 @@ const FULL_SCALE: u16 = 1024;
 pub struct Reading {
     /// The chip's reference voltage, in 1/1024 of the supply.
     pub reference: u16,
-    /// The voltage of the servos' rail after the voltage divider, in 1/1024 of the supply.
+    /// The voltage of the servo rail after the voltage divider, in 1/1024 of the supply.
     pub rail: u16,
 }
 
@@ -53,8 +53,8 @@ pub struct Voltage {
 pub struct Supply {
     reading: Reading,
     level: Level,
-    /// The number of consecutive frames whose readings are at a worse level, or at a better level, than the current
-    /// one.
+    /// The number of consecutive frames whose readings are all at a worse level, or all at a better level, than the
+    /// current one.
     frames_at_other_level: u8,
     /// The level nearest to the current one in these frames.
     nearest_other_level: Level,
@@ -82,7 +82,7 @@ impl Voltage {
         }
     }
 
-    /// Returns the voltage of the servos' rail.
+    /// Returns the voltage of the servo rail.
     pub fn for_rail(reading: Reading, supplies: &Supplies) -> Self {
         Self {
             product: mul_unsigned(reading.rail, supplies.rail_reference_mv),
@@ -101,7 +101,7 @@ impl Voltage {
             return 0;
         }
         let divisor = mul_unsigned(self.counts, 10) as u16;
-        quotient(self.product, divisor).min(MAX_CENTIVOLTS)
+        saturating_div(self.product, divisor).min(MAX_CENTIVOLTS)
     }
 }
 
@@ -176,8 +176,8 @@ impl Supply {
         }
     }
 
-    /// The voltage of the chip's supply or of the servos' rail, whichever restricts the robot more.
-    pub fn worst_voltage(&self, supplies: &Supplies) -> Voltage {
+    /// The voltage of the chip's supply or of the servo rail, whichever restricts the robot more.
+    pub fn limiting_voltage(&self, supplies: &Supplies) -> Voltage {
         let board_voltage = Voltage::for_board(self.reading, supplies);
         let rail_voltage = Voltage::for_rail(self.reading, supplies);
         let is_worse =
@@ -203,7 +203,7 @@ impl Supply {
         } else {
             (self.level, 0)
         };
-        // A voltage between a threshold and that threshold raised by the hysteresis changes nothing.
+        // A voltage between a threshold and the same threshold raised by the hysteresis changes nothing.
         if new_level == self.level || (frames_needed == FRAMES_TO_IMPROVE && new_level > self.level)
         {
             self.frames_at_other_level = 0;

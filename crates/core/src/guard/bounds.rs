@@ -1,4 +1,4 @@
-//! Proved bounds of the difference between integer and floating-point results.
+//! Proved bounds on the difference between integer and floating-point results.
 //!
 //! Each bound is the sum of the largest effects of all roundings of a number, in the order of the roundings. Only the
 //! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares the sines at every angle.
@@ -279,7 +279,7 @@ impl EndErrors {
         rounded_bars: impl Into<RoundedBars>,
         angles: [f64; 2],
     ) -> Self {
-        let [left, right] = angles.map(Vector::direction);
+        let [left, right] = angles.map(Vector::from_angle);
         let tip = |crank: f64, direction: Vector| [crank * direction.x, crank * direction.y];
         let (left_tip, right_tip) = (
             tip(five_bar.left_crank_length, left),
@@ -402,7 +402,7 @@ pub fn slider_error(slider: &kinematics::Slider, rounded_slider: &Slider) -> f64
 }
 
 /// Returns the number of steps of a scale in a millimetre.
-fn steps_per_mm(scale: Scale) -> f64 {
+pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
     f64::from(1u32 << scale.bits)
 }
 

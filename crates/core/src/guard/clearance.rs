@@ -12,10 +12,10 @@ use lizard_avr::flash;
 
 use crate::guard::hazard::{Hazard, Margin};
 use crate::guard::trig::Direction;
+use crate::numbers::integer_math::isqrt;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
-use crate::numbers::root::isqrt;
 use crate::numbers::units::Sine;
 
 /// The number of margins of a pose.
@@ -81,7 +81,7 @@ impl Clearance {
             let mut crank =
                 Direction::from_angle(robot.servo_neutral_angle(servo).offset_by(pose.0[index]));
             // In the tail's own frame, see `Direction::in_tail_frame`.
-            if servo.is_rear() {
+            if servo.is_at_tail() {
                 crank.sin = -crank.sin;
             }
             cranks[index] = crank;
@@ -110,7 +110,7 @@ impl Clearance {
     }
 
     /// Returns the smallest of the ten margins.
-    pub fn smallest_margin(&self) -> Sine {
+    pub fn min_margin(&self) -> Sine {
         let mut min_margin = Sine(i16::MAX);
         for margin in &self.margins {
             min_margin = min_margin.min(*margin);

@@ -23,7 +23,7 @@ use lizard_avr::{mul, mul_unsigned};
 
 use crate::guard::trig::Direction;
 use crate::numbers::bars::Bars;
-use crate::numbers::couplers::{Couplers, Tables, TriangleShape};
+use crate::numbers::couplers::{CouplerTables, Couplers, TriangleShape};
 use crate::numbers::part::End;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
@@ -32,7 +32,7 @@ use crate::numbers::units::Sine;
 #[derive(Clone, Copy, Debug)]
 pub struct FiveBar<'a> {
     bars: Bars,
-    tables: Tables<'a>,
+    tables: CouplerTables<'a>,
 }
 
 /// The margins of an end's five-bar.
@@ -49,10 +49,10 @@ pub struct EndMargins {
 
 impl<'a> FiveBar<'a> {
     /// A linkage without bars, which never closes.
-    pub const NONE: Self = Self::new(Bars::NONE, Tables::NONE);
+    pub const NONE: Self = Self::new(Bars::NONE, CouplerTables::NONE);
 
     /// Creates a linkage from its bars and the tables of its couplers.
-    pub const fn new(bars: Bars, tables: Tables<'a>) -> Self {
+    pub const fn new(bars: Bars, tables: CouplerTables<'a>) -> Self {
         Self { bars, tables }
     }
 

@@ -45,7 +45,7 @@ mod tests {
 
     use super::*;
     use crate::numbers::units::Angle;
-    use crate::sample::{bounds, degrees, slider_in_steps, steps_per_mm};
+    use crate::sample::{bounds, slider_in_steps, steps_per_mm, to_degrees};
 
     /// Yields random sliders, in mm, of robots that hobby servos can move.
     fn any_slider() -> impl Strategy<Value = kinematics::Slider> {
@@ -78,20 +78,20 @@ mod tests {
             let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
             let [front, rear] = [front, rear].map(Angle);
             // Each crank is in the frame of its end, so the rear crank is in the tail's frame.
-            let length = if is_mirrored {
-                let [front, rear] = [front, rear].map(|angle| Direction::from_angle(angle).mirrored());
-                rounded_slider.mirrored().length_sq(&front, &rear)
+            let [front_crank, rear_crank] = [front, rear].map(Direction::from_angle);
+            let length_sq = if is_mirrored {
+                rounded_slider.mirrored().length_sq(&front_crank.mirrored(), &rear_crank.mirrored())
             } else {
-                rounded_slider.length_sq(&Direction::from_angle(front), &Direction::from_angle(rear))
+                rounded_slider.length_sq(&front_crank, &rear_crank)
             };
-            let (expected_side, turn_deg) = if is_mirrored {
+            let (side, turn_deg) = if is_mirrored {
                 (kinematics::Side::Right, -90.0)
             } else {
                 (kinematics::Side::Left, 90.0)
             };
-            prop_assert_eq!(expected_side.sign() * 90.0, turn_deg);
-            let pose = slider.forward(-degrees(rear) - turn_deg, degrees(front) + turn_deg).expect("the slider has a length");
-            let length_mm = f64::from(length).sqrt() / steps_per_mm(rounded_slider.scale);
+            prop_assert_eq!(side.sign() * 90.0, turn_deg);
+            let pose = slider.forward(-to_degrees(rear) - turn_deg, to_degrees(front) + turn_deg).expect("the slider has a length");
+            let length_mm = f64::from(length_sq).sqrt() / steps_per_mm(rounded_slider.scale);
             let max_error = bounds::slider_error(&slider, &rounded_slider);
             prop_assert!((length_mm - pose.d).abs() <= max_error, "{length_mm} mm for {} mm", pose.d);
         }

@@ -21,9 +21,9 @@ impl Direction {
     /// Returns the direction of an angle, read from the table.
     pub fn from_angle(angle: Angle) -> Self {
         let angle = angle.0;
-        let quarter_angle = angle & 0x3fff;
-        let rising_sine = first_quadrant_sine(quarter_angle);
-        let falling_sine = first_quadrant_sine(0x4000 - quarter_angle);
+        let angle_in_quadrant = angle & 0x3fff;
+        let rising_sine = first_quadrant_sine(angle_in_quadrant);
+        let falling_sine = first_quadrant_sine(0x4000 - angle_in_quadrant);
         let (sin, cos) = match angle >> 14 {
             0 => (rising_sine, falling_sine),
             1 => (falling_sine, -rising_sine),
@@ -55,25 +55,25 @@ impl Direction {
 /// The number of steps in the table.
 const STEP_COUNT: usize = 128;
 
-/// Returns the sine of an angle in the first quarter turn, 0..=0x4000.
-fn first_quadrant_sine(quarter_angle: u16) -> i16 {
-    let index = usize::from(quarter_angle >> 7);
+/// Returns the sine of an angle in the first quadrant, 0..=0x4000.
+fn first_quadrant_sine(angle_in_quadrant: u16) -> i16 {
+    let index = usize::from(angle_in_quadrant >> 7);
     let entry = QUARTER_WAVE_SINES.at(index).load();
     // At 0x4000, `at` returns the last entry.
     let next_entry = QUARTER_WAVE_SINES.at(index + 1).load();
     // A step is at most 402, which does not fit into a byte, so its two bytes are multiplied separately.
     let step = (next_entry - entry) as u16;
-    let fraction = (quarter_angle << 1) & 0xff;
+    let fraction = (angle_in_quadrant << 1) & 0xff;
     let rise = (step >> 8) * fraction + (((step & 0xff) * fraction + 0x80) >> 8);
     entry + rise as i16
 }
 
 flash! {
-    const QUARTER_WAVE_SINES: [i16; STEP_COUNT + 1] = quarter_wave();
+    const QUARTER_WAVE_SINES: [i16; STEP_COUNT + 1] = compute_quarter_wave();
 }
 
 /// Computes the table of a quarter wave at compile time, so that no float reaches the microcontroller.
-const fn quarter_wave() -> [i16; STEP_COUNT + 1] {
+const fn compute_quarter_wave() -> [i16; STEP_COUNT + 1] {
     let mut table = [0; STEP_COUNT + 1];
     let mut k = 0;
     while k < STEP_COUNT {
@@ -98,15 +98,15 @@ const fn quarter_wave() -> [i16; STEP_COUNT + 1] {
 mod tests {
     use super::*;
     use crate::numbers::units::Sine;
-    use crate::sample::{degrees, sine};
+    use crate::sample::{to_degrees, to_f64};
 
     #[test]
     fn sine_and_cosine_have_errors_of_at_most_4_5e_5_at_every_angle() {
         let (mut max_error, mut max_length_error) = (0.0f64, 0.0f64);
         for angle in (0..=u16::MAX).map(Angle) {
             let direction = Direction::from_angle(angle);
-            let components = [direction.sin, direction.cos].map(|q15| sine(Sine(q15)));
-            let (sin, cos) = degrees(angle).to_radians().sin_cos();
+            let components = [direction.sin, direction.cos].map(|q15| to_f64(Sine(q15)));
+            let (sin, cos) = to_degrees(angle).to_radians().sin_cos();
             max_error = max_error
                 .max((components[0] - sin).abs())
                 .max((components[1] - cos).abs());
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn quadrants_and_mirror_images_agree_to_the_bit() {
+    fn quadrants_and_mirror_images_agree_bit_for_bit() {
         for angle in 0..=u16::MAX {
             let direction = Direction::from_angle(Angle(angle));
             let rotated = Direction::from_angle(Angle(angle.wrapping_add(0x4000)));

@@ -7,7 +7,7 @@
 use lizard_avr::mul_unsigned;
 
 use crate::numbers::calibration::Calibration;
-use crate::numbers::root::quotient;
+use crate::numbers::integer_math::saturating_div;
 use crate::numbers::units::{ONE_Q14, PulseWidth, Sweep};
 
 /// The numbers of a servo that the user may set.
@@ -104,8 +104,8 @@ fn limit_to_pulses(servo: &Calibration, sweep: Sweep, [min_width, max_width]: [u
     } else {
         mul_unsigned(neutral_width - min_width, ONE_Q14 as u16) + HALF_Q14
     };
-    let steps = quotient(max_gain_multiple, servo.gain.unsigned_abs());
-    let magnitude = sweep.0.unsigned_abs().min(steps) as i16;
+    let max_steps = saturating_div(max_gain_multiple, servo.gain.unsigned_abs());
+    let magnitude = sweep.0.unsigned_abs().min(max_steps) as i16;
     Sweep(if sweep.0 < 0 {
         magnitude.wrapping_neg()
     } else {

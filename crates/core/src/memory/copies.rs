@@ -9,21 +9,21 @@
 //! | 64 | settings, second copy |
 //! | 128 | pose of the last `rest`: settings whose trims are the pose's sweeps |
 
-use crate::memory::record::{Address, CONTENT_BYTES, Memory, RecordState, RecordWrite};
+use crate::memory::record::{CONTENT_BYTES, Memory, RecordAddress, RecordState, RecordWrite};
 use crate::memory::settings::{SAVE_NUMBER_OFFSET, Settings};
 use crate::numbers::pose::Pose;
 use crate::numbers::robot::Robot;
 
 /// The addresses of the two copies of the settings.
-pub const COPY_ADDRESSES: [Address; 2] = [copy_address(0), copy_address(1)];
+pub const COPY_ADDRESSES: [RecordAddress; 2] = [copy_address(0), copy_address(1)];
 
 /// Returns the address of the first copy for an even number, of the second copy for an odd number.
-const fn copy_address(number: usize) -> Address {
-    Address((number as u16 & 1) * 64)
+const fn copy_address(number: usize) -> RecordAddress {
+    RecordAddress((number as u16 & 1) * 64)
 }
 
 /// The address of the rest pose.
-pub const REST_POSE_ADDRESS: Address = Address(128);
+pub const REST_POSE_ADDRESS: RecordAddress = RecordAddress(128);
 
 /// The state of the saved settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +55,7 @@ impl Copies {
     fn check<M: Memory>(memory: &M) -> Self {
         let states = [copy_address(0).check(memory), copy_address(1).check(memory)];
         let read_save_number =
-            |copy: usize| self::copy_address(copy).read_byte(memory, SAVE_NUMBER_OFFSET as u16);
+            |copy: usize| copy_address(copy).read_byte(memory, SAVE_NUMBER_OFFSET as u16);
         let latest_index = match states {
             [RecordState::Valid, RecordState::Valid] => {
                 usize::from(read_save_number(1).wrapping_sub(read_save_number(0)) < 0x80)
@@ -73,12 +73,12 @@ impl Copies {
         self.states[self.latest_index & 1] != RecordState::Valid
     }
 
-    fn latest_address(&self) -> Address {
+    fn latest_address(&self) -> RecordAddress {
         copy_address(self.latest_index)
     }
 }
 
-/// Reads the last saved settings into `settings`, and returns their state. Without a valid copy, `settings` do not
+/// Reads the last saved settings into `settings`, and returns their state. If there is no valid copy, `settings` do not
 /// change.
 #[inline(never)]
 pub fn read_latest<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> SavedState {
@@ -118,7 +118,7 @@ pub fn load<M: Memory>(robot: &Robot, memory: &M, settings: &mut Settings) -> Sa
 
 /// Starts writing the settings over the older of the two copies. Returns `None` if the newer copy already holds these
 /// settings.
-pub fn save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrite> {
+pub fn start_save<M: Memory>(settings: &mut Settings, memory: &M) -> Option<RecordWrite> {
     let copies = Copies::check(memory);
     if copies.has_no_valid_copy() {
         settings.set_save_number(1);

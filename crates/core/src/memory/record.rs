@@ -28,7 +28,7 @@ pub const CONTENT_BYTES: usize = 42;
 const _: () = assert!(CONTENT_BYTES.is_multiple_of(2));
 
 /// The content of a record.
-pub type Content = [u8; CONTENT_BYTES];
+pub type RecordContent = [u8; CONTENT_BYTES];
 
 /// The number of bytes in a record: the mark, the content and the CRC.
 pub const RECORD_BYTES: u16 = CONTENT_BYTES as u16 + 3;
@@ -41,7 +41,7 @@ pub const ERASED: u8 = 0xff;
 
 /// The address of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Address(pub u16);
+pub struct RecordAddress(pub u16);
 
 /// The state of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,7 @@ enum ByteState {
 /// A write or an invalidation of a record in progress, one byte at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RecordWrite {
-    address: Address,
+    address: RecordAddress,
     /// The current step: step 0 removes the mark, each of the next steps writes a byte, and the last step writes the
     /// mark.
     step: u8,
@@ -88,7 +88,7 @@ pub struct RecordWrite {
     byte_state: ByteState,
 }
 
-impl Address {
+impl RecordAddress {
     /// Checks the record's mark and CRC.
     #[inline(never)]
     pub fn check<M: Memory>(self, memory: &M) -> RecordState {
@@ -107,7 +107,7 @@ impl Address {
 
     /// Reads the content without checking the mark and the CRC.
     #[inline(never)]
-    pub fn read_content<M: Memory>(self, memory: &M, content: &mut Content) {
+    pub fn read_content<M: Memory>(self, memory: &M, content: &mut RecordContent) {
         let mut address = self.0;
         for byte in content {
             address += 1;
@@ -143,7 +143,7 @@ impl RecordWrite {
     /// Advances by at most one byte. Does not write a byte that the memory already has. `content` must be the same in
     /// every call.
     #[inline(never)]
-    pub fn advance<M: Memory>(&mut self, content: &Content, memory: &mut M) -> Progress {
+    pub fn advance<M: Memory>(&mut self, content: &RecordContent, memory: &mut M) -> Progress {
         if !memory.is_ready() {
             return Progress::InProgress;
         }
@@ -184,9 +184,9 @@ mod tests {
     use super::*;
     use crate::virtual_board::Eeprom;
 
-    const ADDRESS: Address = Address(64);
+    const ADDRESS: RecordAddress = RecordAddress(64);
 
-    fn any_content() -> impl Strategy<Value = Content> {
+    fn any_content() -> impl Strategy<Value = RecordContent> {
         any::<u64>().prop_map(|seed| {
             let mut state = seed;
             core::array::from_fn(|_| {
@@ -199,7 +199,7 @@ mod tests {
     }
 
     /// Writes a complete record.
-    fn write_record(eeprom: &mut Eeprom, content: &Content) -> Progress {
+    fn write_record(eeprom: &mut Eeprom, content: &RecordContent) -> Progress {
         let mut record_write = ADDRESS.start_write();
         for _ in 0..10_000 {
             match record_write.advance(content, eeprom) {
@@ -211,7 +211,7 @@ mod tests {
     }
 
     /// Reads a record's state, and its content even if the record is not valid.
-    fn read_record(eeprom: &Eeprom) -> (RecordState, Content) {
+    fn read_record(eeprom: &Eeprom) -> (RecordState, RecordContent) {
         let mut content = [0; CONTENT_BYTES];
         ADDRESS.read_content(eeprom, &mut content);
         (ADDRESS.check(eeprom), content)

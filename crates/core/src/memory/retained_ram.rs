@@ -130,7 +130,7 @@ pub fn store_rate<C: Cells>(cells: &C, rate: BaudRate) {
     cells.set(RATE_CELL, rate as u8);
 }
 
-/// Marks the program as hung; called by the watchdog's interrupt.
+/// Marks the program as hung; called by the interrupt handler of the watchdog.
 pub fn mark_hung<C: Cells>(cells: &C) {
     cells.set(STATE_CELL, HUNG);
 }

@@ -13,7 +13,7 @@
 //! | 40 | `deadman`, ms |
 
 use crate::memory::adjustment::Adjustment;
-use crate::memory::record::{CONTENT_BYTES, Content};
+use crate::memory::record::{CONTENT_BYTES, RecordContent};
 use crate::numbers::calibration::Calibration;
 use crate::numbers::gaits::GaitId;
 use crate::numbers::part::Servo;
@@ -43,11 +43,11 @@ pub enum Boot {
 /// The settings that `save` stores.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    bytes: Content,
+    bytes: RecordContent,
 }
 
 impl Settings {
-    /// The settings without a robot.
+    /// The settings if there is no robot.
     pub const NONE: Self = Self {
         bytes: [0; CONTENT_BYTES],
     };
@@ -102,17 +102,17 @@ impl Settings {
     }
 
     /// Creates settings from the bytes of a record.
-    pub const fn from_bytes(bytes: Content) -> Self {
+    pub const fn from_bytes(bytes: RecordContent) -> Self {
         Self { bytes }
     }
 
     /// The bytes of the record.
-    pub const fn bytes(&self) -> &Content {
+    pub const fn bytes(&self) -> &RecordContent {
         &self.bytes
     }
 
     /// The bytes of the record, mutable.
-    pub const fn bytes_mut(&mut self) -> &mut Content {
+    pub const fn bytes_mut(&mut self) -> &mut RecordContent {
         &mut self.bytes
     }
 
@@ -124,12 +124,7 @@ impl Settings {
             && self.get(HASH_OFFSET + 2) == (hash >> 16) as u16
     }
 
-    /// The save number, modulo 256.
-    pub const fn save_number(&self) -> u8 {
-        self.bytes[SAVE_NUMBER_OFFSET]
-    }
-
-    /// Sets the save number.
+    /// Sets the save number, modulo 256.
     pub const fn set_save_number(&mut self, number: u8) {
         self.bytes[SAVE_NUMBER_OFFSET] = number;
     }
@@ -180,12 +175,12 @@ impl Settings {
         self.put(BOOT_OFFSET, saved_key);
     }
 
-    /// The time without a command after which a gait ends, ms; 0 for never.
+    /// The time without a command after which a gait ends, ms; 0 if it never ends.
     pub fn deadman_ms(&self) -> u16 {
         self.get(DEADMAN_OFFSET)
     }
 
-    /// Sets the time without a command after which a gait ends, ms; 0 for never.
+    /// Sets the time without a command after which a gait ends, ms; 0 if it never ends.
     pub fn set_deadman_ms(&mut self, ms: u16) {
         self.put(DEADMAN_OFFSET, ms);
     }

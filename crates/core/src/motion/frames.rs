@@ -27,9 +27,9 @@
 //! A new calibration changes the pulses of a pose. In every state, the pose then stays the same while the pulses
 //! settle, that is, change to their new widths at the slew limit. Then the motion accelerates again from a pace of 0.
 //!
-//! Invariants: every pose that leaves [`Motion::tick`] has passed the guard. An unsafe pose is never sent; instead the
-//! last safe pose is held, and the hazard is stored for the console. The 50 Hz call of [`Motion::tick`] is the only
-//! clock, so the pace does not depend on the processor's load.
+//! Invariants: every pose that leaves [`Motion::advance_frame`] has passed the guard. An unsafe pose is never sent;
+//! instead the last safe pose is held, and the hazard is stored for the console. The 50 Hz call of
+//! [`Motion::advance_frame`] is the only clock, so the pace does not depend on the processor's load.
 
 use lizard_avr::Region;
 
@@ -49,7 +49,7 @@ use crate::numbers::section::SectionError;
 use count::CycleCount;
 
 mod count;
-mod report;
+mod getters;
 mod resume;
 
 /// Frames from the wake-up of one servo to the wake-up of the next: 0.1 s, so that the supply does not drop.
@@ -92,14 +92,14 @@ impl Motion {
     pub fn new(robot: Robot<'static>) -> Self {
         let mut motion = Self::unstarted(robot);
         motion.speed_percent = FULL_SPEED_PERCENT;
-        motion.begin();
+        motion.start_standing();
         for servo in Servo::all() {
             motion.calibrate(servo, motion.robot.servo_calibration(servo));
         }
         motion
     }
 
-    /// Creates a motion that has not begun. [`Motion::load_robot`] or [`Motion::begin`] must follow, then
+    /// Creates a motion that has not begun. [`Motion::load_robot`] or [`Motion::start_standing`] must follow, then
     /// [`Motion::calibrate`] for every servo. With [`Robot::NONE`] all bits of the motion are zero, so it requires no
     /// initial value in flash.
     pub const fn unstarted(robot: Robot<'static>) -> Self {
@@ -134,7 +134,7 @@ impl Motion {
     }
 
     /// Wakes the servos; then the robot stands.
-    pub fn begin(&mut self) {
+    pub fn start_standing(&mut self) {
         self.servo_state.is_resting = false;
         self.state = State::cycling(&self.robot, GaitId::STAND);
     }
@@ -257,8 +257,8 @@ impl Motion {
         self.is_slow = is_slow;
     }
 
-    /// Computes the pulses of the next frame.
-    pub fn tick(&mut self) -> Pulses {
+    /// Advances the motion by a frame, and returns the pulses of that frame.
+    pub fn advance_frame(&mut self) -> Pulses {
         self.frame_count = self.frame_count.wrapping_add(1);
         self.has_come_to_standstill = false;
         let mut pulses = Pulses::default();
@@ -357,7 +357,7 @@ impl Motion {
         self.next_target = None;
     }
 
-    // Not inlined, because in `tick` its registers would cost more than the call.
+    // Not inlined, because in `advance_frame` its registers would cost more than the call.
     #[inline(never)]
     fn advance_motion(&mut self) {
         self.count_cycles();

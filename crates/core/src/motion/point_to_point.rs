@@ -30,7 +30,7 @@ pub struct PointToPointMove {
 impl PointToPointMove {
     /// Creates a move between two poses.
     pub fn new(from: &Pose, to: &Pose, slew: Slew) -> Self {
-        let distance = from.largest_turn_to(to);
+        let distance = from.max_turn_to(to);
         let frames = (mul_unsigned(distance, slew.frames_per_distance) >> 16) as u16 + 1;
         Self {
             from: *from,
@@ -197,7 +197,7 @@ mod tests {
             for pace in paces {
                 path.advance(pace);
                 let current_pose = path.pose();
-                prop_assert!(last_pose.largest_turn_to(&current_pose) <= slew.per_frame);
+                prop_assert!(last_pose.max_turn_to(&current_pose) <= slew.per_frame);
                 for n in 0..4 {
                     let (low, high) = (from[n].min(to[n]), from[n].max(to[n]));
                     let allowed_range = i32::from(low) - 1..=i32::from(high) + 1;

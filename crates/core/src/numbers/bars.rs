@@ -91,9 +91,4 @@ impl Bars {
     pub const fn scale(&self) -> Scale {
         self.scale
     }
-
-    /// The lengths of the couplers.
-    pub const fn couplers(&self) -> CouplerLengths {
-        self.couplers
-    }
 }

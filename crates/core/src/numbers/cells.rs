@@ -27,8 +27,8 @@ flash! {
 /// The map of the certified cells of a pair of servos, with rows in a table that several maps share. In a cell, every
 /// condition of the guard that depends only on these two servos holds.
 #[derive(Clone, Copy)]
-pub struct Cells<'a> {
-    /// The row number of the map's first row, see [`Cells::from_rows`].
+pub struct CellMap<'a> {
+    /// The row number of the map's first row, see [`CellMap::from_rows`].
     first_row: i8,
     /// The index of the map's first row in `rows`.
     start: u16,
@@ -38,12 +38,12 @@ pub struct Cells<'a> {
     rows: Flash<'a, [[i8; 2]]>,
 }
 
-impl Cells<'static> {
+impl CellMap<'static> {
     /// A map without cells, with which the guard measures every pose.
     pub const NONE: Self = Self::from_rows(0, 0, 0, NO_ROWS.as_slice());
 }
 
-impl<'a> Cells<'a> {
+impl<'a> CellMap<'a> {
     /// Creates the map whose `row_count` rows begin at index `start` of `rows`. The rows have consecutive row numbers
     /// from `first_row` on, which wrap around after a turn. Each row is stored as its first and its last column number,
     /// both inclusive; the row is empty if the first number is greater than the last. A row number is a sweep divided
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// The reference implementation of [`Cells::contains`], with divisions and without a shortcut.
+    /// The reference implementation of [`CellMap::contains`], with divisions and without a shortcut.
     fn contains_by_division(first_row: i8, rows: &[[i8; 2]], row: i16, column: i16) -> bool {
         let row = f64::from(row).div_euclid(256.0) as i32;
         // A turn has 256 rows; the first row follows the last.
@@ -133,9 +133,9 @@ mod tests {
         i16::MAX,
     ];
 
-    /// Checks that [`Cells::contains`] matches its reference at every sweep of the row's servo and at all [`COLUMNS`].
+    /// Checks that [`CellMap::contains`] matches its reference at every sweep of the row servo and at all [`COLUMNS`].
     fn assert_matches_reference(first_row: i8, rows: &[[i8; 2]]) {
-        let cells = Cells::new(first_row, Flash::from(rows));
+        let cells = CellMap::new(first_row, Flash::from(rows));
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
                 assert_eq!(
@@ -169,7 +169,7 @@ mod tests {
     fn a_map_without_rows_contains_nothing() {
         for row in i16::MIN..=i16::MAX {
             for column in COLUMNS {
-                assert!(!Cells::NONE.contains(Sweep(row), Sweep(column)));
+                assert!(!CellMap::NONE.contains(Sweep(row), Sweep(column)));
             }
         }
         assert_matches_reference(-5, &[]);
@@ -186,7 +186,7 @@ mod tests {
             let rows = Flash::from(rows.as_slice());
             let starts = [0, maps[0].len() as u16];
             for map in 0..2 {
-                let cells = Cells::from_rows(first_rows[map], starts[map], maps[map].len() as u8, rows);
+                let cells = CellMap::from_rows(first_rows[map], starts[map], maps[map].len() as u8, rows);
                 for [row, column] in &pairs {
                     prop_assert_eq!(
                         cells.contains(Sweep(*row), Sweep(*column)),
@@ -202,7 +202,7 @@ mod tests {
             rows in prop::collection::vec(any::<[i8; 2]>(), 0..256),
             pairs in prop::collection::vec(any::<[i16; 2]>(), 1000),
         ) {
-            let cells = Cells::new(first_row, Flash::from(rows.as_slice()));
+            let cells = CellMap::new(first_row, Flash::from(rows.as_slice()));
             for [row, column] in pairs {
                 prop_assert_eq!(
                     cells.contains(Sweep(row), Sweep(column)),

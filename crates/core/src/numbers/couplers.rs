@@ -23,20 +23,20 @@ use crate::numbers::curve::{Curve, OCTAVE_COUNT, Table, argument_at};
 
 /// The tables of a pair of couplers, Q10; `None` in place of a table that the robot does not require.
 #[derive(Clone, Copy, Debug)]
-pub struct Tables<'a> {
-    /// The rise over `s`, made by [`rise_table`].
+pub struct CouplerTables<'a> {
+    /// The rise over `s`, made by [`compute_rise_table`].
     pub rise: Option<Flash<'a, Table>>,
-    /// The rise over `R - s`, made by [`stretched_rise_table`], for a five-bar whose crank tips can be so far apart
-    /// that [`Couplers::is_near_stretched`] is true.
+    /// The rise over `R - s`, made by [`compute_stretched_rise_table`], for a five-bar whose crank tips can be so far
+    /// apart that [`Couplers::is_near_stretched`] is true.
     pub stretched_rise: Option<Flash<'a, Table>>,
-    /// The rise over `s - N`, made by [`folded_rise_table`], for couplers with which [`Couplers::needs_folded_table`]
-    /// is true.
+    /// The rise over `s - N`, made by [`compute_folded_rise_table`], for couplers with which
+    /// [`Couplers::needs_folded_table`] is true.
     pub folded_rise: Option<Flash<'a, Table>>,
-    /// The magnitude of the skew over `s`, made by [`skew_table`], for unequal couplers.
+    /// The magnitude of the skew over `s`, made by [`compute_skew_table`], for unequal couplers.
     pub skew: Option<Flash<'a, Table>>,
 }
 
-impl Tables<'_> {
+impl CouplerTables<'_> {
     /// No tables: every shape is unknown.
     pub const NONE: Self = Self {
         rise: None,
@@ -76,29 +76,15 @@ impl CouplerLengths {
 
     /// Creates the lengths of a left and a right coupler, in steps.
     pub const fn new(left: i16, right: i16) -> Self {
+        let [reach_sq, folded_sq] = compute_limits_sq(left, right);
         Self {
             left,
             right,
-            reach_sq: reach_sq(left, right),
-            folded_sq: folded_sq(left, right),
-            reach_zeros: reach_sq(left, right).leading_zeros() as u16,
-            folded_zeros: folded_sq(left, right).leading_zeros() as u16,
+            reach_sq,
+            folded_sq,
+            reach_zeros: reach_sq.leading_zeros() as u16,
+            folded_zeros: folded_sq.leading_zeros() as u16,
         }
-    }
-
-    /// The length of the left coupler, in steps.
-    pub const fn left(&self) -> i16 {
-        self.left
-    }
-
-    /// The length of the right coupler, in steps.
-    pub const fn right(&self) -> i16 {
-        self.right
-    }
-
-    /// Implements [`Couplers::needs_folded_table`].
-    pub const fn needs_folded_table(&self) -> bool {
-        2 * self.folded_sq > self.reach_sq >> OCTAVE_COUNT
     }
 }
 
@@ -106,7 +92,7 @@ impl CouplerLengths {
 #[derive(Clone, Copy)]
 pub struct Couplers<'a> {
     lengths: CouplerLengths,
-    tables: Tables<'a>,
+    tables: CouplerTables<'a>,
 }
 
 /// The shape of the couplers' triangle at a distance between the crank tips, Q10.
@@ -120,7 +106,7 @@ pub struct TriangleShape {
 
 impl<'a> Couplers<'a> {
     /// Creates couplers from their lengths and tables. A shape that requires a missing table is unknown.
-    pub const fn new(lengths: CouplerLengths, tables: Tables<'a>) -> Self {
+    pub const fn new(lengths: CouplerLengths, tables: CouplerTables<'a>) -> Self {
         Self { lengths, tables }
     }
 
@@ -128,13 +114,15 @@ impl<'a> Couplers<'a> {
     /// then contains the rise from `2 N` down to the folded position, `s = N`. For other couplers,
     /// [`Couplers::shape_at`] returns `None` near the folded position.
     pub const fn needs_folded_table(left: i16, right: i16) -> bool {
-        CouplerLengths::new(left, right).needs_folded_table()
+        let [reach_sq, folded_sq] = compute_limits_sq(left, right);
+        2 * folded_sq > reach_sq >> OCTAVE_COUNT
     }
 
     /// True if the squared distance between the crank tips, `tips_sq`, is above three quarters of `R`. There the rise
     /// is read from the table for stretched couplers.
     pub const fn is_near_stretched(left: i16, right: i16, tips_sq: u32) -> bool {
-        is_near_stretched(reach_sq(left, right), tips_sq)
+        let [reach_sq, _] = compute_limits_sq(left, right);
+        is_near_stretched(reach_sq, tips_sq)
     }
 
     /// Returns the shape at a squared distance between the crank tips, in units of four squared steps of the bars.
@@ -182,38 +170,38 @@ const fn is_near_stretched(reach_sq: u32, tips_sq: u32) -> bool {
 }
 
 /// Computes the table of the rise over `s`, for couplers of these lengths; a host calls it.
-pub fn rise_table(left: i16, right: i16) -> Table {
-    let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
-    let peak_sq = peak_sq(left, right).into();
+pub fn compute_rise_table(left: i16, right: i16) -> Table {
+    let [reach_sq, folded_sq] = compute_limits_sq(left, right);
+    let peak_sq = compute_peak_sq(left, right).into();
     // Rounded down, because a straight line between two points of this curve lies above it.
     core::array::from_fn(|index| {
         let tips_sq = argument_at(reach_sq, index).max(peak_sq);
-        rise_q10(reach_sq, folded_sq, tips_sq, 0)
+        compute_rise_q10(reach_sq, folded_sq, tips_sq, 0)
     })
 }
 
 /// Computes the table of the rise over `R - s`; a host calls it.
-pub fn stretched_rise_table(left: i16, right: i16) -> Table {
-    let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
+pub fn compute_stretched_rise_table(left: i16, right: i16) -> Table {
+    let [reach_sq, folded_sq] = compute_limits_sq(left, right);
     core::array::from_fn(|index| {
         let shortfall_sq = argument_at(reach_sq / 4, index);
         let tips_sq = u64::from(reach_sq).saturating_sub(shortfall_sq);
-        rise_q10(reach_sq, folded_sq, tips_sq, 1)
+        compute_rise_q10(reach_sq, folded_sq, tips_sq, 1)
     })
 }
 
 /// Computes the table of the rise over `s - N`; a host calls it.
-pub fn folded_rise_table(left: i16, right: i16) -> Table {
-    let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
+pub fn compute_folded_rise_table(left: i16, right: i16) -> Table {
+    let [reach_sq, folded_sq] = compute_limits_sq(left, right);
     core::array::from_fn(|index| {
         let tips_sq = u64::from(folded_sq) + argument_at(folded_sq, index);
-        rise_q10(reach_sq, folded_sq, tips_sq, 1)
+        compute_rise_q10(reach_sq, folded_sq, tips_sq, 1)
     })
 }
 
 /// Computes the table of the skew's magnitude over `s`; a host calls it.
-pub fn skew_table(left: i16, right: i16) -> Table {
-    let reach_sq = reach_sq(left, right);
+pub fn compute_skew_table(left: i16, right: i16) -> Table {
+    let [reach_sq, _] = compute_limits_sq(left, right);
     // |a^2 - b^2| in the unit of `s`, four squared steps of the bars.
     let difference = (i64::from(left).pow(2) - i64::from(right).pow(2)).unsigned_abs() / 4;
     core::array::from_fn(|index| {
@@ -225,7 +213,7 @@ pub fn skew_table(left: i16, right: i16) -> Table {
 
 /// Computes the rise, `sqrt((R - s)(s - N)) / s`, Q10, rounded to nearest if `rounding` is 1, or down if it is 0.
 /// Returns 0 unless `s` is between `N` and `R`.
-fn rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 {
+fn compute_rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 {
     let (reach_sq, folded_sq) = (u64::from(reach_sq), u64::from(folded_sq));
     if tips_sq >= reach_sq || tips_sq <= folded_sq {
         return 0;
@@ -237,22 +225,18 @@ fn rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128) -> i16 
     rise.min(0x7fff) as i16
 }
 
-/// Computes `R` in the unit of `s`, four squared steps of the bars.
-const fn reach_sq(left: i16, right: i16) -> u32 {
+/// Computes the limits `R` and `N` in the unit of `s`, four squared steps of the bars.
+const fn compute_limits_sq(left: i16, right: i16) -> [u32; 2] {
     let sum = left as u32 + right as u32;
     // A quarter of the squared sum, rounded down; for equal couplers exactly the squared length of a coupler.
-    sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 }
-}
-
-/// Computes `N` in the unit of `s`.
-const fn folded_sq(left: i16, right: i16) -> u32 {
+    let reach_sq = sum / 2 * (sum / 2) + if sum % 2 == 1 { sum / 2 } else { 0 };
     let difference = left.abs_diff(right) as u32;
-    difference * difference / 4
+    [reach_sq, difference * difference / 4]
 }
 
 /// Computes the `s` at which the rise is largest.
-fn peak_sq(left: i16, right: i16) -> u32 {
-    let (reach_sq, folded_sq) = (reach_sq(left, right) as u64, folded_sq(left, right) as u64);
+fn compute_peak_sq(left: i16, right: i16) -> u32 {
+    let [reach_sq, folded_sq] = compute_limits_sq(left, right).map(u64::from);
     (2 * reach_sq * folded_sq / (reach_sq + folded_sq)) as u32
 }
 

@@ -23,25 +23,25 @@ pub type Table = [i16; ENTRY_COUNT];
 #[derive(Clone, Copy)]
 pub struct Curve<'a> {
     table: Flash<'a, Table>,
-    /// The number of leading zeros of an argument in the lowest octave.
-    lowest_octave_zeros: u8,
+    /// The number of leading zeros of an argument in the first octave.
+    first_octave_zeros: u8,
 }
 
 impl<'a> Curve<'a> {
-    /// Creates the function in `table`, whose largest argument is `max_argument`.
+    /// Creates the curve of the function in `table`, which is defined up to `max_argument`.
     pub const fn new(table: Flash<'a, Table>, max_argument: u32) -> Self {
         Self::with_leading_zeros(table, max_argument.leading_zeros() as u16)
     }
 
-    /// Creates the function in `table`, whose largest argument has `zeros` leading zeros.
+    /// Creates the curve of the function in `table`, which is defined up to an argument with `zeros` leading zeros.
     pub const fn with_leading_zeros(table: Flash<'a, Table>, zeros: u16) -> Self {
         Self {
             table,
-            lowest_octave_zeros: (zeros + OCTAVE_COUNT as u16) as u8,
+            first_octave_zeros: (zeros + OCTAVE_COUNT as u16) as u8,
         }
     }
 
-    /// Returns the value of a function that never rises, rounded up. Returns `None` below the table's first octave,
+    /// Returns the value of a non-increasing function, rounded up. Returns `None` below the table's first octave,
     /// which begins at 1/1024 of the start of the largest argument's octave.
     pub fn at_rounded_up(&self, argument: u32) -> Option<i16> {
         self.interpolate(argument, 0)
@@ -53,12 +53,12 @@ impl<'a> Curve<'a> {
         self.interpolate(argument, 0x8000)
     }
 
-    /// Interpolates the value. The magnitude of the difference between the value and the entry below the argument is
-    /// computed with 16 more bits, which are dropped after adding `rounding`.
+    /// Interpolates the value. The step from the entry below the argument to the value is computed with 16 fractional
+    /// bits; `rounding` is added before they are dropped.
     #[inline(never)]
     fn interpolate(&self, argument: u32, rounding: u16) -> Option<i16> {
         let mut mantissa = argument;
-        let mut octave = self.lowest_octave_zeros;
+        let mut octave = self.first_octave_zeros;
         while mantissa < 1 << 31 {
             mantissa <<= 1;
             octave = octave.checked_sub(1)?;
@@ -82,26 +82,21 @@ impl<'a> Curve<'a> {
 /// Returns the argument of the table entry at `index`, for a largest argument of `max_argument`. The result is rounded
 /// down, but is exact if `max_argument` is at least 16384.
 pub const fn argument_at(max_argument: u32, index: usize) -> u64 {
-    let (first_zeros, position_zeros) = (
-        first_octave_zeros(max_argument) as usize,
-        31 + index / STEPS_PER_OCTAVE,
-    );
-    if position_zeros < first_zeros {
-        return 0;
+    let first_octave_zeros = (max_argument.leading_zeros() + OCTAVE_COUNT) as usize;
+    let octave = index / STEPS_PER_OCTAVE;
+    match (31 + octave).checked_sub(first_octave_zeros) {
+        Some(leading_bit) => {
+            ((STEPS_PER_OCTAVE + index % STEPS_PER_OCTAVE) as u64) << leading_bit >> 4
+        }
+        None => 0,
     }
-    ((STEPS_PER_OCTAVE + index % STEPS_PER_OCTAVE) as u64) << (position_zeros - first_zeros) >> 4
-}
-
-/// Returns the number of leading zeros of an argument in the first octave.
-const fn first_octave_zeros(max_argument: u32) -> u8 {
-    (max_argument.leading_zeros() + OCTAVE_COUNT) as u8
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use lizard_avr::Flash;
     use proptest::prelude::*;
+
+    use super::*;
 
     /// Makes the table of `function`, whose argument is a fraction of the largest argument.
     fn make_table(max_argument: u32, function: impl Fn(f64) -> f64) -> Table {
@@ -196,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn arguments_never_decrease_from_entry_to_entry() {
+    fn entry_arguments_never_decrease_and_are_at_most_twice_the_largest() {
         for max_argument in [0, 1, 100, 1023, 1024] {
             for index in 1..ENTRY_COUNT {
                 let (previous_argument, current_argument) = (

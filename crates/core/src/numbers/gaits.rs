@@ -21,7 +21,7 @@ pub type Wave = [i16; SAMPLES_PER_WAVE];
 /// A gait's name, which is also its console command, read byte by byte from flash: one or more words separated by
 /// single blanks.
 #[derive(Clone, Copy)]
-pub struct Name<'a> {
+pub struct GaitName<'a> {
     names: Flash<'a, [u8]>,
     /// The index of the next byte in `names`.
     position: u16,
@@ -29,7 +29,7 @@ pub struct Name<'a> {
     remaining: u8,
 }
 
-impl<'a> Name<'a> {
+impl<'a> GaitName<'a> {
     /// Creates the name of `length` bytes that begins at index `start` of `names`, the names of all gaits.
     pub fn new(start: u16, length: u16, names: Flash<'a, [u8]>) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl<'a> Name<'a> {
     }
 }
 
-impl Iterator for Name<'_> {
+impl Iterator for GaitName<'_> {
     type Item = u8;
 
     fn next(&mut self) -> Option<u8> {
@@ -196,11 +196,11 @@ impl Gait {
     /// Creates a routine without a name. `first_step` is the index of its first step among the steps of all routines;
     /// in a section, the address of this step replaces the index.
     #[cfg(any(test, feature = "host"))]
-    pub const fn routine(first_step: u16, steps: u16, rounds: u16) -> Self {
+    pub const fn routine(first_step: u16, step_count: u16, round_count: u16) -> Self {
         let mut routine = Self::STILL;
         routine.channels[0].offset = first_step;
-        routine.channels[1].offset = steps;
-        routine.channels[2].offset = rounds;
+        routine.channels[1].offset = step_count;
+        routine.channels[2].offset = round_count;
         routine
     }
 

@@ -9,9 +9,9 @@
 //! use lizard_core::numbers::mark::{ADDRESS, Mark};
 //!
 //! let mut flash = vec![0xff; 128];
-//! assert_eq!(Mark::find(&flash), None);
+//! assert_eq!(Mark::read(&flash), None);
 //! flash[ADDRESS..ADDRESS + 10].copy_from_slice(&Mark::THIS_FIRMWARE.bytes());
-//! assert_eq!(Mark::find(&flash), Some(Mark::THIS_FIRMWARE));
+//! assert_eq!(Mark::read(&flash), Some(Mark::THIS_FIRMWARE));
 //! ```
 
 use crate::numbers::section::{FORMAT, MAGIC};
@@ -50,8 +50,8 @@ impl Mark {
         [a, b, c, d, low, high, major, minor, patch, 0]
     }
 
-    /// Finds the mark in the bytes of flash from address 0 on; returns `None` if there is no mark.
-    pub fn find(flash: &[u8]) -> Option<Self> {
+    /// Reads the mark from `flash`, whose bytes begin at address 0; returns `None` if there is no mark.
+    pub fn read(flash: &[u8]) -> Option<Self> {
         let bytes = flash.get(ADDRESS..ADDRESS + LENGTH)?;
         let (magic, fields) = bytes.split_first_chunk()?;
         let &[low, high, major, minor, patch, 0] = fields else {
@@ -94,12 +94,12 @@ mod tests {
                 let mut flash = flash;
                 flash[address] ^= 1 << bit;
                 assert_ne!(
-                    Mark::find(&flash),
+                    Mark::read(&flash),
                     Some(Mark::THIS_FIRMWARE),
                     "bit {bit} at {address}"
                 );
             }
         }
-        assert_eq!(Mark::find(&flash[..ADDRESS + LENGTH - 1]), None);
+        assert_eq!(Mark::read(&flash[..ADDRESS + LENGTH - 1]), None);
     }
 }

@@ -1,4 +1,5 @@
-//! The numbers of a robot: units, types without behaviour, and the section of flash that contains the numbers.
+//! The numbers of a robot: units, integer arithmetic, types without behaviour, and the section of flash that contains
+//! the numbers.
 //!
 //! This is the lowest module of the crate: every other module uses it, but it uses no other module.
 
@@ -9,13 +10,13 @@ pub(crate) mod checksum;
 pub mod couplers;
 pub mod curve;
 pub mod gaits;
+pub mod integer_math;
 pub mod limits;
 pub mod mark;
 pub mod part;
 pub mod pose;
 pub mod rate;
 pub mod robot;
-pub mod root;
 pub mod section;
 pub mod slew;
 pub mod slider;

@@ -4,9 +4,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Servo {
-    /// Front left, theta1; its leg is LF (left fore).
+    /// Front left, theta1; its leg is LF (left front).
     A1,
-    /// Front right, theta4; its leg is RF (right fore).
+    /// Front right, theta4; its leg is RF (right front).
     A2,
     /// Rear right, theta8; its leg is RH (right hind).
     A3,
@@ -52,7 +52,7 @@ impl Servo {
     }
 
     /// True for a servo at the tail.
-    pub const fn is_rear(self) -> bool {
+    pub const fn is_at_tail(self) -> bool {
         matches!(self, Self::A3 | Self::A4)
     }
 

@@ -57,7 +57,7 @@ impl Pose {
     }
 
     /// Computes the largest turn of any servo between this pose and `other`, 1/65536 turn.
-    pub fn largest_turn_to(&self, other: &Self) -> u16 {
+    pub fn max_turn_to(&self, other: &Self) -> u16 {
         let mut max_turn = 0;
         for (from, to) in self.0.iter().zip(&other.0) {
             max_turn = max_turn.max(from.0.abs_diff(to.0));
@@ -118,8 +118,8 @@ mod tests {
         ) {
             let turns = (0..4).map(|index| from[index].abs_diff(to[index]));
             let [from, to] = [from, to].map(|sweeps| Pose(sweeps.map(Sweep)));
-            prop_assert_eq!(Some(from.largest_turn_to(&to)), turns.max());
-            prop_assert_eq!(from.largest_turn_to(&to), to.largest_turn_to(&from));
+            prop_assert_eq!(Some(from.max_turn_to(&to)), turns.max());
+            prop_assert_eq!(from.max_turn_to(&to), to.max_turn_to(&from));
         }
     }
 }

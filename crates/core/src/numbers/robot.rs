@@ -10,16 +10,15 @@ use core::mem::offset_of;
 use lizard_avr::{Flash, Pod, Region};
 
 use crate::numbers::bars::Bars;
-use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::SweepRange;
-use crate::numbers::cells::Cells;
-use crate::numbers::couplers::Tables;
-use crate::numbers::gaits::{Gait, GaitId, Name, Step, Wave};
+use crate::numbers::calibration::{Calibration, SweepRange};
+use crate::numbers::cells::CellMap;
+use crate::numbers::couplers::CouplerTables;
+use crate::numbers::gaits::{Gait, GaitId, GaitName, Step, Wave};
 use crate::numbers::limits::Limits;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
 use crate::numbers::section::{
-    self, CURVE_COUNT, Header, MapHeader, NUMBERS_OFFSET, Numbers, Part, PartRange,
+    self, CURVE_COUNT, Header, MapHeader, NUMBERS_OFFSET, Numbers, PartRange, SectionPart,
 };
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
@@ -99,12 +98,12 @@ impl<'a> Robot<'a> {
         self.section.read(offset_of!(Header, servo_hash) as u16)
     }
 
-    /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    /// The Arduino numbers of the servo pins, A1 to A4; 14 to 19 are A0 to A5.
     pub fn pins(&self) -> [u8; 4] {
         self.read_number(offset_of!(Numbers, pins))
     }
 
-    /// The Arduino number of the pin where the servos' rail is measured, 14 to 19; `None` if the rail is not measured.
+    /// The Arduino number of the pin where the servo rail is measured, 14 to 19; `None` if the rail is not measured.
     pub fn rail_pin(&self) -> Option<u8> {
         match self.read_number(offset_of!(Numbers, rail_pin)) {
             0 => None,
@@ -123,7 +122,7 @@ impl<'a> Robot<'a> {
     }
 
     /// The tables of an end's couplers.
-    pub(crate) fn tables(&self, end: End) -> Tables<'a> {
+    pub(crate) fn tables(&self, end: End) -> CouplerTables<'a> {
         let curves_offset =
             offset_of!(Numbers, curves) + end as usize * size_of::<[u16; CURVE_COUNT]>();
         let read_table =
@@ -131,7 +130,7 @@ impl<'a> Robot<'a> {
                 0 => None,
                 address => self.section.values(address, 1).get(0),
             };
-        Tables {
+        CouplerTables {
             rise: read_table(0),
             stretched_rise: read_table(1),
             folded_rise: read_table(2),
@@ -194,32 +193,32 @@ impl<'a> Robot<'a> {
     /// The number of gaits and routines; the first gait is `stand`, which holds the neutral pose.
     pub fn gait_count(&self) -> usize {
         match self.is_present {
-            true => usize::from(self.part_range(Part::Gaits).count),
+            true => usize::from(self.part_range(SectionPart::Gaits).count),
             false => 0,
         }
     }
 
     /// The address of a part and the number of its elements.
-    pub(crate) fn part_range(&self, part: Part) -> PartRange {
+    pub(crate) fn part_range(&self, part: SectionPart) -> PartRange {
         self.read_number(offset_of!(Numbers, parts) + part as usize * size_of::<PartRange>())
     }
 
     /// Returns all elements of a part.
     #[inline(always)]
-    fn part_elements<T: Pod>(&self, part: Part) -> Flash<'a, [T]> {
+    fn part_elements<T: Pod>(&self, part: SectionPart) -> Flash<'a, [T]> {
         let PartRange { address, count } = self.part_range(part);
         self.section.values(address, count)
     }
 
     /// The waveforms of all gaits.
     pub fn waves(&self) -> Flash<'a, [Wave]> {
-        self.part_elements(Part::Waves)
+        self.part_elements(SectionPart::Waves)
     }
 
     /// Reads the record of a gait or a routine.
     #[inline(never)]
     pub fn gait(&self, id: GaitId) -> Gait {
-        self.part_elements(Part::Gaits)
+        self.part_elements(SectionPart::Gaits)
             .get(id.index())
             .map_or(Gait::STILL, Flash::load)
     }
@@ -233,20 +232,20 @@ impl<'a> Robot<'a> {
 
     /// The name of a gait or a routine.
     #[inline(never)]
-    pub fn gait_name(&self, id: GaitId) -> Name<'a> {
+    pub fn gait_name(&self, id: GaitId) -> GaitName<'a> {
         // Reads only these fields instead of the entire record, because a line may be compared with every name.
-        let gait_address =
-            self.part_range(Part::Gaits).address + id.index() as u16 * size_of::<Gait>() as u16;
+        let gait_offset = id.index() as u16 * size_of::<Gait>() as u16;
+        let gait_address = self.part_range(SectionPart::Gaits).address + gait_offset;
         let read_field = |field: usize| self.section.read(gait_address + field as u16);
         let start = read_field(offset_of!(Gait, name_start));
         let length = read_field(offset_of!(Gait, name_length));
-        Name::new(start, length, self.part_elements(Part::Names))
+        GaitName::new(start, length, self.part_elements(SectionPart::Names))
     }
 
     /// True if a pose is in certified cells, in which the guard accepts every pose. The head, the tail and both sides
     /// have a map each, and the pose must be in a cell of all four maps. A pose outside the cells may be safe, too.
     pub fn is_certified(&self, pose: &Pose) -> bool {
-        let rows = self.part_elements::<[i8; 2]>(Part::Rows);
+        let rows = self.part_elements::<[i8; 2]>(SectionPart::Rows);
         let mut start = 0;
         let mut pair_index = 0;
         while pair_index < 4 {
@@ -257,7 +256,7 @@ impl<'a> Robot<'a> {
             let [row, column] = SERVO_PAIRS.at(pair_index).load();
             let row = pose.0[usize::from(row & 3)];
             let column = pose.0[usize::from(column & 3)];
-            if !Cells::from_rows(first_row, start, row_count, rows).contains(row, column) {
+            if !CellMap::from_rows(first_row, start, row_count, rows).contains(row, column) {
                 return false;
             }
             start += u16::from(row_count);

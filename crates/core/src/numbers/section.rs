@@ -25,8 +25,7 @@ use core::mem::offset_of;
 pub use lizard_avr::Region;
 
 use crate::numbers::bars::Bars;
-use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::SweepRange;
+use crate::numbers::calibration::{Calibration, SweepRange};
 use crate::numbers::checksum::Checksum;
 use crate::numbers::limits::Limits;
 use crate::numbers::slew::Slew;
@@ -72,7 +71,7 @@ lizard_avr::pod! {
         pub name: [u8; MAX_NAME_BYTES],
         /// The hash that identifies the robot, which is the CRC-32 of all parts except the header and the maps.
         pub hash: u32,
-        /// The hash of the servos' pins, pulses and neutral angles, with which saved settings are stored.
+        /// The hash of the servo pins, pulses and neutral angles, with which saved settings are stored.
         pub servo_hash: u32,
     }
 }
@@ -100,13 +99,13 @@ lizard_avr::pod! {
         /// The addresses of the couplers' tables for head and tail: rise, stretched rise, folded rise, skew; 0 for a
         /// missing table.
         pub curves: [[u16; CURVE_COUNT]; 2],
-        /// The parts, in the order of [`Part`].
+        /// The parts, in the order of [`SectionPart`].
         pub parts: [PartRange; PART_COUNT],
-        /// The Arduino number of the pin where the servos' rail is measured; 0 if the rail is not measured.
+        /// The Arduino number of the pin where the servo rail is measured; 0 if the rail is not measured.
         pub rail_pin: u8,
         /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml, 10 to 100.
         pub slow_pace: u8,
-        /// The Arduino numbers of the servos' pins; 14 to 19 are A0 to A5.
+        /// The Arduino numbers of the servo pins; 14 to 19 are A0 to A5.
         pub pins: [u8; 4],
         /// The headers of the maps of head, tail, left and right, in the last field, because the hash does not include
         /// them.
@@ -124,7 +123,7 @@ pub const CURVE_COUNT: usize = 4;
 
 /// A part of the section whose address and length are in [`Numbers::parts`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum SectionPart {
     /// The gaits and the routines, each a [`crate::numbers::gaits::Gait`].
     Gaits,
     /// The waveforms, each a [`crate::numbers::gaits::Wave`].
@@ -135,7 +134,7 @@ pub enum Part {
     Rows,
 }
 
-/// The number of parts in [`Part`].
+/// The number of parts in [`SectionPart`].
 pub const PART_COUNT: usize = 4;
 
 lizard_avr::pod! {
@@ -153,7 +152,7 @@ lizard_avr::pod! {
     /// The header of a map of certified cells.
     #[derive(Debug, PartialEq, Eq)]
     pub struct MapHeader {
-        /// The row number of the first row, see [`crate::numbers::cells::Cells::from_rows`].
+        /// The row number of the first row, see [`crate::numbers::cells::CellMap::from_rows`].
         pub first_row: i8,
         /// The number of rows.
         pub row_count: u8,

@@ -21,10 +21,10 @@ lizard_avr::pod! {
         pub reference_mv: u16,
         /// The thresholds of the chip's own supply.
         pub board: Thresholds,
-        /// The reference voltage times the ratio of the voltage divider through which the servos' rail is measured, mV;
+        /// The reference voltage times the ratio of the voltage divider through which the servo rail is measured, mV;
         /// 0 if the rail is not measured.
         pub rail_reference_mv: u16,
-        /// The thresholds of the servos' rail.
+        /// The thresholds of the servo rail.
         pub rail: Thresholds,
     }
 }

@@ -164,15 +164,12 @@ pub fn thousandths_from_phase(phase: u32) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sample::to_degrees;
 
     /// Computes the smaller angle between two directions, deg.
     fn angle_between(a: f64, b: f64) -> f64 {
         let difference = (a - b).rem_euclid(360.0);
         difference.min(360.0 - difference)
-    }
-
-    fn to_degrees(angle: Angle) -> f64 {
-        f64::from(angle.0) * 360.0 / 65536.0
     }
 
     #[test]

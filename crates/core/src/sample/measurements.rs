@@ -46,7 +46,7 @@ impl Measurements {
         let end = [20.0, 30.0, 50.0, 50.0, 30.0];
         let side = [135.0, 30.0, 45.0, 45.0, 30.0];
         Self {
-            lizard: lizard(end, end, side, side),
+            lizard: build_lizard(end, end, side, side),
             limits: kinematics::Limits {
                 type2: 0.3,
                 type1: 0.3,
@@ -71,7 +71,7 @@ impl Measurements {
                 max_us: neutral_us + us_per_degree.abs() * upper_deg,
             };
         Self {
-            lizard: lizard(
+            lizard: build_lizard(
                 [26.0, 31.0, 52.0, 57.0, 34.0],
                 [33.0, 37.0, 66.0, 61.0, 29.0],
                 [141.0, 33.0, 43.0, 48.0, 28.0],
@@ -142,7 +142,7 @@ impl Measurements {
             let side_links = |(l11, l12, l13, l14)| [base, l11, l12, l13, l14];
             let (type2, type1, leg, stroke_min, stroke_max, slew_deg_per_s) = limits;
             Self {
-                lizard: lizard(
+                lizard: build_lizard(
                     end_links(head),
                     end_links(tail),
                     side_links(left),
@@ -178,7 +178,7 @@ impl Servo {
 
 /// Builds a robot from the links, in mm, of its head and tail (base, left crank, left coupler, right coupler, right
 /// crank) and of its sides (chassis, rear arm, rear half of the slider, front half, front arm).
-fn lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
+fn build_lizard(head: [f64; 5], tail: [f64; 5], left: [f64; 5], right: [f64; 5]) -> Lizard {
     let mut links = [0.0; 20];
     for (index, part_links) in [head, tail, left, right].iter().enumerate() {
         links[5 * index..][..5].copy_from_slice(part_links);

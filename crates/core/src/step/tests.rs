@@ -5,8 +5,7 @@ use std::vec::Vec;
 use super::*;
 use crate::console::line::GARBLED_BYTE;
 use crate::memory::restart::Cause;
-use crate::motion::Activity;
-use crate::motion::Motion;
+use crate::motion::{Activity, Motion};
 use crate::sample::Sample;
 use crate::virtual_board::{RunningRobot, Transmitter, VirtualBoard};
 
@@ -19,7 +18,7 @@ fn start_robot(ticks: u8, received: &str) -> RunningRobot {
 
 /// Runs a step. Returns true if the main loop did a task.
 fn run_step(robot: &mut RunningRobot) -> bool {
-    robot.main.step(&mut robot.board) == Step::Worked
+    robot.main.step(&mut robot.board) == StepResult::Worked
 }
 
 /// Runs a robot that stands and has received a line of garbled bytes, as from a sender at another baud rate.
@@ -70,11 +69,11 @@ fn without_room_for_the_longest_line_nothing_is_written_but_frames_continue() {
     robot.board.transmitter = Transmitter::new(16_000, 255);
     let queued_bytes = 255 - u64::from(MAX_OUTPUT_LINE_BYTES) + 1;
     robot.board.transmitter.queue_bytes(queued_bytes);
-    assert_eq!(robot.main.step(&mut robot.board), Step::Idle(0));
+    assert_eq!(robot.main.step(&mut robot.board), StepResult::Idle(0));
     assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
     robot.board.tick();
     assert!(run_step(&mut robot));
-    assert_eq!(robot.main.step(&mut robot.board), Step::Idle(1));
+    assert_eq!(robot.main.step(&mut robot.board), StepResult::Idle(1));
     assert_eq!(count_written_lines_and_unread_bytes(&robot), (0, 9));
     robot.board.transmitter = Transmitter::default();
     robot.settle();
@@ -136,7 +135,7 @@ fn submitted_pulses_match_the_motion_and_status_shows_the_counters() {
     let mut motion_alone = Motion::new(*Sample::asymmetric());
     for _ in 0..30 {
         robot.run_frame();
-        assert_eq!(robot.board.submitted_pulses(), motion_alone.tick());
+        assert_eq!(robot.board.submitted_pulses(), motion_alone.advance_frame());
     }
     robot.board.count_lost_bytes(34);
     let status = robot.send_line("status");

@@ -8,7 +8,7 @@ use crate::numbers::supplies::Supplies;
 pub struct Converter {
     /// The reading of the actual supplies.
     true_reading: Reading,
-    /// True if the servos' rail is measured, too.
+    /// True if the servo rail is measured, too.
     has_rail: bool,
     /// The latest measured values.
     last_reading: Reading,
@@ -19,7 +19,7 @@ pub struct Converter {
 }
 
 impl Converter {
-    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servos' rail is measured, too.
+    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servo rail is measured, too.
     pub fn new(true_reading: Reading, has_rail: bool) -> Self {
         Self {
             true_reading,
@@ -71,7 +71,7 @@ impl Converter {
     }
 }
 
-/// Computes the converter's reading if the chip is supplied with `board_mv` and the servos' rail with `rail_mv`. The
+/// Computes the converter's reading if the chip is supplied with `board_mv` and the servo rail with `rail_mv`. The
 /// rail is measured through its voltage divider.
 pub fn compute_reading(supplies: &Supplies, board_mv: u32, rail_mv: u32) -> Reading {
     let board = u64::from(board_mv);

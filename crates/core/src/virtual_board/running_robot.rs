@@ -11,7 +11,7 @@ use crate::memory::restart::{Cause, Restart};
 use crate::motion::Motion;
 use crate::numbers::pose::Pulses;
 use crate::numbers::robot::Robot;
-use crate::step::{Main, Step};
+use crate::step::{Main, StepResult};
 
 /// The firmware's main loop and its board.
 #[derive(Clone, Debug)]
@@ -74,8 +74,8 @@ impl RunningRobot {
             return;
         }
         for _ in 0..100_000 {
-            let step = self.main.step(&mut self.board);
-            if step != Step::Worked || self.board.memory.take_polled_busy() {
+            let result = self.main.step(&mut self.board);
+            if result != StepResult::Worked || self.board.memory.take_polled_busy() {
                 return;
             }
         }
@@ -241,7 +241,9 @@ pub fn is_answer(line: &str) -> bool {
         .and_then(|rest| rest.split_once(' '));
     line.starts_with("ok ")
         || code_and_reason.is_some_and(|(code, reason)| {
-            matches!(code, "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9")
-                && !reason.is_empty()
+            matches!(
+                code,
+                "1" | "2" | "3" | "4" | "5" | "6" | "7" | "8" | "9" | "10"
+            ) && !reason.is_empty()
         })
 }

@@ -5,7 +5,7 @@ use std::format;
 
 use crate::memory::record::{ERASED, Memory};
 use crate::sample::Sample;
-use crate::step::{Main, Step};
+use crate::step::{Main, StepResult};
 
 /// Runs a robot until it stands.
 fn run_standing_robot() -> RunningRobot {
@@ -156,7 +156,7 @@ fn bytes_beyond_the_receivers_capacity_are_lost_and_counted() {
     );
     let mut main = Main::new();
     main.begin(Sample::asymmetric().section(), &mut board);
-    while main.step(&mut board) == Step::Worked {}
+    while main.step(&mut board) == StepResult::Worked {}
     assert_eq!(board.unread_count(), 0);
 }
 
@@ -193,7 +193,7 @@ fn the_first_pulses_after_a_reset_repeat_the_last_submitted_frame() {
 }
 
 /// Runs frames. Returns the largest change of each servo's pulse width from one frame to the next, cycles.
-fn measure_largest_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
+fn measure_max_changes(robot: &mut RunningRobot, frames: usize) -> [u16; 4] {
     let mut last_widths = *robot.motion().sent_pulses();
     let mut changes = [0; 4];
     for _ in 0..frames {
@@ -230,7 +230,7 @@ fn settings_changed_at_rest_turn_no_servo_faster_than_the_slew_limit() {
             running_robot.run_frames(60);
         }
         running_robot.send_line("stand");
-        let changes = measure_largest_changes(&mut running_robot, 200);
+        let changes = measure_max_changes(&mut running_robot, 200);
         for servo in 0..4 {
             assert!(
                 changes[servo] <= max_changes[servo],

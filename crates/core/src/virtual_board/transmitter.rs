@@ -69,9 +69,9 @@ impl Transmitter {
         self.idle_from_cycle
     }
 
-    /// Makes `bytes` bytes wait to be sent, as if they remained from an earlier run.
-    pub const fn queue_bytes(&mut self, bytes: u64) {
-        self.idle_from_cycle = self.current_cycle + bytes * self.cycles_per_byte;
+    /// Makes `byte_count` bytes wait to be sent, as if they remained from an earlier run.
+    pub const fn queue_bytes(&mut self, byte_count: u64) {
+        self.idle_from_cycle = self.current_cycle + byte_count * self.cycles_per_byte;
     }
 
     /// The number of bytes that the transmitter accepts without waiting, at most 255; 0 while the transmitter is held.
@@ -79,8 +79,8 @@ impl Transmitter {
         if self.is_held {
             return 0;
         }
-        let queued_bytes = self.cycles_left().div_ceil(self.cycles_per_byte.max(1));
-        self.capacity.saturating_sub(queued_bytes).min(255) as u8
+        let queued_count = self.cycles_left().div_ceil(self.cycles_per_byte.max(1));
+        self.capacity.saturating_sub(queued_count).min(255) as u8
     }
 
     fn cycles_left(&self) -> u64 {

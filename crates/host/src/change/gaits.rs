@@ -4,14 +4,15 @@ use std::io::Write;
 
 use lizard_kinematics::Check;
 use lizard_robot::{
-    Assumptions, GaitRow, Prediction, Report, Robot, RoutineRow, Sensitivity, ServoTable, servo,
+    Assumptions, GaitRow, Report, Robot, RoutineRow, Sensitivity, ServoTable, servo,
 };
 use serde::Serialize;
 
+use crate::shared::displacement::Displacement;
 use crate::shared::json;
 use crate::shared::pose_args::ANGLE_NAMES;
 use crate::shared::progress::Spinner;
-use crate::shared::suggestion::format_suggestion;
+use crate::shared::robot_file::unknown_gait_failure;
 use crate::{Failure, RobotFile};
 
 /// Check every gait in robot.toml and predict how far the robot walks with it.
@@ -43,11 +44,11 @@ pub struct Args {
     /// friction), other leg mountings and other feet
     #[arg(long, conflicts_with_all = ["json", "trace"])]
     sensitivity: bool,
-    /// Instead, print the assumptions that change a gait's displacement by 10 % or more, and the
-    /// change: servos, joints, mass, pads, legs and feet, each over its plausible range
+    /// Instead, print the assumptions (about servos, joints, mass, pads, legs and feet) whose
+    /// plausible ranges change a gait's displacement by 10 % or more, and by how much
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity"])]
     assumptions: bool,
-    /// Instead, print each gait's utilisation of the servos' torque-speed line, and its
+    /// Instead, print how much of the servos' torque-speed line each gait uses, and its
     /// displacement, on several supplies and at two speeds
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity", "assumptions"])]
     servos: bool,
@@ -58,7 +59,7 @@ pub struct Args {
 /// Prints the table, the JSON objects or the trace that the arguments select.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, an unknown gait name, or an output that cannot be written.
+/// Fails if robot.toml is invalid, if it has no gait of the given name, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let mut out = std::io::stdout().lock();
@@ -76,8 +77,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
             for row in &report.rows {
                 json::write_line(&mut out, &GaitLine::new(row))?;
             }
-            for round in &report.routines {
-                json::write_line(&mut out, &RoutineLine::new(round))?;
+            for routine in &report.routines {
+                json::write_line(&mut out, &RoutineLine::new(routine))?;
             }
         }
         None => write!(out, "{}", with_spinner(|| Report::compute(&robot)))?,
@@ -94,14 +95,10 @@ fn with_spinner<T>(compute: impl FnOnce() -> T) -> T {
 /// Returns the servo angles of one cycle of a gait as CSV, one row per frame, as the firmware reads them from its
 /// table.
 fn format_trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
-    let Some(gait) = robot.gait(name) else {
-        let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
-        return Err(Failure::Input(format!(
-            "--trace {name}: unknown gait; allowed values: {}{}",
-            names.join(", "),
-            format_suggestion(name, names)
-        )));
-    };
+    let gait = robot.gait(name).ok_or_else(|| {
+        let problem = format!("--trace {name}: unknown gait");
+        unknown_gait_failure(&problem, name, robot.gaits().iter())
+    })?;
     let mut text = format!("seconds,{}\n", ANGLE_NAMES.join(","));
     for (seconds, phase) in gait.frames() {
         let [a1, a2, a3, a4] = gait.table_angles(phase);
@@ -110,7 +107,7 @@ fn format_trace_csv(robot: &Robot, name: &str) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// One gait in the `--json` output; the field names are the JSON keys.
+/// One gait in the `--json` output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
 struct GaitLine<'a> {
     gait: &'a str,
@@ -125,86 +122,74 @@ struct GaitLine<'a> {
     /// Root mean square error of the table, deg.
     table_error_rms: f64,
     /// Smallest margin to a type-2 singularity.
-    type2: LeastMargin,
+    type2: MinMargin,
     /// Smallest margin to a type-1 singularity.
-    type1: LeastMargin,
+    type1: MinMargin,
     /// Smallest margin of a leg.
-    leg: LeastMargin,
+    leg: MinMargin,
     /// Smallest and largest slider travel relative to nominal, mm.
     stroke: [f64; 2],
-    /// Displacement of one cycle with ideal servos. A value is null if the contact model cannot decide because two
-    /// feet pull with equal force against the other two.
-    predicted: Displacement,
+    /// Displacement of one cycle with ideal servos.
+    #[serde(rename = "predicted")]
+    ideal_displacement: Displacement,
     /// Highest utilisation of the torque-speed line by a servo; 1 is the limit.
-    line: f64,
+    #[serde(rename = "line")]
+    utilisation: f64,
     /// Displacement of one cycle with the servos from robot.toml.
-    by_servos: Displacement,
+    #[serde(rename = "by_servos")]
+    displacement: Displacement,
 }
 
 /// The smallest margin of one kind over a cycle.
 #[derive(Serialize)]
-struct LeastMargin {
+struct MinMargin {
     /// The margin, a sine.
     margin: f64,
     /// The name of the check that has this margin.
-    what: &'static str,
+    #[serde(rename = "what")]
+    check: &'static str,
     /// The phase at which it occurs, in cycles from 0 to 1.
     phase: f64,
 }
 
-/// A predicted displacement of the robot: mm forward, mm to the left, and deg counter-clockwise.
-#[derive(Serialize)]
-struct Displacement {
-    forward: Option<f64>,
-    left: Option<f64>,
-    turn: Option<f64>,
-}
-
-/// One routine in the `--json` output; the field names are the JSON keys.
+/// One routine in the `--json` output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
 struct RoutineLine<'a> {
     routine: &'a str,
-    /// Number of steps.
-    steps: usize,
-    /// Number of rounds; null for a routine that repeats forever.
-    repeat: Option<u16>,
+    #[serde(rename = "steps")]
+    step_count: usize,
+    /// Null for a routine that repeats forever.
+    #[serde(rename = "repeat")]
+    round_count: Option<u16>,
     /// Duration of one round that starts from standing, s.
     seconds: f64,
-    /// Displacement of one round with ideal servos; null as in [`GaitLine::predicted`].
-    predicted: Displacement,
+    /// Displacement of one round with ideal servos.
+    #[serde(rename = "predicted")]
+    ideal_displacement: Displacement,
     /// Displacement of one round with the servos from robot.toml.
-    by_servos: Displacement,
+    #[serde(rename = "by_servos")]
+    displacement: Displacement,
 }
 
 impl<'a> RoutineLine<'a> {
-    fn new(round: &'a RoutineRow) -> Self {
+    fn new(routine: &'a RoutineRow) -> Self {
         Self {
-            routine: &round.name,
-            steps: round.step_count,
-            repeat: round.round_count,
-            seconds: round.seconds,
-            predicted: round.movement.into(),
-            by_servos: round.movement_with_servos.into(),
-        }
-    }
-}
-
-impl From<Prediction> for Displacement {
-    fn from(prediction: Prediction) -> Self {
-        Self {
-            forward: prediction.forward,
-            left: prediction.left,
-            turn: prediction.turn,
+            routine: &routine.name,
+            step_count: routine.step_count,
+            round_count: routine.round_count,
+            seconds: routine.seconds,
+            ideal_displacement: routine.movement.into(),
+            displacement: routine.movement_with_servos.into(),
         }
     }
 }
 
 impl<'a> GaitLine<'a> {
     fn new(row: &'a GaitRow) -> Self {
-        let to_json = |smallest: lizard_robot::LeastMargin| LeastMargin {
-            margin: smallest.value,
-            what: Check::name(smallest.check),
-            phase: smallest.phase,
+        let to_min_margin = |margin: lizard_robot::MinMargin| MinMargin {
+            margin: margin.value,
+            check: Check::name(margin.check),
+            phase: margin.phase,
         };
         let audit = &row.audit;
         Self {
@@ -214,13 +199,13 @@ impl<'a> GaitLine<'a> {
             peak_servo: servo::SERVO_NAMES[audit.peak_speed.servo],
             table_error_max: row.table_error.max,
             table_error_rms: row.table_error.rms,
-            type2: to_json(audit.type2),
-            type1: to_json(audit.type1),
-            leg: to_json(audit.leg),
+            type2: to_min_margin(audit.type2),
+            type1: to_min_margin(audit.type1),
+            leg: to_min_margin(audit.leg),
             stroke: [audit.stroke_range.0, audit.stroke_range.1],
-            predicted: row.movement.into(),
-            line: row.utilisation,
-            by_servos: row.movement_with_servos.into(),
+            ideal_displacement: row.movement.into(),
+            utilisation: row.utilisation,
+            displacement: row.movement_with_servos.into(),
         }
     }
 }

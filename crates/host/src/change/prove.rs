@@ -52,7 +52,7 @@ impl Spreadable for Args {
 /// Compares the guard with floating point and prints the result.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, or if the guard decides a pose wrongly.
+/// Fails if robot.toml is invalid, if the output cannot be written, or if the guard decides a pose wrongly.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let guard = robot.firmware();
@@ -80,7 +80,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     if args.json {
         json::write_line(&mut out, &proof)?;
     } else {
-        print(&proof, sample, &mut out)?;
+        print_table(&proof, sample, &mut out)?;
     }
     out.flush()?;
     match proof.wrong_count() {
@@ -91,7 +91,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
 }
 
-fn print(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<()> {
+fn print_table(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "                                      largest error          decisions differ within"

@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 
-use super::known::CommandEntry;
+use super::command_entry::CommandEntry;
 use crate::Failure;
 use crate::shared::suggestion::format_suggestion;
 
@@ -18,7 +18,7 @@ pub(super) fn describe_feature(feature: &str) -> &'static str {
 }
 
 /// True if this build has `feature`.
-fn is_feature_built(feature: &str) -> bool {
+fn is_in_build(feature: &str) -> bool {
     let features = [
         ("simulator", cfg!(feature = "simulator")),
         ("paper", cfg!(feature = "paper")),
@@ -30,7 +30,7 @@ fn is_feature_built(feature: &str) -> bool {
 
 /// Lists the commands that are missing from this build, for the help; empty for a complete build.
 pub(super) fn list_absent(commands: &[CommandEntry]) -> String {
-    list_absent_in_build(commands, is_feature_built)
+    list_absent_in_build(commands, is_in_build)
 }
 
 /// Lists the commands that are missing from a build with only the features that `has_feature` accepts.
@@ -45,8 +45,8 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     if names.is_empty() {
         return String::new();
     }
-    let features = ["simulator", "paper", "console", "parts"];
-    let absent_features = features.into_iter().filter(|feature| !has_feature(feature));
+    let features = ["simulator", "paper", "console", "parts"].into_iter();
+    let absent_features = features.filter(|feature| !has_feature(feature));
     let absent_features: Vec<&str> = absent_features.map(describe_feature).collect();
     let platform_note = match has_feature("simulator") {
         true => "",
@@ -70,7 +70,7 @@ fn list_absent_in_build(commands: &[CommandEntry], has_feature: impl Fn(&str) ->
     allow(dead_code, reason = "a complete build has every command")
 )]
 pub(super) fn explain_absence(words: &[OsString], commands: &[CommandEntry]) -> Failure {
-    explain_absence_in_build(words, commands, is_feature_built)
+    explain_absence_in_build(words, commands, is_in_build)
 }
 
 /// The arguments of a command that is missing from this build; they are never read.
@@ -85,7 +85,7 @@ pub struct AbsentCommand {
 impl AbsentCommand {
     /// Returns the failure of a missing command; it names the missing features.
     pub fn failure(name: &str, needed_features: &[&str]) -> Failure {
-        absent_command_failure(name, needed_features, is_feature_built)
+        absent_command_failure(name, needed_features, is_in_build)
     }
 }
 
@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn absence_message_names_the_missing_feature() {
+    fn the_absence_message_names_the_missing_feature() {
         assert_eq!(
             absence_message("sim", &["paper"]),
             "`lizard sim` is missing: this program was built without the simulator; `make cli` builds every command"
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn help_lists_exactly_the_missing_commands() {
+    fn the_help_lists_exactly_the_missing_commands() {
         assert_eq!(list_absent_in_build(KNOWN_COMMANDS, |_| true), "");
         assert_eq!(
             list_absent_in_build(KNOWN_COMMANDS, |feature| feature != "simulator"),
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn absence_message_omits_features_of_the_build() {
+    fn the_absence_message_omits_features_of_the_build() {
         assert!(
             absence_message("tune", &["simulator"]).contains("without the commands that compute;")
         );
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_command_gets_a_suggestion_if_one_is_close() {
+    fn an_unknown_command_gets_a_suggestion_if_one_is_similar() {
         assert_eq!(
             absence_message("fly", &[]),
             "unknown command `fly`; `lizard --help` lists the commands"

@@ -85,11 +85,11 @@ pub fn write_manual_pages(args: ManArgs, command: Command) -> Result<(), Failure
     command.build();
     let mut page_count = 1;
     write_manual_page(&args, "lizard", command.clone())?;
-    for sub in command.get_subcommands() {
-        let name = format!("lizard-{}", sub.get_name());
-        write_manual_page(&args, &name, sub.clone())?;
+    for subcommand in command.get_subcommands() {
+        let name = format!("lizard-{}", subcommand.get_name());
+        write_manual_page(&args, &name, subcommand.clone())?;
         page_count += 1;
-        for nested in sub.get_subcommands() {
+        for nested in subcommand.get_subcommands() {
             write_manual_page(
                 &args,
                 &format!("{name}-{}", nested.get_name()),

@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 use clap::Command;
 
 use super::absent;
-use super::known::{CommandEntry, Group};
+use super::command_entry::{CommandEntry, CommandGroup};
 
 /// Returns `command` with a help text that lists its subcommands in groups according to `known_commands`.
 pub(super) fn group_in_help(command: Command, known_commands: &[CommandEntry]) -> Command {
@@ -51,7 +51,7 @@ fn list_commands(command: &Command, known_commands: &[CommandEntry]) -> String {
         }
         text.push('\n');
     };
-    for group in Group::ALL {
+    for group in CommandGroup::ALL {
         let entries = known_commands.iter().filter(|entry| entry.group == group);
         let group_subcommands: Vec<&Command> = entries
             .filter_map(|entry| {
@@ -62,7 +62,7 @@ fn list_commands(command: &Command, known_commands: &[CommandEntry]) -> String {
                     .copied()
             })
             .collect();
-        if group == Group::Development && !group_subcommands.is_empty() {
+        if group == CommandGroup::Development && !group_subcommands.is_empty() {
             let names: Vec<&str> = group_subcommands.iter().map(|sub| sub.get_name()).collect();
             _ = writeln!(
                 text,
@@ -96,9 +96,9 @@ mod tests {
             needed_features: &[],
         };
         let known = [
-            new_entry(Group::Drive, "Console"),
-            new_entry(Group::Paper, "Pose"),
-            new_entry(Group::Development, "Completions"),
+            new_entry(CommandGroup::Drive, "Console"),
+            new_entry(CommandGroup::Paper, "Pose"),
+            new_entry(CommandGroup::Development, "Completions"),
         ];
         assert_eq!(
             strip_colours(&list_commands(&command, &known)),

@@ -29,8 +29,7 @@ pub struct MergeArgs {
 /// Reads all parts and runs the command with their results.
 ///
 /// # Errors
-/// Fails if a part is missing, is given twice or belongs to another computation, or if the command
-/// itself fails.
+/// Fails if a part is missing, is given twice or belongs to another computation, or if the command itself fails.
 pub fn merge(args: MergeArgs) -> Result<(), Failure> {
     let merged = MergedParts::join(read_all_parts(&args.paths)?)?;
     match merged.command.as_str() {
@@ -95,7 +94,7 @@ impl MergedParts {
                 "no parts given; `lizard merge --help` shows how to compute them".to_owned(),
             );
         };
-        let (part_count, pieces) = (first.part.part_count, first.pieces);
+        let (part_count, piece_count) = (first.part.part_count, first.piece_count);
         let mut merged = Self {
             command: first.command.clone(),
             options: first.options.clone(),
@@ -106,10 +105,10 @@ impl MergedParts {
         for part in parts {
             let name = String::from(part.part);
             let version = env!("CARGO_PKG_VERSION");
-            if part.lizard != version {
+            if part.version != version {
                 return refuse(format!(
                     "part {name} is from version {}, but this is version {version}",
-                    part.lizard
+                    part.version
                 ));
             }
             if part.command != merged.command {
@@ -120,7 +119,7 @@ impl MergedParts {
             }
             if part.options != merged.options
                 || part.part.part_count != part_count
-                || part.pieces != pieces
+                || part.piece_count != piece_count
             {
                 return refuse(format!(
                     "part {name} has different options from another part"
@@ -135,7 +134,7 @@ impl MergedParts {
             if std::mem::replace(&mut is_given[index], true) {
                 return refuse(format!("part {name} is given twice"));
             }
-            merged.results.extend(part.found);
+            merged.results.extend(part.results);
         }
         if let Some(missing) = is_given.iter().position(|is_given| !is_given) {
             return refuse(format!("part {}/{part_count} is missing", missing + 1));
@@ -165,13 +164,13 @@ mod tests {
 
     fn part_output(part: &str) -> PartOutput {
         PartOutput {
-            lizard: env!("CARGO_PKG_VERSION").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             command: "prove".to_owned(),
             options: Value::Null,
             robot: "one".to_owned(),
             part: part.parse().expect(part),
-            pieces: 4,
-            found: BTreeMap::new(),
+            piece_count: 4,
+            results: BTreeMap::new(),
         }
     }
 
@@ -214,7 +213,7 @@ mod tests {
             "part 2/2 is from `lizard fit`, but another part is from `lizard prove`"
         );
         assert!(
-            message_after(|part| part.lizard = "0.0.1".to_owned())
+            message_after(|part| part.version = "0.0.1".to_owned())
                 .contains("is from version 0.0.1")
         );
         assert!(refusal_message(Vec::new()).starts_with("no parts given"));

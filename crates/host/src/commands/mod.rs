@@ -5,9 +5,9 @@
 //! this build's commands and the list of all commands.
 
 mod absent;
+mod command_entry;
 pub mod completions;
 mod groups;
-mod known;
 pub mod merge;
 mod nested;
 
@@ -17,8 +17,8 @@ use std::io::{self, Write};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::Failure;
-use crate::shared::plain::readable_lines;
-use known::{CommandEntry, Group};
+use crate::shared::escape::readable_lines;
+use command_entry::{CommandEntry, CommandGroup};
 use nested::WithSubcommand;
 
 /// Defines [`Command`] and [`KNOWN_COMMANDS`] from the table below.
@@ -73,7 +73,7 @@ macro_rules! commands {
         /// All commands in the order of the help, including those missing from this build.
         const KNOWN_COMMANDS: &[CommandEntry] = &[$($(
             CommandEntry {
-                group: Group::$group,
+                group: CommandGroup::$group,
                 variant: stringify!($name),
                 aliases: &[$($alias)?],
                 needed_features: &[$($($feature),+)?],
@@ -287,12 +287,12 @@ mod tests {
         }
 
         #[test]
-        fn docs_list_exactly_the_commands_without_json() {
+        fn the_docs_list_exactly_the_commands_without_json() {
             let page = include_str!("../../../../docs/commands.md");
             let (_, list) = page
                 .split_once("`--json`, except ")
                 .expect("the page has the list");
-            let (list, _) = list.split_once(": they").expect("the list has an end");
+            let (list, _) = list.split_once(':').expect("the list has an end");
             let named_commands: BTreeSet<&str> = list.split('`').skip(1).step_by(2).collect();
             let program = Cli::command();
             let has_json =
@@ -337,7 +337,7 @@ mod tests {
     }
 
     #[test]
-    fn help_lists_only_addresses_that_are_not_empty() {
+    fn the_help_lists_only_addresses_that_are_not_empty() {
         assert_eq!(list_addresses("", ""), "");
         assert_eq!(
             list_addresses("https://p.example", ""),

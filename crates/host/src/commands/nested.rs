@@ -125,7 +125,7 @@ pub fn run_measure(
         Some(MeasureSubcommand::Servo(args)) => crate::measure::measure_servo(*args),
         Some(MeasureSubcommand::Steps(args)) => crate::measure::print_steps(args),
         Some(MeasureSubcommand::Slope(args)) => crate::measure::measure_slope(args),
-        Some(MeasureSubcommand::Keys(args)) => crate::measure::find_keys(args),
+        Some(MeasureSubcommand::Keys(args)) => crate::measure::identify_keys(args),
         None => crate::measure::run(args.arguments),
     }
 }

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pause_counts_as_at_most_the_longest_step() {
+    fn a_pause_counts_as_at_most_the_longest_step() {
         let ms = Duration::from_millis;
         let mut clock = Clock::start();
         let start = clock.now;
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn deadline_passes_after_its_duration() {
+    fn a_deadline_passes_after_its_duration() {
         let mut zero_deadline = Deadline::after(Duration::ZERO);
         assert!(zero_deadline.has_passed());
         let mut long_deadline = Deadline::after(Duration::from_secs(3600));

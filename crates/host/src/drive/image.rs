@@ -9,7 +9,7 @@ use lizard_core::numbers::section::REGION_BYTES;
 use lizard_robot::RobotIdentity;
 use serde::Serialize;
 
-use crate::drive::flash::file;
+use crate::drive::flash::image_source;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 
@@ -58,8 +58,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     let robot = args.robot.load()?;
     let image = match args.only_robot {
-        true => file::build_robot_image(&robot)?,
-        false => file::build_image(&robot)?,
+        true => image_source::build_robot_image(&robot)?,
+        false => image_source::build_image(&robot)?,
     };
     let hex = image.to_hex();
     let Some(path) = args.output else {

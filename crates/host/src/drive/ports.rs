@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::console::find::{self, UsbPort};
 use super::console::port;
+use super::console::usb_ports::{self, ARDUINO_VENDOR_IDS, UsbPort};
 use crate::Failure;
+use crate::shared::escape::escape_controls;
 use crate::shared::json;
-use crate::shared::plain::escape_controls;
 
 /// List the USB serial ports with their chips and your permissions
 ///
@@ -23,7 +23,7 @@ pub struct Args {
 
 /// A serial port; the field names are the JSON keys.
 #[derive(Debug, Serialize)]
-struct PortLine {
+struct PortReport {
     port: String,
     /// The USB vendor ID as four hexadecimal digits, as lsusb prints it.
     vendor: String,
@@ -39,7 +39,7 @@ struct PortLine {
     open_in: Option<String>,
 }
 
-impl PortLine {
+impl PortReport {
     fn from_port(port: UsbPort) -> Self {
         Self {
             vendor: format!("{:04x}", port.vendor_id),
@@ -58,10 +58,10 @@ impl PortLine {
 /// Describes a chip by its USB vendor ID and product ID; `None` if the chip is unknown.
 fn describe_chip(ids: [u16; 2]) -> Option<&'static str> {
     Some(match ids {
-        [vendor, 0x0001 | 0x0043 | 0x0243] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => {
+        [vendor, 0x0001 | 0x0043 | 0x0243] if ARDUINO_VENDOR_IDS.contains(&vendor) => {
             "an Arduino UNO"
         }
-        [vendor, _] if find::ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but not a UNO R3",
+        [vendor, _] if ARDUINO_VENDOR_IDS.contains(&vendor) => "an Arduino, but not a UNO R3",
         [0x1a86, 0x7523 | 0x5523] => "a CH340: a clone of a UNO or Nano",
         [0x1a86, _] => "a WCH chip: a clone of a UNO or Nano",
         [0x0403, 0x6001 | 0x6015] => "an FTDI: an older Nano, or an adapter",
@@ -75,41 +75,40 @@ fn describe_chip(ids: [u16; 2]) -> Option<&'static str> {
 /// # Errors
 /// Fails if standard output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let lines: Vec<PortLine> = find::list_usb_ports()
-        .into_iter()
-        .map(PortLine::from_port)
-        .collect();
-    json::print_json_or_text(args.json, &lines, || format_ports(&lines))
+    let ports = usb_ports::list().into_iter().map(PortReport::from_port);
+    let ports: Vec<PortReport> = ports.collect();
+    json::print_json_or_text(args.json, &ports, || format_ports(&ports))
 }
 
-fn format_ports(lines: &[PortLine]) -> String {
-    if lines.is_empty() {
+fn format_ports(ports: &[PortReport]) -> String {
+    if ports.is_empty() {
         return "this machine has no USB serial port. Connect the UNO with a cable that carries data \
                 (some only charge). A virtual machine, a container or WSL needs the port passed \
                 through. Without a board: lizard console --sim\n"
             .to_owned();
     }
     let mut text = String::new();
-    for line in lines {
-        let name = line.name.as_deref().unwrap_or("no name");
-        let chip = line.chip.unwrap_or("not the chip of a UNO");
-        let PortLine {
+    for report in ports {
+        let name = report.name.as_deref().unwrap_or("no name");
+        let chip = report.chip.unwrap_or("not the chip of a UNO");
+        let PortReport {
             port,
             vendor,
             product,
             ..
-        } = line;
+        } = report;
         _ = write!(text, "{port}  {name} ({vendor}:{product}), {chip}");
-        if let Some(program) = &line.open_in {
+        if let Some(program) = &report.open_in {
             _ = write!(text, "; open in {program}");
         }
-        if !line.may_open {
+        if !report.may_open {
             text += "; no permission to open it";
         }
         text.push('\n');
     }
-    if let Some(line) = lines.iter().find(|line| !line.may_open) {
-        _ = writeln!(text, "{}", port::PortError::Forbidden(line.port.clone()));
+    if let Some(report) = ports.iter().find(|report| !report.may_open) {
+        let error = port::PortError::Forbidden(report.port.clone());
+        _ = writeln!(text, "{error}");
     }
     text
 }
@@ -118,8 +117,8 @@ fn format_ports(lines: &[PortLine]) -> String {
 mod tests {
     use super::*;
 
-    fn port_line(vendor_id: u16, product_id: u16, product_name: Option<&str>) -> PortLine {
-        PortLine::from_port(UsbPort {
+    fn port_report(vendor_id: u16, product_id: u16, product_name: Option<&str>) -> PortReport {
+        PortReport::from_port(UsbPort {
             name: "/dev/no-such-port".to_owned(),
             vendor_id,
             product_id,
@@ -128,9 +127,9 @@ mod tests {
     }
 
     #[test]
-    fn list_shows_usb_ids_and_the_kind_of_board() {
-        let uno = port_line(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
-        let clone = port_line(0x1a86, 0x7523, None);
+    fn the_list_shows_usb_ids_and_the_kind_of_board() {
+        let uno = port_report(0x2341, 0x0043, Some("Arduino_Uno\u{1b}"));
+        let clone = port_report(0x1a86, 0x7523, None);
         let output = format_ports(&[uno, clone]);
         let output: Vec<&str> = output.lines().collect();
         assert!(output[0].contains("Arduino Uno"), "{output:?}");
@@ -150,8 +149,8 @@ mod tests {
     }
 
     #[test]
-    fn list_shows_the_remedy_and_the_program_for_a_forbidden_port() {
-        let mut forbidden_port = port_line(0x2341, 0x0043, None);
+    fn the_list_shows_the_remedy_and_the_program_for_a_forbidden_port() {
+        let mut forbidden_port = port_report(0x2341, 0x0043, None);
         forbidden_port.may_open = false;
         forbidden_port.open_in = Some("screen (process 7)".to_owned());
         let output = format_ports(&[forbidden_port]);
@@ -160,13 +159,13 @@ mod tests {
             "{output}"
         );
         assert!(output.contains("usermod -aG dialout"), "{output}");
-        let mut free_port = port_line(0x2341, 0x0043, None);
+        let mut free_port = port_report(0x2341, 0x0043, None);
         free_port.may_open = true;
         assert!(!format_ports(&[free_port]).contains("dialout"));
     }
 
     #[test]
-    fn message_without_a_port_names_the_remedies() {
+    fn the_message_without_a_port_names_the_remedies() {
         assert!(format_ports(&[]).contains("carries data") && format_ports(&[]).contains("--sim"));
     }
 }

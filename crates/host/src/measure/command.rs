@@ -3,10 +3,10 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_measure::{Gaits, Report, board_height};
+use lizard_measure::{Gaits, Report, compute_board_height};
 
 use super::picture;
-use super::recording::{Recording, parse_height};
+use super::recording::{RecordingArgs, parse_height};
 use crate::shared::progress::Spinner;
 use crate::shared::robot_file::find_moving_gait;
 use crate::shared::{files, json};
@@ -16,7 +16,7 @@ use crate::{Failure, RobotFile};
 ///
 /// VIDEO is a video that the program ffmpeg can read, or a folder of frames. It shows the robot from above with the
 /// tags of `lizard measure sheet`, and one or several gaits with rests between them. For each gait, prints the
-/// displacement ahead, the drift to the left and the turn per cycle: the mean, the spread of single cycles, the
+/// displacement forward, the drift to the left and the turn per cycle: the mean, the spread of single cycles, the
 /// standard error of the mean (the true value is within two standard errors in 95 % of videos), and the contact model's
 /// prediction with the servos from robot.toml. Also prints the phase at which the path deviates most from the
 /// prediction.
@@ -41,7 +41,7 @@ pub struct Args {
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[command(flatten)]
-    recording: Recording,
+    recording: RecordingArgs,
     /// Draw the measured and the predicted paths and displacements of a cycle, as SVG
     #[arg(long, value_name = "FILE")]
     picture: Option<PathBuf>,
@@ -59,13 +59,13 @@ pub struct Args {
 ///
 /// # Errors
 /// Fails if the robot does not have a named gait, if a named gait moves no servo, if a video cannot be read or shows no
-/// measurable gait, for several videos with `--csv`, or if a file cannot be written.
+/// measurable gait, if several videos are given with `--csv`, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let pace = f64::from(args.speed) / 100.0;
     let named_gaits = args.gait.iter().map(|name| find_moving_gait(&robot, name));
     let gaits = Gaits::predict(&robot, &named_gaits.collect::<Result<Vec<_>, _>>()?, pace);
-    let height = args.height.unwrap_or_else(|| board_height(&robot));
+    let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
     let setup = args.recording.setup(height);
     let spinner = Spinner::new("reading the frames");
     let analyse_video = |path: &PathBuf| args.recording.analyse(path, setup);

@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn header_gives_the_size_of_the_frames() {
+    fn the_header_gives_the_size_of_the_frames() {
         let header = "YUV4MPEG2 W1280 H720 F30:1 Ip A1:1 Cmono\n";
         assert_eq!(parse_size(header), Some([1280, 720]));
         for invalid_header in ["", "YUV4MPEG2 W0 H720", "YUV4MPEG2 W99999999 H1", "W1 H1"] {

@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn time_in_a_name_requires_a_unit() {
+    fn a_time_in_a_name_requires_a_unit() {
         assert_eq!(parse_seconds("walk-1033ms"), Some(1.033));
         assert_eq!(parse_seconds("1.5s"), Some(1.5));
         for name in ["frame-0001", "1.5", "s", "videos", "1.2.3s"] {

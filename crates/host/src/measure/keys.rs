@@ -76,7 +76,7 @@ struct Component {
 /// # Errors
 /// Fails if a file is not from `lizard measure` or is from another robot, if the gaits determine no key, if the output
 /// would replace an input or a robot, or if it cannot be written.
-pub fn find_keys(args: KeysArgs) -> Result<(), Failure> {
+pub fn identify_keys(args: KeysArgs) -> Result<(), Failure> {
     let old_text = args.robot.text()?;
     let robot = args.robot.load()?;
     let mut movements = Vec::new();

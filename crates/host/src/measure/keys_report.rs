@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use lizard_identify::{
-    COMPONENTS, Card, GoodnessOfFit, Identification, Key, KeyResult, MovementResult, Verdict,
+    COMPONENTS, CardPose, GoodnessOfFit, Identification, Key, KeyResult, MovementResult, Verdict,
 };
 use serde::Serialize;
 
@@ -42,7 +42,8 @@ struct KeyReport {
 #[derive(Serialize)]
 struct CardReport {
     turn: [f64; 2],
-    ahead: [f64; 2],
+    #[serde(rename = "ahead")]
+    forward: [f64; 2],
     left: [f64; 2],
 }
 
@@ -87,7 +88,7 @@ impl KeysReport {
             card, card_error, ..
         } = identified;
         let value_and_error =
-            |component: fn(&Card) -> f64| [component(card), component(card_error)];
+            |component: fn(&CardPose) -> f64| [component(card), component(card_error)];
         let GoodnessOfFit {
             value_count,
             chi_squares: [chi_square_before, chi_square, chi_square_all_free],
@@ -103,7 +104,7 @@ impl KeysReport {
             keys: identified.keys.iter().map(KeyReport::new).collect(),
             card: CardReport {
                 turn: value_and_error(|card| card.turn),
-                ahead: value_and_error(|card| card.ahead),
+                forward: value_and_error(|card| card.forward),
                 left: value_and_error(|card| card.left),
             },
             correlated_pairs: identified.correlated_pairs.iter().map(name_pair).collect(),
@@ -172,7 +173,7 @@ pub(super) fn format_report(identified: &Identification, output_path: Option<&Pa
         text,
         "\nThe card on the deck lies {:+.1} +- {:.1} mm ahead of the centre and {:+.1} +- {:.1} mm to the left, and is \
          turned by {:+.2} +- {:.2} deg.",
-        card.ahead, card_error.ahead, card.left, card_error.left, card.turn, card_error.turn
+        card.forward, card_error.forward, card.left, card_error.left, card.turn, card_error.turn
     );
     for (first, second, correlation) in &identified.correlated_pairs {
         let _ = writeln!(
@@ -253,7 +254,7 @@ fn format_goodness(identified: &Identification) -> String {
     let (name, _) = COMPONENTS[component_index];
     let gait = &identified.movements[movement_index].measured.gait;
     let comparison = if difference > 0.0 { "more" } else { "less" };
-    let worst_text = format!(
+    let deviation = format!(
         "`{gait}`, {name}: {:.1} errors {comparison} than the model",
         difference.abs()
     );
@@ -261,7 +262,7 @@ fn format_goodness(identified: &Identification) -> String {
         let _ = writeln!(
             text,
             "The model does not explain these movements with any values of its keys: chi-square is at least \
-             {chi_free:.1}, but only 1 % of true models exceed {limit:.1}. The largest deviation is {worst_text}. All \
+             {chi_free:.1}, but only 1 % of true models exceed {limit:.1}. The largest deviation is {deviation}. All \
              errors above are therefore {error_factor:.1} times as large. Look for a servo that \
              differs from robot.toml, a foot that catches, or another floor."
         );
@@ -269,14 +270,14 @@ fn format_goodness(identified: &Identification) -> String {
         let _ = writeln!(
             text,
             "Changes of further keys would explain more (chi-square {chi_free:.1}), but these gaits do not determine \
-             which keys: record more gaits. The largest deviation is {worst_text}."
+             which keys: record more gaits. The largest deviation is {deviation}."
         );
     } else if freedom < 1.0 {
         text += "These values are too few to judge the model: record more gaits.\n";
     } else {
         let _ = writeln!(
             text,
-            "The model explains these movements. The largest deviation is {worst_text}."
+            "The model explains these movements. The largest deviation is {deviation}."
         );
         if error_factor >= 1.05 {
             let _ = writeln!(

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use lizard_measure::{MAX_AGREEING_DIFFERENCE, format_verdict};
+use lizard_measure::{AGREEMENT_LIMIT, format_verdict};
 use lizard_robot::edit::{KeyError, with_comment, with_number};
 use lizard_video::Estimate;
 use serde::Serialize;
@@ -56,7 +56,7 @@ impl MeasuredKey {
             standard_error,
             robot_value,
             difference,
-            agrees: difference.abs() <= MAX_AGREEING_DIFFERENCE,
+            agrees: difference.abs() <= AGREEMENT_LIMIT,
             decimals,
             scale: 1.0,
         }

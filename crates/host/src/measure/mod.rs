@@ -16,7 +16,7 @@ mod steps;
 mod video;
 
 pub use command::{Args, run};
-pub use keys::{KeysArgs, find_keys};
+pub use keys::{KeysArgs, identify_keys};
 pub use servo::{ServoArgs, measure_servo};
 pub use sheet::{SheetArgs, write_sheet};
 pub use slope::{SlopeArgs, measure_slope};

@@ -1,13 +1,13 @@
 //! Draws a picture to share: the measured and the predicted path within a cycle, and the displacements per cycle.
 
-use lizard_measure::{COMPONENT_NAMES, GaitReport, Report};
+use lizard_measure::{COMPONENT_LABELS, GaitReport, Report};
 use svg::node::element::Group;
 
-use crate::shared::ink::{
+use crate::shared::plot::{Axis, Plot, draw_legend_entry};
+use crate::shared::shapes::{
     Anchor, GREY, SERVO_COLOURS, add_outline, add_title, circle, line, rectangle, render_svg, text,
     text_middle, text_start,
 };
-use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
 /// Width of the page, px.
 const PAGE_WIDTH: f64 = 1000.0;
@@ -69,12 +69,12 @@ fn draw_gait(group: Group, gait: &GaitReport, top: f64) -> Group {
     draw_bars(group, gait, top + 55.0)
 }
 
-/// Draws the path within a cycle on the floor; x points ahead, y to the left, mm.
+/// Draws the path within a cycle on the floor; x points forward, y to the left, mm.
 fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
     let predicted: Vec<(f64, f64)> = gait
         .predicted_path
         .iter()
-        .map(|place| (place.forward, place.left))
+        .map(|pose| (pose.forward, pose.left))
         .collect();
     let mut points: Vec<(f64, f64)> = gait
         .mean_path
@@ -83,25 +83,21 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         .collect();
     points.insert(0, (0.0, 0.0));
     points.push((gait.forward.mean, gait.left.mean));
-    let find_range = |component: fn(&(f64, f64)) -> f64| {
+    let extent_of = |component: fn(&(f64, f64)) -> f64| {
         let values = predicted.iter().chain(&points).map(component);
-        values.fold([0.0f64; 2], |[low, high], value| {
-            [low.min(value), high.max(value)]
+        values.fold([0.0f64; 2], |[min, max], value| {
+            [min.min(value), max.max(value)]
         })
     };
-    let ([min_x, max_x], [min_y, max_y]) =
-        (find_range(|point| point.0), find_range(|point| point.1));
+    let ([min_x, max_x], [min_y, max_y]) = (extent_of(|point| point.0), extent_of(|point| point.1));
     // Both directions have the same scale, mm per pixel, with a margin.
     let scale = ((max_x - min_x) / PATH_WIDTH)
         .max((max_y - min_y) / PANEL_HEIGHT)
         .max(1e-3)
         * 1.15;
-    let axis_range = |low: f64, high: f64, size: f64| {
-        let half_range = scale * size / 2.0;
-        (
-            (low + high) / 2.0 - half_range,
-            (low + high) / 2.0 + half_range,
-        )
+    let axis_range = |min: f64, max: f64, size: f64| {
+        let (middle, half_range) = ((min + max) / 2.0, scale * size / 2.0);
+        (middle - half_range, middle + half_range)
     };
     let plot = Plot {
         corner: (PATH_X, top),
@@ -109,15 +105,15 @@ fn draw_path(group: Group, gait: &GaitReport, top: f64) -> Group {
         x_range: axis_range(min_x, max_x, PATH_WIDTH),
         y_range: axis_range(min_y, max_y, PANEL_HEIGHT),
     };
-    let tick_step = find_tick_step(scale * PATH_WIDTH);
-    let (ahead, left) = (
+    let tick_step = compute_tick_step(scale * PATH_WIDTH);
+    let (forward_axis, left_axis) = (
         Axis::new(tick_step, "ahead, mm"),
         Axis::new(tick_step, "left, mm"),
     );
-    let group = plot.draw_grid(group, &ahead, &left);
-    let mut group =
-        plot.draw_axes(group, &ahead, &left)
-            .add(plot.curve(&predicted, PREDICTED_COLOUR, 2.0));
+    let group = plot.draw_grid(group, &forward_axis, &left_axis);
+    let mut group = plot
+        .draw_axes(group, &forward_axis, &left_axis)
+        .add(plot.curve(&predicted, PREDICTED_COLOUR, 2.0));
     for point in &gait.mean_path {
         let (x, y) = (point.forward.mean, point.left.mean);
         let [error_x, error_y] = [&point.forward, &point.left]
@@ -161,42 +157,40 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
         ];
         error_ends.into_iter().chain(component.predicted)
     });
-    let [low, high] = ends.fold([0.0f64; 2], |[low, high], end| {
-        [low.min(end), high.max(end)]
-    });
-    let margin = 0.1 * (high - low).max(1e-3);
+    let [min, max] = ends.fold([0.0f64; 2], |[min, max], end| [min.min(end), max.max(end)]);
+    let margin = 0.1 * (max - min).max(1e-3);
     let plot = Plot {
         corner: (BARS_X, top),
         size: (BARS_WIDTH, PANEL_HEIGHT),
         x_range: (0.5, 0.5 + components.len() as f64),
-        y_range: (low - margin, high + margin),
+        y_range: (min - margin, max + margin),
     };
     // The tick step is longer than the axis, so no ticks are drawn. The names of the bars are below the axis.
     let name_axis = Axis::new(10.0, "");
-    let value_axis = Axis::new(find_tick_step(high - low + 2.0 * margin), "");
+    let value_axis = Axis::new(compute_tick_step(max - min + 2.0 * margin), "");
     let mut group = plot.draw_grid(group, &name_axis, &value_axis);
     for (i, component) in components.into_iter().enumerate() {
-        // Each component has a slot of width 1, with the measured bar on the left and the predicted bar on the right.
-        let slot_x = 0.5 + i as f64;
+        // Each component has an interval of width 1: the measured bar is on the left, the predicted bar on the right.
+        let interval_x = 0.5 + i as f64;
         let draw_bar = |offset: f64, value: f64, colour: &str| {
-            let (left, top) = plot.to_page_point(slot_x + offset, value.max(0.0));
-            let (right, bottom) = plot.to_page_point(slot_x + offset + 0.28, value.min(0.0));
+            let (left, top) = plot.to_page_point(interval_x + offset, value.max(0.0));
+            let (right, bottom) = plot.to_page_point(interval_x + offset + 0.28, value.min(0.0));
             rectangle((left, top), (right - left, bottom - top), colour)
         };
         group = group.add(draw_bar(0.2, component.mean, MEASURED_COLOUR));
         if let Some(predicted) = component.predicted {
             group = group.add(draw_bar(0.52, predicted, PREDICTED_COLOUR).set("fill-opacity", 0.6));
         }
-        let [low, high] = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
+        let error_ends = [-ERROR_BAR_STANDARD_ERRORS, ERROR_BAR_STANDARD_ERRORS]
             .map(|errors| component.mean + errors * component.standard_error);
-        let x = slot_x + 0.34;
+        let x = interval_x + 0.34;
         group = group.add(line(
-            plot.to_page_point(x, low),
-            plot.to_page_point(x, high),
+            plot.to_page_point(x, error_ends[0]),
+            plot.to_page_point(x, error_ends[1]),
             "black",
             1.5,
         ));
-        for end in [low, high] {
+        for end in error_ends {
             group = group.add(line(
                 plot.to_page_point(x - 0.05, end),
                 plot.to_page_point(x + 0.05, end),
@@ -205,11 +199,11 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
             ));
         }
         let point_below = |lines: f64| {
-            let (x, y) = plot.to_page_point(slot_x + 0.5, plot.y_range.0);
+            let (x, y) = plot.to_page_point(interval_x + 0.5, plot.y_range.0);
             (x, y + 20.0 + 18.0 * lines)
         };
         group = group
-            .add(text_middle(COMPONENT_NAMES[i], point_below(0.0), 15.0))
+            .add(text_middle(COMPONENT_LABELS[i], point_below(0.0), 15.0))
             .add(text(
                 &component.format_verdict(),
                 point_below(1.0),
@@ -228,7 +222,7 @@ fn draw_bars(group: Group, gait: &GaitReport, top: f64) -> Group {
 }
 
 /// Returns the distance between ticks that divides `range` into 4 to 10 steps: 1, 2 or 5 times a power of ten.
-fn find_tick_step(range: f64) -> f64 {
+fn compute_tick_step(range: f64) -> f64 {
     let max_step = range / 4.0;
     let power = 10f64.powf(max_step.log10().floor());
     let factor = [5.0, 2.0]

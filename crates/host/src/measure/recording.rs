@@ -13,7 +13,7 @@ const RULER_RANGE: [f64; 2] = [85.0, 115.0];
 
 /// The options that describe how videos were recorded.
 #[derive(clap::Args, Debug)]
-pub(super) struct Recording {
+pub(super) struct RecordingArgs {
     /// Frames per second [default: from the video, or from the frames' file names, such as 1.033s.png]
     #[arg(long, value_name = "RATE", value_parser = parse_rate)]
     fps: Option<f64>,
@@ -22,7 +22,7 @@ pub(super) struct Recording {
     ruler: f64,
 }
 
-impl Recording {
+impl RecordingArgs {
     /// Returns the setup of a video. `deck_height` is the height of the card's tag above the strips, mm.
     pub(super) fn setup(&self, deck_height: f64) -> Setup {
         Setup {
@@ -40,13 +40,13 @@ impl Recording {
     }
 }
 
-/// Parses a number in a range. `unit` is for the error text.
-pub(super) fn parse_number(text: &str, [low, high]: [f64; 2], unit: &str) -> Result<f64, String> {
+/// Parses a number in a range. `unit` is for the error message.
+pub(super) fn parse_number(text: &str, [min, max]: [f64; 2], unit: &str) -> Result<f64, String> {
     let number = text
         .parse()
         .ok()
-        .filter(|value| (low..=high).contains(value));
-    number.ok_or_else(|| format!("must be between {low} and {high} {unit}"))
+        .filter(|value| (min..=max).contains(value));
+    number.ok_or_else(|| format!("must be between {min} and {max} {unit}"))
 }
 
 fn parse_rate(text: &str) -> Result<f64, String> {

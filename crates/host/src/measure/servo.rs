@@ -10,7 +10,7 @@ use lizard_video::{AnalysedVideo, Estimate, Jig, MeasuredServo};
 use serde::Serialize;
 
 use super::measured_key::{self, MeasuredKey};
-use super::recording::{Recording, parse_height, parse_number};
+use super::recording::{RecordingArgs, parse_height, parse_number};
 use super::steps::{self, parse_servo};
 use super::video::video_failure;
 use crate::shared::progress::Spinner;
@@ -54,7 +54,7 @@ pub struct ServoArgs {
     #[arg(long, value_parser = parse_volts)]
     volts: Option<f64>,
     #[command(flatten)]
-    recording: Recording,
+    recording: RecordingArgs,
     /// Write a robot.toml with the measured values of the keys that disagree
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 
-use lizard_measure::Paper;
+use lizard_measure::PaperSize;
 
 use crate::Failure;
 use crate::shared::files;
@@ -40,8 +40,8 @@ pub struct SheetArgs {
 /// Fails if the file cannot be written.
 pub fn write_sheet(args: SheetArgs) -> Result<(), Failure> {
     let paper = match args.paper {
-        PaperName::A4 => Paper::A4,
-        PaperName::Letter => Paper::Letter,
+        PaperName::A4 => PaperSize::A4,
+        PaperName::Letter => PaperSize::Letter,
     };
     files::write(&args.output, &paper.draw_tag_sheet())?;
     let file = args.output.display();

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use lizard_measure::{NamedVideo, board_height};
+use lizard_measure::{NamedVideo, compute_board_height};
 use lizard_robot::Robot;
 use lizard_video::{Estimate, MeasuredSlide};
 use serde::Serialize;
 
 use super::measured_key::{self, MeasuredKey};
-use super::recording::{Recording, parse_height};
+use super::recording::{RecordingArgs, parse_height};
 use super::video::video_failure;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
@@ -33,7 +33,7 @@ pub struct SlopeArgs {
     #[arg(long, value_name = "MM", value_parser = parse_height)]
     height: Option<f64>,
     #[command(flatten)]
-    recording: Recording,
+    recording: RecordingArgs,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -69,7 +69,7 @@ struct SlideReport {
 /// Fails if a video cannot be read or shows no slide.
 pub fn measure_slope(args: SlopeArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
-    let height = args.height.unwrap_or_else(|| board_height(&robot));
+    let height = args.height.unwrap_or_else(|| compute_board_height(&robot));
     let setup = args.recording.setup(height);
     let spinner = Spinner::new("reading the frames");
     let measure_slide = |path: &PathBuf| {

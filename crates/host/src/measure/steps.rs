@@ -21,8 +21,8 @@ const CHECK_SPACING_DEG: f64 = 1.0;
 ///
 /// Pipe the commands into `lizard console`: the time between them matters. The servo jumps by 60 deg, so the robot must
 /// stand free, or the servo must be off its link. robot.toml needs `slew = 1000.0` under [limits]: change it in a copy,
-/// and flash this copy only for the measurement. The first command, `factory`, replaces the board's calibration by that
-/// of robot.toml until the next reset.
+/// and flash this copy only for the measurement. The first command, `factory`, replaces the board's calibration with
+/// that of robot.toml until the next reset.
 #[derive(clap::Args, Debug)]
 #[command(after_help = "Example:
   lizard measure steps --servo A1 --robot jig.toml | lizard console")]
@@ -52,9 +52,8 @@ pub(super) fn parse_servo(text: &str) -> Result<usize, String> {
 pub fn print_steps(args: StepsArgs) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     check_slew(&robot)?;
-    let lines = list_timed_lines(&robot, args.servo)?;
     let mut out = io::stdout().lock();
-    for (line, pause_s) in lines {
+    for (line, pause_s) in list_timed_lines(&robot, args.servo)? {
         writeln!(out, "{line}")?;
         out.flush()?;
         if !args.list {

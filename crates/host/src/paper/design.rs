@@ -4,7 +4,7 @@
 use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
-    BestValues, CLAIMED_LCI, ChartPoint, Conditioning, Design, PROPORTION_SUM, Performance,
+    BestValues, CLAIMED_LCI, ChartPoint, Design, LciStatistics, PROPORTION_SUM, Performance,
     Proportions, Requirements, Search, compute_chart_points, find_design, merge_and_rank,
     triangle_points,
 };
@@ -13,8 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::pose_args::Quantity;
 use crate::shared::progress::create_progress_bar;
+use crate::shared::quantity::Quantity;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Number of sampling rings in the inscribed circle of a single design.
@@ -103,11 +103,11 @@ fn parse_base(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Prints the synthesis, the charts or the ranking.
+/// Prints the synthesis, the chart points or the ranking.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, proportions outside the design space, `--part` without `--search`, or an output
-/// that cannot be written.
+/// Fails if robot.toml is invalid, if the proportions are outside the design space, if `--part` is given without
+/// `--search`, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.spread.part().is_some() && !args.search {
         return Err(Failure::Input("--part requires --search".to_owned()));
@@ -117,7 +117,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let mut out = BufWriter::new(io::stdout().lock());
     if args.chart {
-        print_charts(&args, &mut out)?;
+        print_chart_points(&args, &mut out)?;
     } else if args.search {
         print_ranking(&args, &robot, l0, proportions, &mut out)?;
     } else {
@@ -202,8 +202,8 @@ LCI in MIC     mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1}
                     performance.r_mic / self.d,
                     performance.y_mic,
                     lci.mean,
-                    lci.least,
-                    lci.most,
+                    lci.min,
+                    lci.max,
                     100.0 * lci.share_above,
                 );
                 text += &format_claim_verdict(lci, performance.r_mic);
@@ -236,17 +236,11 @@ lg1, lg13               {:8.2}   robot.toml; the paper gives no rule
 }
 
 /// Formats the line about the paper's claim "LCI > 0.7".
-fn format_claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
-    let mean_verdict = if lci.mean > CLAIMED_LCI {
-        "holds"
-    } else {
-        "fails"
-    };
-    let bound_verdict = if lci.least > CLAIMED_LCI {
-        "holds"
-    } else {
-        "fails"
-    };
+fn format_claim_verdict(lci: &LciStatistics, r_mic: f64) -> String {
+    let [mean_verdict, bound_verdict] = [lci.mean, lci.min].map(|lci| match lci > CLAIMED_LCI {
+        true => "holds",
+        false => "fails",
+    });
     format!(
         "\"LCI > {CLAIMED_LCI}\"    {mean_verdict} as a mean, {bound_verdict} as a bound; as a bound it holds within {:.2} mm of the centre ({:.0} % of the radius)\n",
         lci.radius_above,
@@ -254,8 +248,8 @@ fn format_claim_verdict(lci: &Conditioning, r_mic: f64) -> String {
     )
 }
 
-/// Computes the performance charts with a grid of `step`, with a progress bar.
-pub fn compute_charts(step: f64, ring_count: usize) -> Vec<ChartPoint> {
+/// Computes the points of the performance charts on a grid of `step`, and shows a progress bar.
+pub fn compute_points(step: f64, ring_count: usize) -> Vec<ChartPoint> {
     let points = triangle_points(step);
     let bar = create_progress_bar(
         points.len(),
@@ -266,8 +260,8 @@ pub fn compute_charts(step: f64, ring_count: usize) -> Vec<ChartPoint> {
     points
 }
 
-fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
-    let points = compute_charts(args.step, COARSE_RING_COUNT);
+fn print_chart_points(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
+    let points = compute_points(args.step, COARSE_RING_COUNT);
     if args.json {
         return Ok(json::write_line(out, &points)?);
     }
@@ -294,7 +288,7 @@ fn print_charts(args: &Args, out: &mut impl Write) -> Result<(), Failure> {
             Some(lci) => writeln!(
                 out,
                 ",{:.6},{:.6},{:.6},{:.6},{:.6}",
-                lci.mean, lci.least, lci.most, lci.share_above, lci.radius_above
+                lci.mean, lci.min, lci.max, lci.share_above, lci.radius_above
             )?,
             None => writeln!(out, ",,,,,")?,
         }
@@ -324,12 +318,12 @@ fn print_ranking(
     };
     let search = Search::new(args.step, requirements);
     let point_count = search.point_count(args.spread.count_own_pieces(search.piece_count()));
-    let progress = create_progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
-    let search_piece = |index| search.compute_piece(index, &|| progress.inc(1));
+    let bar = create_progress_bar(point_count, "designs {bar:40} {pos}/{len} {eta}");
+    let search_piece = |index| search.compute_piece(index, &|| bar.inc(1));
     let pieces = args
         .spread
         .run_pieces(args, search.piece_count(), search_piece)?;
-    progress.finish_and_clear();
+    bar.finish_and_clear();
     let Some(pieces) = pieces else {
         return Ok(());
     };
@@ -367,7 +361,7 @@ fn print_ranking(
             design.margin,
             design.stride,
             design.score,
-            if design.pareto { " *" } else { "" }
+            if design.is_pareto_optimal { " *" } else { "" }
         )
     };
     for (i, design) in top_designs.iter().enumerate() {

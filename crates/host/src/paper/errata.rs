@@ -1,8 +1,8 @@
 //! `lizard errata`: compares every equation of the paper with the geometric solution.
 
-use std::io::{self, Write as _};
-
-use lizard_paper::errata::{Entry, SAMPLE_COUNT, equation_count, format_markdown, format_text};
+use lizard_paper::errata::{
+    SAMPLE_COUNT, equation_count, evaluate_equations, format_markdown, format_text,
+};
 
 use crate::Failure;
 use crate::shared::json;
@@ -29,27 +29,16 @@ pub struct Args {
     json: bool,
 }
 
-/// Measures every equation and prints the table.
+/// Evaluates every equation and prints the table.
 ///
 /// # Errors
 /// Fails if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let entries = measure(args.samples);
-    let mut out = io::stdout().lock();
-    if args.json {
-        json::write_line(&mut out, &entries)?;
-    } else if args.markdown {
-        out.write_all(format_markdown(&entries, args.samples).as_bytes())?;
-    } else {
-        out.write_all(format_text(&entries, args.samples).as_bytes())?;
-    }
-    Ok(())
-}
-
-/// Measures every equation at `sample_count` random poses, with a progress bar.
-fn measure(sample_count: u32) -> Vec<Entry> {
     let bar = create_progress_bar(equation_count(), "equations {bar:40} {pos}/{len}");
-    let entries = lizard_paper::errata::measure(sample_count, &|| bar.inc(1));
+    let results = evaluate_equations(args.samples, &|| bar.inc(1));
     bar.finish_and_clear();
-    entries
+    json::print_json_or_text(args.json, &results, || match args.markdown {
+        true => format_markdown(&results, args.samples),
+        false => format_text(&results, args.samples),
+    })
 }

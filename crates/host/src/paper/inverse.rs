@@ -1,7 +1,7 @@
 //! `lizard pose --head X Y --tail X Y`: computes the servo angles that put head and tail at given points.
 
 use lizard_kinematics::{AssemblyMode, Check, Elbow, End, InverseSolution, Pose, Vector};
-use lizard_robot::{Robot, verdict};
+use lizard_robot::{Robot, violations};
 use serde::Serialize;
 
 use crate::Failure;
@@ -40,8 +40,10 @@ struct FiveBarSolutions {
 /// The solution in one of the four working modes (elbow of the left arm, elbow of the right arm).
 #[derive(Serialize)]
 struct ModeSolution {
-    left: &'static str,
-    right: &'static str,
+    #[serde(rename = "left")]
+    left_elbow: &'static str,
+    #[serde(rename = "right")]
+    right_elbow: &'static str,
     /// Position of the end point relative to the crank tips: `ahead` or `behind`.
     assembly_mode: &'static str,
     /// Angle of the left servo (A1 or A4) in the chassis frame, degrees.
@@ -85,7 +87,7 @@ fn solve_end(robot: &Robot, end: End, point: Vector) -> FiveBarSolutions {
                 .map(|solution| check_solution(robot, end, local_point, solution));
             (solutions.collect(), None)
         }
-        Err(fault) => (Vec::new(), Some(fault.to_string())),
+        Err(infeasible) => (Vec::new(), Some(infeasible.to_string())),
     };
     FiveBarSolutions {
         point: [point.x, point.y],
@@ -116,7 +118,7 @@ fn check_solution(
         .servos()
         .into_iter()
         .zip(angles)
-        .filter_map(|(servo, angle)| verdict::find_travel_violation(robot, servo, angle))
+        .filter_map(|(servo, angle)| violations::find_travel_violation(robot, servo, angle))
         .collect();
     let is_behind = solution.assembly_mode == AssemblyMode::Behind;
     if is_behind {
@@ -124,8 +126,8 @@ fn check_solution(
             "another assembly mode: the end point would be behind the crank tips".to_string(),
         );
     }
-    if let Err(fault) = &pose {
-        reasons.push(fault.to_string());
+    if let Err(infeasible) = &pose {
+        reasons.push(infeasible.to_string());
     }
     if let Ok(pose) = &pose {
         // Behind the crank tips, the type-2 margin is negative, which the reason above already states.
@@ -138,8 +140,8 @@ fn check_solution(
         );
     }
     ModeSolution {
-        left: name_elbow(solution.working_mode.left),
-        right: name_elbow(solution.working_mode.right),
+        left_elbow: name_elbow(solution.working_mode.left),
+        right_elbow: name_elbow(solution.working_mode.right),
         assembly_mode: if is_behind { "behind" } else { "ahead" },
         theta_left: angles[0],
         theta_right: angles[1],
@@ -185,7 +187,7 @@ fn combine_ends(
     }
     if is_complete {
         match robot.lizard().solve(&Pose::from(angles)) {
-            Ok(solution) => reasons.extend(verdict::find_pose_violations(robot, &solution)),
+            Ok(solution) => reasons.extend(violations::find_pose_violations(robot, &solution)),
             Err(infeasible) => reasons.push(infeasible.to_string()),
         }
     }
@@ -205,25 +207,25 @@ fn combine_ends(
 }
 
 fn format_text(report: &Report) -> String {
-    let mut page = String::new();
+    let mut text = String::new();
     for (name, five_bar, servos) in [
         ("head", &report.head, ["A1 theta1", "A2 theta4"]),
         ("tail", &report.tail, ["A3 theta8", "A4 theta5"]),
     ] {
         let Some(five_bar) = five_bar else { continue };
         let [x, y] = five_bar.point;
-        page += &format!(
+        text += &format!(
             "{name} at ({:.3}, {:.3}) mm\n",
             round_decimals(x, 3),
             round_decimals(y, 3)
         );
         if let Some(reason) = &five_bar.why {
-            page += &format!("  {reason}\n\n");
+            text += &format!("  {reason}\n\n");
             continue;
         }
         // The columns are in servo order, A3 before A4. The tail's left servo is A4, so its left and right are swapped.
         let is_swapped = name == "tail";
-        page += &format!(
+        text += &format!(
             "  {} arm   {} arm   {:>10} {:>10}  assembly  margin   error mm   this robot\n",
             &servos[0][..2],
             &servos[1][..2],
@@ -238,13 +240,13 @@ fn format_text(report: &Report) -> String {
                     format!("no: {first_reason}; and {} more", other_reasons.len())
                 }
             };
-            let mut elbows = [solution.left, solution.right];
+            let mut elbows = [solution.left_elbow, solution.right_elbow];
             let mut angles = [solution.theta_left, solution.theta_right];
             if is_swapped {
                 elbows.reverse();
                 angles.reverse();
             }
-            page += &format!(
+            text += &format!(
                 "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
                 elbows[0],
                 elbows[1],
@@ -255,19 +257,19 @@ fn format_text(report: &Report) -> String {
                 format_mm_error(solution.error_mm)
             );
         }
-        page.push('\n');
+        text.push('\n');
     }
     if let Some(pose) = &report.pose {
-        page += &format!(
+        text += &format!(
             "pose {:.3} {:.3} {:.3} {:.3}   (A1 A2 A3 A4, as the console takes it)\n",
             pose.theta1, pose.theta4, pose.theta8, pose.theta5
         );
-        page += &match report.safe {
+        text += &match report.safe {
             true => "safe yes\n".to_string(),
             false => format!("safe no: {}\n", report.why.join("; ")),
         };
     }
-    page
+    text
 }
 
 /// Formats an error in mm. Errors below 1e-9 are rounding errors, so their values are not printed.

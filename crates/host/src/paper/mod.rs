@@ -7,7 +7,7 @@ pub mod errata;
 mod inverse;
 mod mobility;
 pub mod pose;
-mod pose_line;
+mod pose_output;
 mod poses;
 mod singularity;
 mod solve;

@@ -3,7 +3,7 @@
 use lizard_kinematics::Vector;
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
-use crate::shared::pose_args::Quantity;
+use crate::shared::quantity::Quantity;
 use crate::{Failure, PoseArgs, RobotFile};
 
 /// Compute the robot's joints, singularities, degrees of freedom or rates at a pose
@@ -72,8 +72,8 @@ enum Subject {
 /// Computes the pose and prints it.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, an unreachable pose, an invalid line of the stream, or an output
-/// that cannot be written.
+/// Fails if robot.toml is invalid, if the pose is unreachable, if a line of the stream is invalid, or if the output
+/// cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let end_points = [&args.head, &args.tail]

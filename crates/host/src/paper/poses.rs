@@ -6,7 +6,8 @@ use std::io::{BufRead, Read};
 use lizard_kinematics::Pose;
 
 use crate::Failure;
-use crate::shared::pose_args::{ANGLE_NAMES, NumberError, Quantity};
+use crate::shared::pose_args::ANGLE_NAMES;
+use crate::shared::quantity::{NumberError, Quantity};
 
 /// Name of the optional time column, as in `lizard gaits --trace`.
 const SECONDS: &str = "seconds";

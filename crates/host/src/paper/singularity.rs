@@ -58,7 +58,7 @@ impl Matrix {
         for (name, row) in self.rows.iter().zip(&self.values) {
             text += &format!("\n  {name:7}");
             for value in row {
-                // A value that is zero except for rounding errors is printed as a point.
+                // A value that is zero except for rounding errors is printed as a dot.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
                     false => format!(" {:9.2}", round_decimals(*value, 2)),
@@ -69,7 +69,7 @@ impl Matrix {
     }
 }
 
-/// The output; the field names are the JSON keys.
+/// The output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
 struct Report {
     /// Derivatives with respect to the servo angles, mm per radian.
@@ -79,8 +79,10 @@ struct Report {
     /// det K* by elimination.
     determinant: f64,
     /// det K* as the product of the determinants of its diagonal blocks.
-    factored: f64,
-    blocks: Factors,
+    #[serde(rename = "factored")]
+    factored_determinant: f64,
+    #[serde(rename = "blocks")]
+    block_determinants: BlockReport,
     /// lg12 lg13 sin(theta_lg12 - theta_lg13) for each leg, in servo order.
     leg_determinants: [f64; 4],
     nearest: Vec<NearestSingularity>,
@@ -88,7 +90,7 @@ struct Report {
 
 /// The determinants of the diagonal blocks of K*.
 #[derive(Serialize)]
-struct Factors {
+struct BlockReport {
     head: f64,
     tail: f64,
     left: f64,
@@ -98,17 +100,19 @@ struct Factors {
 /// The nearest singular pose of one kind.
 #[derive(Serialize)]
 struct NearestSingularity {
-    what: String,
+    #[serde(rename = "what")]
+    description: String,
     /// Euclidean distance in servo angles, degrees.
     distance: f64,
     /// Each servo's turn to the singular pose, in servo order, degrees.
-    turn: [f64; 4],
+    #[serde(rename = "turn")]
+    turns: [f64; 4],
 }
 
 /// Prints the matrices and the nearest singularities.
 ///
 /// # Errors
-/// Fails for an output that cannot be written.
+/// Fails if the output cannot be written.
 pub fn print(robot: &Robot, solution: &Solution, is_json: bool) -> Result<(), Failure> {
     let report = compute_report(robot, solution);
     json::print_json_or_text(is_json, &report, || format_text(&report))
@@ -134,9 +138,9 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
             Singularity::RightArm,
         ] {
             if let Some((distance, pose)) = find_nearest_singularity(&five_bar, kind, angles) {
-                let mut turn = [0.0; 4];
-                turn[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
-                turn[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
+                let mut turns = [0.0; 4];
+                turns[servos[0]] = sign * wrap(pose.theta_left - angles[0]);
+                turns[servos[1]] = sign * wrap(pose.theta_right - angles[1]);
                 let description = match kind {
                     Singularity::Couplers => format!("{end} type 2, the end point comes loose"),
                     Singularity::LeftArm => {
@@ -147,9 +151,9 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
                     }
                 };
                 nearest.push(NearestSingularity {
-                    what: description,
+                    description,
                     distance,
-                    turn,
+                    turns,
                 });
             }
         }
@@ -157,12 +161,12 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
     for (servo, angle) in <[f64; 4]>::from(solution.pose).into_iter().enumerate() {
         // A leg's change points are at 0 and 180 degrees.
         let turn_deg = 180.0 * (angle / 180.0).round() - angle;
-        let mut turn = [0.0; 4];
-        turn[servo] = turn_deg;
+        let mut turns = [0.0; 4];
+        turns[servo] = turn_deg;
         nearest.push(NearestSingularity {
-            what: format!("leg on A{} flat, a change point", servo + 1),
+            description: format!("leg on A{} flat, a change point", servo + 1),
             distance: turn_deg.abs(),
-            turn,
+            turns,
         });
     }
     nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -170,8 +174,8 @@ fn compute_report(robot: &Robot, solution: &Solution) -> Report {
         k: Matrix::new(&ANGLE_NAMES, solution.active_matrix()),
         k_star: Matrix::new(&PASSIVE_NAMES, k_star),
         determinant: matrix.determinant(),
-        factored: blocks.determinant(),
-        blocks: Factors {
+        factored_determinant: blocks.determinant(),
+        block_determinants: BlockReport {
             head,
             tail,
             left,
@@ -227,8 +231,8 @@ pub fn find_nearest_singularity(
 }
 
 fn format_text(report: &Report) -> String {
-    let blocks = &report.blocks;
-    let mut page = format!(
+    let blocks = &report.block_determinants;
+    let mut text = format!(
         "K: rows are the loop equations, columns the servos' angles (mm per radian)\n{}\n\
          K*: the same rows, columns are the passive joints (mm per radian; for s, mm per mm)\n{}\n\
          det K* by elimination        {:+.9e}\n\
@@ -241,7 +245,7 @@ fn format_text(report: &Report) -> String {
         report.k.to_text(),
         report.k_star.to_text(),
         report.determinant,
-        report.factored,
+        report.factored_determinant,
         round_decimals(blocks.head, 2),
         round_decimals(blocks.tail, 2),
         round_decimals(blocks.left, 2),
@@ -251,16 +255,16 @@ fn format_text(report: &Report) -> String {
             .map(|det| format!("{:+.1}", round_decimals(det, 1)))
             .join(" "),
     );
-    page += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
+    text += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
     for singularity in &report.nearest {
-        let turn = singularity
-            .turn
+        let turns = singularity
+            .turns
             .map(|angle| format!("{:+8.2}", round_decimals(angle, 2)))
             .join(" ");
-        page += &format!(
-            "  {:7.2} deg  {turn}   {}\n",
-            singularity.distance, singularity.what
+        text += &format!(
+            "  {:7.2} deg  {turns}   {}\n",
+            singularity.distance, singularity.description
         );
     }
-    page
+    text
 }

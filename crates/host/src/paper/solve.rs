@@ -10,7 +10,7 @@ use lizard_robot::Robot;
 use rayon::prelude::*;
 
 use crate::Failure;
-use crate::paper::pose_line::{self, PoseLine};
+use crate::paper::pose_output::{self, PoseLine};
 use crate::paper::poses::{PoseReader, TimedPose};
 
 /// Number of poses that are solved together, which limits memory use.
@@ -25,7 +25,7 @@ const MAX_WAITING_BLOCKS: usize = 32;
 /// Solves a pose and prints it. Without a pose, solves the poses from standard input.
 ///
 /// # Errors
-/// Fails for an invalid pose or line of the stream, or an output that cannot be written.
+/// Fails if there is neither pose nor stream, if a line of the stream is invalid, or if the output cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Failure> {
     match pose {
         Some(pose) => Ok(io::stdout().write_all(&solve_pose(robot, pose, is_json)?)?),
@@ -41,7 +41,7 @@ pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Fa
 fn solve_pose(robot: &Robot, pose: &Pose, is_json: bool) -> Result<Vec<u8>, Failure> {
     let outcome = robot.lizard().solve(pose);
     if !is_json {
-        return Ok(pose_line::format_page(robot, pose, &outcome).into_bytes());
+        return Ok(pose_output::format_page(robot, pose, &outcome).into_bytes());
     }
     let mut line = serde_json::to_vec(&PoseLine::new(robot, None, &outcome))?;
     line.push(b'\n');
@@ -54,7 +54,7 @@ fn solve_stream(robot: &Robot, is_json: bool) -> Result<(), Failure> {
     let mut poses = PoseReader::new(io::stdin().lock())?;
     let (sender, receiver) = mpsc::sync_channel::<Vec<u8>>(MAX_WAITING_BLOCKS);
     thread::scope(|scope| {
-        let heading = (!is_json).then(|| pose_line::format_heading(poses.has_time()));
+        let heading = (!is_json).then(|| pose_output::format_heading(poses.has_time()));
         let writer = scope.spawn(move || write_blocks(receiver, heading));
         let outcome = solve_all(robot, is_json, &mut poses, &sender);
         drop(sender);
@@ -126,7 +126,7 @@ fn format_lines(robot: &Robot, poses: &[TimedPose], is_json: bool) -> Result<Vec
                 &PoseLine::new(robot, timed_pose.seconds, &outcome),
             )?;
         } else {
-            text.extend_from_slice(pose_line::format_row(robot, timed_pose, &outcome).as_bytes());
+            text.extend_from_slice(pose_output::format_row(robot, timed_pose, &outcome).as_bytes());
         }
         text.push(b'\n');
     }

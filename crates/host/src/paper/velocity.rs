@@ -6,7 +6,7 @@ use serde::Serialize;
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
-use crate::shared::pose_args::Quantity;
+use crate::shared::quantity::Quantity;
 
 /// Longest time step for finite differences, s.
 const MAX_STEP_S: f64 = 2e-4;
@@ -86,7 +86,7 @@ pub fn print(
 }
 
 fn format_text(rows: &[Row]) -> String {
-    let mut page =
+    let mut text =
         "joint        value          rate 1/s   acceleration 1/s^2   against finite differences\n"
             .to_owned();
     for row in rows {
@@ -100,7 +100,7 @@ fn format_text(rows: &[Row]) -> String {
             (Some(rate), Some(acceleration)) => format!("off by {rate:+.0e}, {acceleration:+.0e}"),
             _ => "no neighbours".to_string(),
         };
-        page += &format!(
+        text += &format!(
             "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}\n",
             row.joint,
             round_decimals(row.value, 4),
@@ -109,7 +109,7 @@ fn format_text(rows: &[Row]) -> String {
             round_decimals(row.acceleration, 4)
         );
     }
-    page
+    text
 }
 
 /// Lists the name, unit and value of each joint and coordinate.

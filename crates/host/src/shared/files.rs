@@ -254,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn error_names_the_unwritable_file() {
+    fn the_error_names_the_unwritable_file() {
         assert_eq!(
             write_error_text(Path::new("/dev/null/folder/a.toml")),
             "cannot write /dev/null/folder/a.toml: Not a directory (os error 20)"
@@ -311,7 +311,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn error_in_a_read_only_folder_names_only_the_file() {
+    fn the_error_in_a_read_only_folder_names_only_the_file() {
         let message = write_error_text(Path::new("/proc/self/a.toml"));
         assert!(
             message.starts_with("cannot write /proc/self/a.toml: "),
@@ -322,7 +322,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn error_names_a_full_device() {
+    fn the_error_names_a_full_device() {
         let message = write(Path::new("/dev/full"), b"<svg/>")
             .expect_err("the full device must refuse the write");
         let message = message.to_string();

@@ -10,17 +10,19 @@
     allow(dead_code, reason = "a build without a feature uses fewer helpers")
 )]
 
+pub mod displacement;
+pub mod escape;
 pub mod failure;
 pub mod files;
 #[cfg(any(feature = "simulator", feature = "console"))]
 pub mod firmware;
-pub mod ink;
 pub mod json;
 pub mod number;
-pub mod plain;
 pub mod plot;
 pub mod pose_args;
 pub mod progress;
+pub mod quantity;
 pub mod robot_file;
+pub mod shapes;
 pub mod spread;
 pub mod suggestion;

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use svg::node::element::{Group, Path, Polyline};
 
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, GRID_COLOUR, add_outline, curve, line, rectangle, text_end, text_middle, text_start,
 };
 

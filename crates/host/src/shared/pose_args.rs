@@ -1,81 +1,11 @@
-//! The options for a pose, and the bounds of quantities on the command line. Beyond the bounds, an f64 has too few
-//! digits for an exact result.
-
-use std::fmt;
+//! The options for a pose.
 
 use lizard_kinematics::Pose;
 
+use crate::shared::quantity::Quantity;
+
 /// The servo angles' names in servo order, A1 to A4. Columns, flags and keys are in this order everywhere.
 pub const ANGLE_NAMES: [&str; 4] = ["theta1", "theta4", "theta8", "theta5"];
-
-/// A physical quantity with the largest absolute value allowed on the command line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Quantity {
-    max: f64,
-    unit: &'static str,
-}
-
-impl Quantity {
-    /// An angle, degrees; the bound is about 2800 turns.
-    pub const ANGLE: Self = Self::with_max(1e6, "degrees");
-    /// A servo speed, deg/s.
-    pub const RATE: Self = Self::with_max(1e6, "deg/s");
-    /// A servo acceleration, deg/s^2.
-    pub const ACCELERATION: Self = Self::with_max(1e9, "deg/s^2");
-    /// A time, s.
-    pub const TIME: Self = Self::with_max(1e9, "s");
-    /// A length in units of D.
-    pub const PROPORTION: Self = Self::with_max(1e6, "D");
-    /// A coordinate or a length, mm.
-    pub const LENGTH: Self = Self::with_max(1e6, "mm");
-
-    const fn with_max(max: f64, unit: &'static str) -> Self {
-        Self { max, unit }
-    }
-
-    /// Returns a clap parser for this quantity.
-    pub fn parser(self) -> impl Fn(&str) -> Result<f64, String> + Clone {
-        move |text| self.parse(text).map_err(|error| format!("it {error}"))
-    }
-
-    /// Parses a number and checks its bounds.
-    ///
-    /// # Errors
-    /// Fails if the text is not a number, or if the number is out of bounds; NaN and infinity are out of bounds.
-    pub fn parse(self, text: &str) -> Result<f64, NumberError> {
-        match text.parse::<f64>() {
-            Ok(value) if value.abs() <= self.max => Ok(value),
-            Ok(value) if !value.is_finite() => Err(NumberError::NotFinite),
-            Ok(_) => Err(NumberError::OutOfRange(self)),
-            Err(_) => Err(NumberError::NotANumber),
-        }
-    }
-}
-
-/// An error in a number on the command line. The message completes a sentence that begins with the number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NumberError {
-    /// The text is not a number.
-    NotANumber,
-    /// The number is infinite, NaN, or too large for an f64.
-    NotFinite,
-    /// The number is outside the bounds of its quantity.
-    OutOfRange(Quantity),
-}
-
-impl fmt::Display for NumberError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotANumber => f.write_str("is not a number"),
-            Self::NotFinite => f.write_str("is not a finite number"),
-            Self::OutOfRange(Quantity { max, unit }) => {
-                write!(f, "is not between -{max} and {max} {unit}")
-            }
-        }
-    }
-}
-
-impl std::error::Error for NumberError {}
 
 /// The options `--theta1`, `--theta4`, `--theta8` and `--theta5`.
 #[derive(clap::Args, Debug, Default)]
@@ -100,7 +30,7 @@ pub struct PoseArgs {
 }
 
 impl PoseArgs {
-    /// Returns the pose; `None` without options. clap accepts only all four options or none.
+    /// Returns the pose; `None` if no option is given. clap requires all four or none.
     pub fn to_pose(&self) -> Option<Pose> {
         Some(Pose {
             theta1: self.theta1?,

@@ -144,15 +144,23 @@ pub(crate) fn find_moving_gait<'a>(
         Some(gait) if gait.has_movement() => Ok(gait),
         Some(_) => Err(Failure::Input(format!("the gait `{name}` moves no servo"))),
         None => {
+            let problem = format!("robot.toml has no gait `{name}`");
             let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
-            let names: Vec<&str> = moving_gaits.map(CheckedGait::name).collect();
-            Err(Failure::Input(format!(
-                "robot.toml has no gait `{name}`; allowed values: {}{}",
-                names.join(", "),
-                format_suggestion(name, names)
-            )))
+            Err(unknown_gait_failure(&problem, name, moving_gaits))
         }
     }
+}
+
+/// Returns the failure for an unknown gait: the problem, the allowed names, and the allowed name most similar to
+/// `name`.
+pub(crate) fn unknown_gait_failure<'a>(
+    problem: &str,
+    name: &str,
+    allowed_gaits: impl Iterator<Item = &'a CheckedGait>,
+) -> Failure {
+    let names: Vec<&str> = allowed_gaits.map(CheckedGait::name).collect();
+    let (list, suggestion) = (names.join(", "), format_suggestion(name, names));
+    Failure::Input(format!("{problem}; allowed values: {list}{suggestion}"))
 }
 
 /// Returns the current folder.

@@ -34,17 +34,17 @@ impl FromStr for Part {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let parse_failure = || {
+        let format_error = || {
             format!("expected K/N with K from 1 to N and N at most {MAX_PARTS}, for example 2/8")
         };
-        let (number, part_count) = text.split_once('/').ok_or_else(parse_failure)?;
+        let (number, part_count) = text.split_once('/').ok_or_else(format_error)?;
         let (Ok(number), Ok(part_count)) = (number.parse(), part_count.parse()) else {
-            return Err(parse_failure());
+            return Err(format_error());
         };
         if (1..=MAX_PARTS).contains(&part_count) && (1..=part_count).contains(&number) {
             Ok(Self { number, part_count })
         } else {
-            Err(parse_failure())
+            Err(format_error())
         }
     }
 }
@@ -89,18 +89,18 @@ impl Part {
         mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
         let robot = robot.text()?;
-        let mut values = BTreeMap::new();
+        let mut results = BTreeMap::new();
         for index in (0..piece_count).filter(|index| self.has_piece(*index)) {
-            values.insert(index, serde_json::to_value(compute_piece(index))?);
+            results.insert(index, serde_json::to_value(compute_piece(index))?);
         }
         let output = PartOutput {
-            lizard: env!("CARGO_PKG_VERSION").to_owned(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
             command: C::COMMAND.to_owned(),
             options: serde_json::to_value(command)?,
             robot,
             part: self,
-            pieces: piece_count,
-            found: values,
+            piece_count,
+            results,
         };
         Ok(json::write_line(&mut io::stdout().lock(), &output)?)
     }
@@ -128,31 +128,34 @@ pub trait Spreadable: Serialize + DeserializeOwned {
     fn spread_args(&mut self) -> &mut SpreadArgs;
 }
 
-/// The output of one part; the field names are the JSON keys.
+/// The output of one part; the serialized field names are the JSON keys.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PartOutput {
     /// The program's version.
-    pub(crate) lizard: String,
+    #[serde(rename = "lizard")]
+    pub(crate) version: String,
     pub(crate) command: String,
     pub(crate) options: Value,
     /// The text of robot.toml.
     pub(crate) robot: String,
     pub(crate) part: Part,
     /// The total number of pieces in all parts.
-    pub(crate) pieces: usize,
+    #[serde(rename = "pieces")]
+    pub(crate) piece_count: usize,
     /// The results of this part's pieces, by piece index.
-    pub(crate) found: BTreeMap<usize, Value>,
+    #[serde(rename = "found")]
+    pub(crate) results: BTreeMap<usize, Value>,
 }
 
 impl SpreadArgs {
     /// Sets the robot and the results of all parts, for a merge.
-    pub(crate) fn set_merged(&mut self, robot: String, pieces: BTreeMap<usize, Value>) {
+    pub(crate) fn set_merged(&mut self, robot: String, results: BTreeMap<usize, Value>) {
         self.robot = RobotFile::with_text(robot);
-        self.merged = Some(pieces);
+        self.merged = Some(results);
     }
 
-    /// Returns the part to compute; `None` without `--part`.
+    /// Returns the part to compute; `None` if `--part` is not given.
     pub fn part(&self) -> Option<Part> {
         self.part
     }
@@ -223,7 +226,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_piece_belongs_to_one_part() {
+    fn every_piece_belongs_to_exactly_one_part() {
         for part_count in [1, 2, 3, 7, 40] {
             for piece in 0..20 {
                 let parts = (1..=part_count).filter(|number| {

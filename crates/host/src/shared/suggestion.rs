@@ -19,7 +19,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn suggests_the_most_similar_name_if_any_is_similar() {
+    fn the_most_similar_name_is_suggested_if_any_is_similar() {
         let names = ["stand", "walk", "arc-left", "arc-right"];
         assert_eq!(format_suggestion("wlak", names), "; did you mean `walk`?");
         assert_eq!(

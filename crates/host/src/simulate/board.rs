@@ -9,7 +9,7 @@ use simulated_uno::{CYCLES_PER_MS, Call, Fidelity, Image, Pin, SerialByte, State
 use crate::Failure;
 use crate::shared::firmware;
 use crate::simulate::sim::frame::{
-    FRAME_CYCLES, Frame, first_cycle, group_frames, latest_start, next_start, servo_pins,
+    FRAME_CYCLES, Frame, first_cycle, group_frames, latest_frame_start, next_start, servo_pins,
 };
 use crate::simulate::sim::lines::{Line, LineReader};
 use crate::simulate::sim::supplies;
@@ -37,7 +37,7 @@ pub enum BoardError {
     NoAnswer {
         /// The command.
         line: String,
-        /// The information lines (`# ...`) received instead.
+        /// The `#` lines received instead.
         notes: Vec<String>,
     },
     /// The firmware sleeps with interrupts off.
@@ -178,7 +178,7 @@ impl SimulatedBoard {
     /// Runs the board until the next line and returns the line without its line end; `None` if no line arrives within
     /// `ms` after the last unsent byte, or if the firmware stops.
     pub fn next_line(&mut self, ms: u64) -> Option<String> {
-        let cycles_to_send = self.uno.bytes_unsent() as u64 * CYCLES_PER_BYTE;
+        let cycles_to_send = self.uno.unsent_byte_count() as u64 * CYCLES_PER_BYTE;
         let end_cycle = self.uno.cycle() + cycles_to_send + ms * CYCLES_PER_MS;
         loop {
             let index = self.returned_line_count;
@@ -265,7 +265,7 @@ impl SimulatedBoard {
 
     /// Returns the cycles spent so far in the handlers of the vectors that `is_counted` accepts.
     pub fn handler_cycles(&self, is_counted: impl Fn(u8) -> bool) -> u64 {
-        let interrupts = self.uno.interrupts();
+        let interrupts = self.uno.interrupt_stats();
         let counted_interrupts = interrupts
             .iter()
             .filter(|interrupt| is_counted(interrupt.vector));
@@ -283,13 +283,14 @@ impl SimulatedBoard {
     }
 
     /// Runs `count` complete frames, starting with the next frame, and returns their pulses. Frames are aligned to A1's
-    /// latest pulse or, without a pulse, to the current cycle. Edges recorded before these frames are dropped.
+    /// latest pulse, or to the current cycle if there is no pulse. Edges recorded before these frames are dropped.
     ///
     /// # Errors
     /// See [`SimulatedBoard::run_ms`].
     pub fn run_for_frames(&mut self, count: u64) -> Result<Vec<Frame>, BoardError> {
         let current_cycle = self.uno.cycle();
-        self.frame_anchor = latest_start(&self.uno.edges(), self.pins).or(self.frame_anchor);
+        self.frame_anchor =
+            latest_frame_start(&self.uno.edges(), self.pins[0]).or(self.frame_anchor);
         let start = self
             .frame_anchor
             .map_or(current_cycle + FRAME_CYCLES, |anchor| {

@@ -3,8 +3,8 @@
 
 pub mod bench;
 pub mod board;
-#[cfg(feature = "parts")]
-pub mod course;
 pub mod patrol;
 pub mod sim;
+#[cfg(feature = "parts")]
+pub mod trajectory;
 pub mod twin;

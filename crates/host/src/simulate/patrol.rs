@@ -2,7 +2,7 @@
 
 use lizard_robot::{Error, Robot, to_command};
 
-use super::sim::tour;
+use super::sim::gait_choice;
 
 /// The name of the routine.
 pub const PATROL: &str = "patrol";
@@ -40,7 +40,7 @@ pub fn add_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
         // If no pin is free, the occupied first pin is used, so that the last `parse` reports the error.
         text = add_input(free_pin.unwrap_or(&CANDIDATE_PINS[0]));
     }
-    let gaits: Vec<String> = tour::list_moving_gaits(&robot)
+    let gaits: Vec<String> = gait_choice::list_moving_gaits(&robot)
         .iter()
         .map(|name| to_command(name))
         .collect();
@@ -60,7 +60,7 @@ mod tests {
     use crate::shared::robot_file;
 
     #[test]
-    fn patrol_adds_a_button_and_a_nose_for_its_routine() {
+    fn a_patrol_adds_a_button_and_a_nose_for_its_routine() {
         let robot = add_patrol(robot_file::DEFAULT_ROBOT_TOML, &[])
             .expect("the built-in robot has room for a patrol");
         let inputs: Vec<&str> = robot.inputs().named_pins().map(|(name, _)| name).collect();

@@ -1,6 +1,7 @@
 //! Tests of the `lizard` commands as a user runs them: output, exit codes, and written files and pages.
 
 mod another_robot;
+mod command_line;
 mod draw;
 mod flash;
 mod measure;
@@ -13,4 +14,3 @@ mod program;
 mod quickstart;
 mod sim;
 mod twin;
-mod words;

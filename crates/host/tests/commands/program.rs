@@ -1,4 +1,4 @@
-//! Runs `lizard`, and provides the tests' files.
+//! Runs `lizard`, and provides files for the tests.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -66,7 +66,7 @@ pub fn new_folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The root of the repository.
+/// Returns the root of the repository.
 pub fn repo_root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
@@ -77,12 +77,28 @@ pub fn read_file(path: &str) -> String {
         .unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-/// The scratch folder of all tests.
+/// Returns the first value of `key` in the text of a robot file, without quotation marks and comment.
+pub fn read_value<'a>(text: &'a str, key: &str) -> &'a str {
+    let mut values = text
+        .lines()
+        .filter_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
+    let value = values.next().and_then(|value| value.split('#').next());
+    value.expect(key).trim().trim_matches('"')
+}
+
+/// Reads a length in a robot file, mm.
+pub fn read_length(text: &str, key: &str) -> f64 {
+    read_value(text, key)
+        .parse()
+        .expect("the value is a number")
+}
+
+/// Returns the scratch folder of all tests.
 pub fn scratch_folder() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR"))
 }
 
-/// The path of a file in robots/.
+/// Returns the path of a file in robots/.
 pub fn robot_path(name: &str) -> String {
     let path = repo_root().join("robots").join(name).with_extension("toml");
     path.display().to_string()
@@ -94,9 +110,9 @@ pub fn with_paper(args: &str) -> String {
 }
 
 /// A temporary robot file, which `drop` removes.
-pub struct RobotFile(PathBuf);
+pub struct TemporaryRobot(PathBuf);
 
-impl RobotFile {
+impl TemporaryRobot {
     /// Copies the paper's robot file with some changes.
     pub fn from_paper(name: &str, changes: &[(&str, &str)]) -> Self {
         Self::from_file("robots/paper.toml", name, changes)
@@ -120,7 +136,7 @@ impl RobotFile {
     }
 }
 
-impl Drop for RobotFile {
+impl Drop for TemporaryRobot {
     fn drop(&mut self) {
         let _ = std::fs::remove_file(&self.0);
     }

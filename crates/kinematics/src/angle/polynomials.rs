@@ -1,14 +1,13 @@
 //! The generator of the polynomials' coefficients in `src/angle.rs`. A test compares the
 //! coefficients there with the generated ones, and prints both if they differ.
 //!
-//! Each polynomial interpolates a smooth function of the squared argument at Chebyshev nodes,
-//! which keeps its largest error within a few percent of the least possible for its degree.
-//! Nodes, function values and coefficients are computed with 256 bits; each coefficient is
-//! rounded once, to the nearest f64.
+//! Each polynomial interpolates a smooth function of the squared argument at Chebyshev nodes, which keeps its largest
+//! error within a few percent of the smallest possible for its degree. Nodes, function values and coefficients are
+//! computed with a precision of 256 bits; each coefficient is rounded once, to the nearest f64.
 
 use dashu_float::{FBig, round::mode::HalfEven};
 
-/// A number of 256 bits.
+/// A number with a precision of [`PRECISION_BITS`].
 type Number = FBig<HalfEven, 2>;
 
 /// Precision of every computation, bits.
@@ -31,7 +30,7 @@ pub struct Polynomial {
     function: fn(&Number) -> Number,
     /// The first terms of the power series of f.
     leading_terms: fn(&Number) -> Number,
-    /// The exponent of x in the factor of P.
+    /// The exponent in the factor x^exponent of P.
     exponent: i32,
 }
 
@@ -78,9 +77,9 @@ impl Polynomial {
     /// Computes the coefficients of P, the constant first.
     pub fn compute_coefficients(&self) -> Vec<f64> {
         let max_argument = (self.max_argument)();
-        let max_square =
+        let interval_end =
             &max_argument * &max_argument * (number_from(1) + number_from_f64(INTERVAL_MARGIN));
-        let half_interval = max_square / number_from(2);
+        let half_interval = interval_end / number_from(2);
         let nodes: Vec<Number> = (0..self.coefficient_count)
             .map(|k| {
                 let angle = Number::pi(PRECISION_BITS) * number_from(2 * k + 1)
@@ -115,7 +114,7 @@ impl Polynomial {
     }
 
     /// Computes the largest relative error of the approximation with these coefficients.
-    pub fn compute_max_error(&self, coefficients: &[f64]) -> f64 {
+    pub fn compute_max_relative_error(&self, coefficients: &[f64]) -> f64 {
         let max_argument = (self.max_argument)();
         (1..=SAMPLE_COUNT)
             .map(|i| {

@@ -16,8 +16,7 @@ pub enum Elbow {
     Inward,
 }
 
-/// The elbows of both arms. A mechanism cannot change its working mode without passing through a type-1
-/// singularity.
+/// The elbows of both arms. A mechanism cannot change its working mode without passing through a type-1 singularity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WorkingMode {
     /// Elbow of the left arm.
@@ -30,8 +29,7 @@ impl WorkingMode {
     /// Both elbows outward, as the robot is built.
     pub const OUTWARD: Self = Self::new(Elbow::Outward, Elbow::Outward);
 
-    /// All four modes, with the left elbow named first: outward-outward, outward-inward,
-    /// inward-outward, inward-inward.
+    /// All four modes, with the left elbow named first: outward-outward, outward-inward, inward-outward, inward-inward.
     pub const ALL: [Self; 4] = [
         Self::OUTWARD,
         Self::new(Elbow::Outward, Elbow::Inward),
@@ -128,17 +126,14 @@ struct Arms {
     from_left_shaft: Vector,
     /// Vector from the right shaft to the point, mm.
     from_right_shaft: Vector,
-    /// Directions of the left crank, length one: counter-clockwise and clockwise of the line to the
-    /// point.
+    /// Directions of the left crank, length one: counter-clockwise and clockwise of the line to the point.
     left_cranks: [Vector; 2],
-    /// Directions of the right crank, length one: counter-clockwise and clockwise of the line to the
-    /// point.
+    /// Directions of the right crank, length one: counter-clockwise and clockwise of the line to the point.
     right_cranks: [Vector; 2],
 }
 
 impl Arms {
-    /// The directions (length one) of the left and the right crank in a working mode, and the
-    /// assembly mode.
+    /// The directions (length one) of the left and the right crank in a working mode, and the assembly mode.
     fn directions_in_mode(&self, mode: WorkingMode) -> (Vector, Vector, AssemblyMode) {
         // Outward is to the left of the line from the left shaft to the point,
         // and to the right of the line from the right shaft.

@@ -155,19 +155,19 @@ proptest! {
         ];
         for (checks, min) in limits_of_kinds {
             for &check in checks {
-                prop_assert_eq!(limits.find_violation(check, min), None);
-                let violation = limits.find_violation(check, min.next_down()).unwrap();
+                prop_assert_eq!(limits.violation(check, min), None);
+                let violation = limits.violation(check, min.next_down()).unwrap();
                 prop_assert_eq!((violation.check, violation.limit), (check, min));
             }
         }
         for check in Check::STROKE {
-            prop_assert_eq!(limits.find_violation(check, limits.stroke_max), None);
-            let violation = limits.find_violation(check, limits.stroke_max.next_up()).unwrap();
+            prop_assert_eq!(limits.violation(check, limits.stroke_max), None);
+            let violation = limits.violation(check, limits.stroke_max.next_up()).unwrap();
             prop_assert_eq!(violation.limit, limits.stroke_max);
         }
         for check in Check::UNCROSSED {
-            prop_assert!(limits.find_violation(check, 0.0).is_some());
-            prop_assert_eq!(limits.find_violation(check, f64::MIN_POSITIVE), None);
+            prop_assert!(limits.violation(check, 0.0).is_some());
+            prop_assert_eq!(limits.violation(check, f64::MIN_POSITIVE), None);
         }
     }
 

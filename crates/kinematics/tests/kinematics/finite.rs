@@ -17,8 +17,7 @@ fn any_length() -> impl Strategy<Value = f64> {
     ]
 }
 
-/// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated
-/// lengths.
+/// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated lengths.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
     let any_scale = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
@@ -73,7 +72,7 @@ proptest! {
                 for solution in solutions {
                     prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
                     // No intermediate result has underflowed, either: the arm ends at the point.
-                    let tip = five_bar.left_shaft() + Vector::direction(solution.theta_left) * five_bar.left_crank_length;
+                    let tip = five_bar.left_shaft() + Vector::from_angle(solution.theta_left) * five_bar.left_crank_length;
                     let reach = (point - tip).length();
                     let error = (reach - five_bar.left_coupler_length).abs();
                     let total_length = five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base;

@@ -25,7 +25,7 @@ proptest! {
         robot in any_lizard(), poses in any_poses(),
     ) {
         let cranks: [Vector<Lanes<LANE_COUNT>>; 4] = std::array::from_fn(|servo| {
-            let directions: [Vector; LANE_COUNT] = std::array::from_fn(|i| Vector::direction(poses[i][servo]));
+            let directions: [Vector; LANE_COUNT] = std::array::from_fn(|i| Vector::from_angle(poses[i][servo]));
             Vector::new(Lanes(directions.map(|v| v.x)), Lanes(directions.map(|v| v.y)))
         });
         for end in End::ALL {
@@ -61,7 +61,7 @@ proptest! {
 
 /// The travel of a side's slider in a single pose; `None` if the slider has no direction.
 fn slider_travel(robot: &Lizard, side: Side, pose: [f64; 4]) -> Option<f64> {
-    let [front, rear] = side.pick(pose).map(Vector::direction);
+    let [front, rear] = side.pick(pose).map(Vector::from_angle);
     let result = robot
         .side(side)
         .close(side.rear_arm(rear), side.front_arm(front));

@@ -1,5 +1,5 @@
-//! Reference solutions of the same mechanisms: by Newton's method on the loop equations, and by intersections of
-//! circles with the law of cosines. They share nothing with the crate except the link lengths.
+//! Random robots, and reference solutions of the same mechanisms: by Newton's method on the loop equations, and by
+//! intersections of circles with the law of cosines. The solutions share only the link lengths with the crate.
 
 #![allow(dead_code)] // Unit tests and integration tests use different parts.
 
@@ -13,19 +13,11 @@ pub const PAPER_HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 50.0, 30.0]);
 
 /// The paper's robot.
 pub fn paper_lizard() -> Lizard {
-    let mut l = [30.0; 20];
-    for (length, links) in [
-        (20.0, &[0, 5][..]),
-        (50.0, &[2, 3, 7, 8]),
-        (45.0, &[12, 13, 17, 18]),
-        (135.0, &[10, 15]),
-    ] {
-        for &i in links {
-            l[i] = length;
-        }
-    }
+    let end = [20.0, 30.0, 50.0, 50.0, 30.0];
+    let side = [135.0, 30.0, 45.0, 45.0, 30.0];
+    let links: [f64; 20] = [end, end, side, side].concat().try_into().unwrap();
     Lizard {
-        links: l.into(),
+        links: links.into(),
         leg: Leg {
             ground: 50.0,
             crank: 45.0,
@@ -137,9 +129,8 @@ pub fn cis(degrees: f64) -> Vector {
     Vector::new(cos, sin)
 }
 
-/// The joint between a link of length `r` that is pivoted at `a` and a link of length `s` that is pivoted at
-/// `b`, to the left of the line from `a` to `b`, by the law of cosines; `None` if the links cannot reach each
-/// other.
+/// The joint between a link of length `r` that is pivoted at `a` and a link of length `s` that is pivoted at `b`, to
+/// the left of the line from `a` to `b`, by the law of cosines; `None` if the links cannot reach each other.
 pub fn circle_intersection(a: Vector, r: f64, b: Vector, s: f64) -> Option<Vector> {
     let d = (b.x - a.x).hypot(b.y - a.y);
     let cosine = (r * r + d * d - s * s) / (2.0 * r * d);

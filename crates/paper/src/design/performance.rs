@@ -17,26 +17,28 @@ pub struct Performance {
     /// Height of the inscribed circle's centre above the base; 0 if there is no circle.
     pub y_mic: f64,
     /// Local conditioning index over the inscribed circle; `None` if there is no circle.
-    pub lci: Option<Conditioning>,
+    pub lci: Option<LciStatistics>,
 }
 
 /// Statistics of the local conditioning index over the inscribed circle.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Conditioning {
+pub struct LciStatistics {
     /// Mean index over the circle's area (the global conditioning index).
     pub mean: f64,
     /// Smallest index; it is on the rim, and is 0 if the circle touches the workspace's edge.
-    pub least: f64,
+    #[serde(rename = "least")]
+    pub min: f64,
     /// Largest index in the circle.
-    pub most: f64,
+    #[serde(rename = "most")]
+    pub max: f64,
     /// Fraction of the circle's area in which the index is above 0.7, the paper's bound.
     pub share_above: f64,
     /// Radius of the concentric circle within which the index is at least 0.7, the paper's bound.
     pub radius_above: f64,
 }
 
-/// The local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the workspace and
-/// outside it.
+/// Computes the local conditioning index with the end point at `point` and outward elbows; 0 on the rim of the
+/// workspace and outside it.
 pub fn lci(five_bar: &FiveBar, point: Vector) -> f64 {
     five_bar.pose_at_point(point).map_or(0.0, |pose| pose.lci())
 }
@@ -50,12 +52,12 @@ impl Performance {
             area: workspace.area(),
             r_mic: circle.map_or(0.0, |circle| circle.radius),
             y_mic: circle.map_or(0.0, |circle| circle.centre.y),
-            lci: circle.map(|circle| Conditioning::sample(five_bar, circle, ring_count)),
+            lci: circle.map(|circle| LciStatistics::sample(five_bar, circle, ring_count)),
         }
     }
 }
 
-impl Conditioning {
+impl LciStatistics {
     /// Samples the circle on rings of equal area, and on its rim. Then refines the largest index, and searches outward
     /// for the radius at which the index first falls below the claimed bound.
     fn sample(five_bar: &FiveBar, circle: Circle, ring_count: usize) -> Self {
@@ -65,7 +67,7 @@ impl Conditioning {
         let mut min_index = f64::INFINITY;
         let (mut max_index, mut max_point) = (0.0_f64, circle.centre);
         for spoke in 0..spoke_count {
-            let direction = Vector::direction((spoke as f64 + 0.5) * 360.0 / spoke_count as f64);
+            let direction = Vector::from_angle((spoke as f64 + 0.5) * 360.0 / spoke_count as f64);
             for ring in 0..ring_count {
                 let radius = circle.radius * ((ring as f64 + 0.5) / ring_count as f64).sqrt();
                 let point = circle.centre + direction * radius;
@@ -80,21 +82,22 @@ impl Conditioning {
         }
         // The samples on the rim include the four points at which the circle may touch the workspace's edge.
         for spoke in 0..spoke_count {
-            let direction = Vector::direction(spoke as f64 * 360.0 / spoke_count as f64);
+            let direction = Vector::from_angle(spoke as f64 * 360.0 / spoke_count as f64);
             min_index = min_index.min(lci(five_bar, circle.centre + direction * circle.radius));
         }
         for shaft in [five_bar.left_shaft(), five_bar.right_shaft()] {
-            let from_shaft = circle.centre - shaft;
+            let shaft_to_centre = circle.centre - shaft;
             for distance in [circle.radius, -circle.radius] {
-                let touch_point = circle.centre + from_shaft * (distance / from_shaft.length());
+                let touch_point =
+                    circle.centre + shaft_to_centre * (distance / shaft_to_centre.length());
                 min_index = min_index.min(lci(five_bar, touch_point));
             }
         }
         let sample_count = (ring_count * spoke_count) as f64;
         Self {
             mean: sum / sample_count,
-            least: min_index,
-            most: find_largest_index(
+            min: min_index,
+            max: find_max_index(
                 five_bar,
                 circle,
                 (max_index, max_point),
@@ -110,7 +113,7 @@ impl Conditioning {
         let step = circle.radius / (2 * ring_count) as f64;
         (0..4 * ring_count)
             .map(|spoke| {
-                let direction = Vector::direction(spoke as f64 * 90.0 / ring_count as f64);
+                let direction = Vector::from_angle(spoke as f64 * 90.0 / ring_count as f64);
                 let is_above_claim =
                     |radius: f64| lci(five_bar, circle.centre + direction * radius) >= CLAIMED_LCI;
                 let Some(first_below) =
@@ -139,7 +142,7 @@ impl Conditioning {
 
 /// Searches for the largest index in the circle near a sample, by hill climbing. The step is halved if no neighbour is
 /// better.
-fn find_largest_index(
+fn find_max_index(
     five_bar: &FiveBar,
     circle: Circle,
     start_sample: (f64, Vector),

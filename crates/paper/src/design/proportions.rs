@@ -81,7 +81,7 @@ impl Proportions {
     }
 }
 
-/// Returns the grid points inside the triangle of r1, r2 and r3. The edges are left out, because there a link has no
+/// Returns the grid points inside the triangle of r1, r2 and r3. The edges are omitted, because there a link has no
 /// length.
 pub fn triangle_points(step: f64) -> Vec<Proportions> {
     let step_count = (PROPORTION_SUM / step + 1e-9) as usize;

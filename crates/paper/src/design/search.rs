@@ -51,7 +51,8 @@ pub struct Design {
     /// Geometric mean of conditioning index, margin and stride, each relative to the best value among all designs.
     pub score: f64,
     /// True if no other design is better in conditioning index, margin and stride.
-    pub pareto: bool,
+    #[serde(rename = "pareto")]
+    pub is_pareto_optimal: bool,
 }
 
 /// Number of points in a piece, enough to occupy all cores.
@@ -116,10 +117,7 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
     let (neutral, sweep) = (90..=170)
         .map(|neutral| {
             let neutral = f64::from(neutral);
-            (
-                neutral,
-                find_largest_sweep(&five_bar, neutral, requirements),
-            )
+            (neutral, find_max_sweep(&five_bar, neutral, requirements))
         })
         .reduce(|best, next| if next.1 > best.1 { next } else { best })?;
     if sweep < requirements.sweep_deg {
@@ -135,12 +133,12 @@ pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Opt
         margin,
         lci,
         score: 0.0,
-        pareto: false,
+        is_pareto_optimal: false,
     })
 }
 
 /// Finds the largest sweep about a neutral angle within all limits, degrees.
-fn find_largest_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
+fn find_max_sweep(five_bar: &FiveBar, neutral: f64, requirements: &Requirements) -> f64 {
     let (mut safe_deg, mut unsafe_deg) = (0.0, requirements.travel_deg.min(89.9));
     if !is_within_limits(five_bar, neutral, safe_deg, requirements) {
         return 0.0;
@@ -167,7 +165,7 @@ fn is_within_limits(
     requirements: &Requirements,
 ) -> bool {
     let limits = &requirements.limits;
-    let slider = side_slider(five_bar, requirements);
+    let slider = create_slider(five_bar, requirements);
     // theta5 in the tail's frame equals theta1, because the tail mirrors the head.
     let slider_span = |front: f64, rear: f64| {
         slider
@@ -180,7 +178,7 @@ fn is_within_limits(
         SWEEP_SAMPLES.iter().all(|&right_fraction| {
             let right_angle = 180.0 - neutral + right_fraction * sweep;
             let travel = slider_span(left_angle, neutral + right_fraction * sweep) - nominal_span;
-            limits.find_violation(Check::StrokeLeft, travel).is_none()
+            limits.violation(Check::StrokeLeft, travel).is_none()
                 && five_bar
                     .forward(left_angle, right_angle)
                     .is_ok_and(|pose| limits.end_violations(End::Head, &pose).next().is_none())
@@ -188,8 +186,8 @@ fn is_within_limits(
     })
 }
 
-/// The slider of a side, whose arms are as long as the cranks, as in the paper.
-fn side_slider(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
+/// Creates the slider of a side, whose arms are as long as the cranks, as in the paper.
+fn create_slider(five_bar: &FiveBar, requirements: &Requirements) -> Slider {
     Slider {
         front_offset: 0.0,
         base: requirements.chassis_length_mm,
@@ -256,7 +254,7 @@ fn rank_designs(designs: &mut [Design]) {
     let all_designs = designs.to_vec();
     for design in designs.iter_mut() {
         design.score = best_values.score(design);
-        design.pareto = !all_designs.iter().any(|other| {
+        design.is_pareto_optimal = !all_designs.iter().any(|other| {
             other.lci > design.lci && other.margin > design.margin && other.stride > design.stride
         });
     }

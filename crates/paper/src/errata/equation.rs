@@ -8,15 +8,15 @@ pub type ErrorFn = fn(&Sample) -> Option<f64>;
 /// A printed equation.
 pub struct Equation {
     /// The equation's section and name in the paper.
-    pub place: &'static str,
+    pub location: &'static str,
     /// The equation as printed.
-    pub printed: &'static str,
+    pub printed_form: &'static str,
     /// The error of the printed form.
     pub printed_error: ErrorFn,
     /// Unit of every error of this equation.
     pub unit: &'static str,
-    /// The error of the printed form with right-hand angles measured clockwise from -x; `None` if the paper's drawing
-    /// does not suggest this convention.
+    /// The error of the printed form with the angles of the robot's right side measured clockwise from -x; `None` if
+    /// the paper's drawings do not suggest this convention.
     pub clockwise_error: Option<ErrorFn>,
     /// The corrected form and its error.
     pub correction: Option<(&'static str, ErrorFn)>,
@@ -27,14 +27,14 @@ pub struct Equation {
 impl Equation {
     /// Creates an equation without a correction. `printed_error` returns the error of the printed form in `unit`.
     pub const fn new(
-        place: &'static str,
-        printed: &'static str,
+        location: &'static str,
+        printed_form: &'static str,
         unit: &'static str,
         printed_error: ErrorFn,
     ) -> Self {
         Self {
-            place,
-            printed,
+            location,
+            printed_form,
             printed_error,
             unit,
             clockwise_error: None,
@@ -43,7 +43,7 @@ impl Equation {
         }
     }
 
-    /// Adds the error of the printed form with right-hand angles measured clockwise from -x.
+    /// Adds the error of the printed form with the angles of the robot's right side measured clockwise from -x.
     pub const fn with_clockwise_error(mut self, error_fn: ErrorFn) -> Self {
         self.clockwise_error = Some(error_fn);
         self
@@ -70,33 +70,33 @@ impl Equation {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FormErrors {
     /// The largest error among samples with a real value.
-    pub largest: f64,
+    pub max: f64,
     /// Fraction of the samples without a real value.
-    pub unreal_fraction: f64,
+    pub no_real_value_fraction: f64,
 }
 
 impl FormErrors {
     /// Errors below this value are rounding errors, in any unit.
-    const ROUNDING: f64 = 1e-6;
+    const MAX_ROUNDING: f64 = 1e-6;
 
     /// Evaluates a form at all samples.
     pub fn evaluate(error_fn: ErrorFn, samples: &[Sample]) -> Self {
-        let mut largest = 0.0_f64;
-        let mut unreal_count = 0usize;
+        let mut max = 0.0_f64;
+        let mut no_real_value_count = 0usize;
         for sample in samples {
             match error_fn(sample) {
-                Some(value) if value.is_finite() => largest = largest.max(value),
-                _ => unreal_count += 1,
+                Some(value) if value.is_finite() => max = max.max(value),
+                _ => no_real_value_count += 1,
             }
         }
         Self {
-            largest,
-            unreal_fraction: unreal_count as f64 / samples.len().max(1) as f64,
+            max,
+            no_real_value_fraction: no_real_value_count as f64 / samples.len().max(1) as f64,
         }
     }
 
     /// True if the form has a real value at every sample, and all its errors are rounding errors.
     pub fn holds(&self) -> bool {
-        self.largest < Self::ROUNDING && self.unreal_fraction == 0.0
+        self.max < Self::MAX_ROUNDING && self.no_real_value_fraction == 0.0
     }
 }

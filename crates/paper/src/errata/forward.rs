@@ -54,7 +54,7 @@ pub const EQUATIONS: &[Equation] = &[
             Some(head_gap(sample, [theta1, theta2, theta3, theta4_at_zero_a]))
         },
     )
-    .with_special_case("θ4 within 1e-9° of A = 0", error_near_vanishing_a),
+    .with_special_case("θ4 within 1e-9° of A = 0", error_near_zero_a),
     Equation::new(
         "4.2 head, θ2",
         "θ2 = 2 atan((-E + sqrt(E² + 4DF))/(2D)), K4 = -l4 cos θ4 + l1 cos θ1 + l0",
@@ -96,29 +96,13 @@ pub const EQUATIONS: &[Equation] = &[
         "4.2 left loop, slider extended by s",
         "R11 + R12 - R13 - R14 - R10 = 0",
         "mm",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let half_travel = sample.solution.left.s / 2.0;
-            let sum = polar(links.l11, theta[9]) + polar(links.l12 + half_travel, theta[10])
-                - polar(links.l13 + half_travel, theta[11])
-                - polar(links.l14, theta[12])
-                - polar(links.l10, FRAC_PI_2);
-            Some(sum.length())
-        },
+        |sample| Some(side_gap(sample, [10, 9], sample.solution.left.s)),
     ),
     Equation::new(
         "4.2 right loop, slider extended by s",
         "R16 + R17 - R18 - R19 - R15 = 0",
         "mm",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let half_travel = sample.solution.right.s / 2.0;
-            let sum = polar(links.l16, theta[13]) + polar(links.l17 + half_travel, theta[14])
-                - polar(links.l18 + half_travel, theta[15])
-                - polar(links.l19, theta[16])
-                - polar(links.l15, FRAC_PI_2);
-            Some(sum.length())
-        },
+        |sample| Some(side_gap(sample, [15, 13], sample.solution.right.s)),
     ),
     Equation::new(
         "4.2 left slider halves",
@@ -166,13 +150,13 @@ pub const EQUATIONS: &[Equation] = &[
     }),
 ];
 
-/// The difference between the two angles that `angles` returns for a sample's thetas, deg.
+/// Computes the difference between the two angles that `angles` returns for a sample's thetas, deg.
 fn angle_error(sample: &Sample, angles: fn([f64; 17]) -> [f64; 2]) -> Option<f64> {
     let [a, b] = angles(sample.theta());
     Some(angle_error_deg(a, b))
 }
 
-/// The gap in the head's loop for these angles of l1 to l4, mm.
+/// Computes the gap in the head's loop for these angles of l1 to l4, mm.
 fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -180,13 +164,27 @@ fn head_gap(sample: &Sample, [theta1, theta2, theta3, theta4]: [f64; 4]) -> f64 
     loop_gap([(l1, theta1), (l2, theta2), (l3, theta3), (l4, theta4)], l0)
 }
 
-/// The length of the vector first + second - third - fourth - base, mm; 0 for a closed loop.
+/// Computes the length of the vector first + second - third - fourth - base, mm; 0 if the loop is closed.
 fn loop_gap(links: [(f64, f64); 4], base: f64) -> f64 {
     let [a, b, c, d] = links.map(|(length, angle)| polar(length, angle));
     (a + b - c - d - Vector::new(base, 0.0)).length()
 }
 
-/// The coefficients A, B and C as printed, for this theta4 (rad) and the sample's theta1.
+/// Computes the gap in a side's loop whose slider is extended by `travel`, mm. `first_indices` are the paper's indices
+/// of the base's length and of the rear arm's angle; the other indices follow.
+fn side_gap(sample: &Sample, first_indices: [usize; 2], travel: f64) -> f64 {
+    let (lengths, theta) = (sample.lizard.links.to_array(), sample.theta());
+    let [base, first_angle] = first_indices;
+    let vector_at =
+        |i: usize, extension: f64| polar(lengths[base + 1 + i] + extension, theta[first_angle + i]);
+    let sum = vector_at(0, 0.0) + vector_at(1, travel / 2.0)
+        - vector_at(2, travel / 2.0)
+        - vector_at(3, 0.0)
+        - polar(lengths[base], FRAC_PI_2);
+    sum.length()
+}
+
+/// Computes the coefficients A, B and C as printed, for this theta4 (rad) and the sample's theta1.
 fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -203,7 +201,7 @@ fn abc_coefficients(sample: &Sample, theta4: f64) -> (f64, f64, f64) {
     )
 }
 
-/// The coefficients D, E and F. `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
+/// Computes the coefficients D, E and F. `base_sign` is the sign of l0 in K4: 1 as printed, -1 as corrected.
 fn def_coefficients(sample: &Sample, base_sign: f64) -> (f64, f64, f64) {
     let Links {
         l0, l1, l2, l3, l4, ..
@@ -238,8 +236,8 @@ fn find_theta4_at_zero_a(sample: &Sample) -> Option<f64> {
     Some(low)
 }
 
-/// The error of the printed theta3 close to the theta4 at which A is 0; 0 for a sample without such a theta4.
-fn error_near_vanishing_a(sample: &Sample) -> Option<f64> {
+/// Computes the error of the printed theta3 close to the theta4 at which A is 0; 0 if there is no such theta4.
+fn error_near_zero_a(sample: &Sample) -> Option<f64> {
     let Some(theta4_at_zero_a) = find_theta4_at_zero_a(sample) else {
         return Some(0.0);
     };

@@ -77,44 +77,28 @@ pub const EQUATIONS: &[Equation] = &[
         "4.1 left body, x31 and y31",
         "2 x31 = l13 cos θ11 + l14 cos θ12 (y31: sin)",
         "mm",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let sum = polar(links.l13, theta[11]) + polar(links.l14, theta[12]);
-            Some((slider_middle(sample, 0) - sum * 0.5).length())
-        },
+        |sample| slider_error(sample, 0, [(13, 11), (14, 12)]),
     )
     .with_correction(
         "2 x31 = l11 cos θ9 + l14 cos θ12, from the middle of l10",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let sum = polar(links.l11, theta[9]) + polar(links.l14, theta[12]);
-            Some((slider_middle(sample, 0) - sum * 0.5).length())
-        },
+        |sample| slider_error(sample, 0, [(11, 9), (14, 12)]),
     ),
     Equation::new(
         "4.1 right body, x41 and y41",
         "2 x41 = l19 cos θ16 + l18 cos θ15 (y41: sin)",
         "mm",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let sum = polar(links.l19, theta[16]) + polar(links.l18, theta[15]);
-            Some((slider_middle(sample, 1) - sum * 0.5).length())
-        },
+        |sample| slider_error(sample, 1, [(19, 16), (18, 15)]),
     )
     .with_correction(
         "2 x41 = l16 cos θ13 + l19 cos θ16, from the middle of l15",
-        |sample| {
-            let (links, theta) = (&sample.lizard.links, sample.theta());
-            let sum = polar(links.l16, theta[13]) + polar(links.l19, theta[16]);
-            Some((slider_middle(sample, 1) - sum * 0.5).length())
-        },
+        |sample| slider_error(sample, 1, [(16, 13), (19, 16)]),
     ),
 ];
 
-/// The difference between a coupler's length and the distance from its crank's tip to a point.
-fn arm_error(point: Vector, shaft_x: f64, crank: Vector, coupler: f64) -> Option<f64> {
+/// Computes the difference between a coupler's length and the distance from its crank's tip to a point.
+fn arm_error(point: Vector, shaft_x: f64, crank: Vector, coupler_length: f64) -> Option<f64> {
     let tip = Vector::new(shaft_x, 0.0) + crank;
-    Some(((point - tip).length() - coupler).abs())
+    Some(((point - tip).length() - coupler_length).abs())
 }
 
 /// The head point relative to the middle of l0, in chassis axes.
@@ -127,7 +111,15 @@ fn tail_point(sample: &Sample) -> Vector {
     End::Tail.mirror(sample.solution.tail.end_point)
 }
 
-/// The middle of a slider, relative to the middle between its shafts. `side` is 0 for left, 1 for right.
+/// Computes the distance from the middle of a slider to half the sum of two vectors, each given by the paper's indices
+/// of its length and of its angle, mm.
+fn slider_error(sample: &Sample, side: usize, vectors: [(usize, usize); 2]) -> Option<f64> {
+    let (lengths, theta) = (sample.lizard.links.to_array(), sample.theta());
+    let [first, second] = vectors.map(|(length, angle)| polar(lengths[length], theta[angle]));
+    Some((slider_middle(sample, side) - (first + second) * 0.5).length())
+}
+
+/// Computes the middle of a slider, relative to the middle between its shafts. `side` is 0 for left, 1 for right.
 fn slider_middle(sample: &Sample, side: usize) -> Vector {
     let slider = [&sample.solution.left, &sample.solution.right][side];
     (slider.rear_tip + slider.front_tip - slider.front_shaft) * 0.5

@@ -78,7 +78,7 @@ const HIND_LEGS: &[usize] = &[8, 5];
 /// The paper's indices of all legs' drive angles.
 const ALL_LEGS: &[usize] = &[1, 4, 8, 5];
 
-/// The largest error over these legs; `None` if the equation has no real root for a leg.
+/// Computes the largest error over these legs; `None` if the equation has no real root for a leg.
 fn max_error(
     sample: &Sample,
     legs: &[usize],
@@ -89,7 +89,7 @@ fn max_error(
         .try_fold(0.0, |max: f64, error| Some(max.max(error?)))
 }
 
-/// The error of the follower's angle, computed from the printed G, H and I; `h_override` replaces the printed H.
+/// Computes the error of the follower's angle from the printed G, H and I; `h_override` replaces the printed H.
 /// `root_sign` selects the root. In a parallelogram, the follower's true angle is the crank's angle.
 fn follower_error(
     sample: &Sample,
@@ -118,7 +118,7 @@ fn follower_error(
     })
 }
 
-/// The error of the coupler's angle, computed from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is
+/// Computes the error of the coupler's angle from J, K and L. In a parallelogram, the true angle is 0. `term_sign` is
 /// the sign of the terms in lg12: -1 as printed, 1 as corrected. `root_sign` selects the root.
 fn coupler_error(sample: &Sample, legs: &[usize], term_sign: f64, root_sign: f64) -> Option<f64> {
     let Leg {

@@ -1,8 +1,8 @@
 //! All equations of the paper, compared with the geometric solution. Only the equations are written by hand; all
 //! results are computed.
 
-mod entry;
 mod equation;
+mod equation_result;
 mod forward;
 mod inverse;
 mod legs;
@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use equation::{Equation, FormErrors};
 use sample::Sample;
 
-pub use entry::Entry;
+pub use equation_result::EquationResult;
 pub use table::{format_markdown, format_text};
 
 /// Number of random poses for docs/errata.md.
@@ -36,41 +36,44 @@ fn all_equations() -> Vec<&'static Equation> {
     .collect()
 }
 
-/// The number of equations that [`measure`] evaluates.
+/// The number of equations that [`evaluate_equations`] evaluates.
 pub fn equation_count() -> usize {
     all_equations().len()
 }
 
-/// Measures every equation at `sample_count` random poses, on all cores. The results are in the paper's order.
-/// Calls `report_progress` after each equation.
-pub fn measure(sample_count: u32, report_progress: &(dyn Fn() + Sync)) -> Vec<Entry> {
+/// Evaluates every equation at `sample_count` random poses, on all cores. The results are in the paper's order. Calls
+/// `report_progress` after each equation.
+pub fn evaluate_equations(
+    sample_count: u32,
+    report_progress: &(dyn Fn() + Sync),
+) -> Vec<EquationResult> {
     let samples: Vec<Sample> = Sample::generate(sample_count as usize).collect();
-    let measure_equation = |equation: &Equation| {
+    let evaluate_equation = |equation: &Equation| {
         let printed = FormErrors::evaluate(equation.printed_error, &samples);
         let corrected = equation
             .correction
             .map(|(_, error_fn)| FormErrors::evaluate(error_fn, &samples));
         report_progress();
-        Entry {
-            place: equation.place,
-            printed: equation.printed,
+        EquationResult {
+            location: equation.location,
+            printed_form: equation.printed_form,
             holds: printed.holds(),
-            worst: printed.largest,
-            unreal: printed.unreal_fraction,
+            max_error: printed.max,
+            no_real_value_fraction: printed.no_real_value_fraction,
             unit: equation.unit,
-            aside: equation
+            special_case: equation
                 .special_case
-                .map(|(name, error_fn)| (FormErrors::evaluate(error_fn, &samples).largest, name)),
+                .map(|(name, error_fn)| (FormErrors::evaluate(error_fn, &samples).max, name)),
             holds_clockwise: equation
                 .clockwise_error
                 .map(|error_fn| FormErrors::evaluate(error_fn, &samples).holds()),
-            corrected: equation.correction.map(|(form, _)| form),
-            corrected_worst: corrected.map(|errors| errors.largest),
+            corrected_form: equation.correction.map(|(form, _)| form),
+            corrected_max_error: corrected.map(|errors| errors.max),
             corrected_holds: corrected.map(|errors| errors.holds()),
         }
     };
     all_equations()
         .into_par_iter()
-        .map(measure_equation)
+        .map(evaluate_equation)
         .collect()
 }

@@ -13,7 +13,7 @@ pub const LINK_TABLE: [(&[usize], f64); 5] = [
     (&[10, 15], 135.0),
 ];
 
-/// The paper's robot. The second l16 of the paper's table is taken as l17.
+/// Creates the paper's robot. The second l16 of the paper's table is taken as l17.
 pub fn paper_lizard() -> Lizard {
     let mut lengths = [0.0; 20];
     for (links, length) in LINK_TABLE {
@@ -49,12 +49,12 @@ impl Sample {
         let lizard = paper_lizard();
         let mut random = Random(1);
         std::iter::repeat_with(move || {
-            let mut angle_above = |min: f64| min + 90.0 * random.next();
+            let mut draw_angle_above = |min: f64| min + 90.0 * random.next();
             let pose = Pose {
-                theta1: angle_above(90.0),
-                theta4: angle_above(0.0),
-                theta8: 360.0 - angle_above(0.0),
-                theta5: 360.0 - angle_above(90.0),
+                theta1: draw_angle_above(90.0),
+                theta4: draw_angle_above(0.0),
+                theta8: 360.0 - draw_angle_above(0.0),
+                theta5: 360.0 - draw_angle_above(90.0),
             };
             let random = [random.next(), random.next()];
             let solution = lizard.solve(&pose).ok()?;
@@ -92,12 +92,12 @@ impl Sample {
     }
 }
 
-/// The vector with this length and this angle in radians.
+/// Creates the vector with this length and this angle in radians.
 pub fn polar(length: f64, radians: f64) -> Vector {
     Vector::new(length * radians.cos(), length * radians.sin())
 }
 
-/// The difference of two angles in radians, in degrees from 0 to 180.
+/// Computes the difference between two angles in radians, in degrees from 0 to 180.
 pub fn angle_error_deg(a: f64, b: f64) -> f64 {
     lizard_kinematics::wrap((a - b) * 180.0 / PI).abs()
 }

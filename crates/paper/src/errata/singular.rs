@@ -193,7 +193,7 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// theta1 in the neutral pose, where every slider has its nominal length, degrees.
+/// Computes theta1 in the neutral pose, where every slider has its nominal length, degrees.
 fn neutral_theta1(sample: &Sample) -> f64 {
     let links = &sample.lizard.links;
     ((links.l12 + links.l13 - links.l10) / (links.l11 + links.l14))
@@ -201,7 +201,7 @@ fn neutral_theta1(sample: &Sample) -> f64 {
         .to_degrees()
 }
 
-/// The head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
+/// Computes the head's type-2 margin and theta2 + theta3 (radians), both in the neutral pose.
 fn neutral_margin_and_sum(sample: &Sample) -> Option<(f64, f64)> {
     let theta1 = neutral_theta1(sample);
     let pose = sample
@@ -256,28 +256,31 @@ const K_RIGHT: Block = Block {
 };
 
 impl Block {
-    /// The largest error of the block with this sign before the right bar's sine: -1.0 as printed, 1.0 as corrected.
+    /// Computes the largest error of the block with this sign before the right bar's sine: -1.0 as printed, 1.0 as
+    /// corrected.
     fn error(&self, sample: &Sample, sign: f64) -> Option<f64> {
         self.side_error(sample, 0.0, sign)
     }
 
-    /// The largest error of the block for the arms of a side. `constant` is the angle from the cranks to the arms, rad.
+    /// Computes the largest error of the block for the arms of a side. `constant` is the angle from the cranks to the
+    /// arms, rad.
     fn side_error(&self, sample: &Sample, constant: f64, sign: f64) -> Option<f64> {
         let [rear, front] = self.angle_indices.map(|index| sample.theta()[index]);
         let block = self.printed_block(sample, [rear - constant, front + constant], sign);
-        Some(largest_difference(&(self.true_block)(sample), &block))
+        Some(max_difference(&(self.true_block)(sample), &block))
     }
 
-    /// The largest error of the printed block if the right bar's angle is measured clockwise from -x. Then the
+    /// Computes the largest error of the printed block if the right bar's angle is measured clockwise from -x. Then the
     /// derivative with respect to this angle has the opposite sign.
     fn clockwise_error(&self, sample: &Sample) -> Option<f64> {
         let [a, b, c, d] = (self.true_block)(sample);
         let [left, right] = self.angle_indices.map(|index| sample.theta()[index]);
         let block = self.printed_block(sample, [left, PI - right], -1.0);
-        Some(largest_difference(&[a, -b, c, -d], &block))
+        Some(max_difference(&[a, -b, c, -d], &block))
     }
 
-    /// The block in the paper's form for two bars with these angles, rad. `sign` is the sign of the right bar's sine.
+    /// Computes the block in the paper's form for two bars with these angles, rad. `sign` is the sign of the right
+    /// bar's sine.
     fn printed_block(&self, sample: &Sample, thetas: [f64; 2], sign: f64) -> [f64; 4] {
         let lengths = sample.lizard.links.to_array();
         let [left, right] = self.length_indices.map(|index| lengths[index]);
@@ -291,15 +294,15 @@ impl Block {
     }
 }
 
-/// The largest difference between elements of two 2x2 blocks, given by rows.
-fn largest_difference(true_block: &[f64; 4], block: &[f64; 4]) -> f64 {
+/// Computes the largest difference between entries of two 2x2 blocks, given by rows.
+fn max_difference(true_block: &[f64; 4], block: &[f64; 4]) -> f64 {
     true_block
         .iter()
         .zip(block)
-        .fold(0.0, |largest, (a, b)| largest.max((a - b).abs()))
+        .fold(0.0, |max, (a, b)| max.max((a - b).abs()))
 }
 
-/// A block of the true K: rows `row` and `row + 1`, and the columns of two servos.
+/// Returns a block of the true K: rows `row` and `row + 1`, and the columns of two servos.
 fn active_block(
     sample: &Sample,
     row: usize,
@@ -315,7 +318,7 @@ fn active_block(
     ]
 }
 
-/// The 2x2 block on the diagonal of the true K* whose first column is `column`.
+/// Returns the 2x2 block on the diagonal of the true K* whose first column is `column`.
 fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
     let k = sample.solution.passive_matrix();
     [
@@ -326,13 +329,13 @@ fn passive_block(sample: &Sample, column: usize) -> [f64; 4] {
     ]
 }
 
-/// Returns sin(right angle - left angle) of a coupler block, from the block's determinant.
-/// `length_product` is the product of the couplers' lengths.
+/// Returns sin(right angle - left angle) of a coupler block, from the block's determinant. `length_product` is the
+/// product of the couplers' lengths.
 fn determinant_sine([a, b, c, d]: &[f64; 4], length_product: f64) -> f64 {
     -(a * d - b * c) / length_product
 }
 
-/// The number of a leg's degrees of freedom, which equals the number of its drives.
+/// Counts a leg's degrees of freedom, whose number equals the number of its drives.
 fn count_leg_freedoms(sample: &Sample) -> f64 {
-    crate::mobility::count_leg_freedoms(&sample.lizard, &sample.solution) as f64
+    crate::mobility::count_left_front_leg_freedoms(&sample.lizard, &sample.solution) as f64
 }

@@ -16,10 +16,8 @@ pub const EQUATIONS: &[Equation] = &[
         "M = 3(N - 1 - j) + sum f = 4, with N = 13, j = 16",
         "freedoms, relative to the rank of the constraints",
         |sample| {
-            Some(
-                (mobility::count_body_freedoms(&sample.lizard, &sample.solution) as f64 - 4.0)
-                    .abs(),
-            )
+            let freedoms = mobility::count_body_freedoms(&sample.lizard, &sample.solution);
+            Some((freedoms as f64 - 4.0).abs())
         },
     ),
     Equation::new(
@@ -27,9 +25,9 @@ pub const EQUATIONS: &[Equation] = &[
         "M = 1",
         "freedoms, relative to the rank of the constraints",
         |sample| {
-            Some(
-                (mobility::count_leg_freedoms(&sample.lizard, &sample.solution) as f64 - 1.0).abs(),
-            )
+            let freedoms =
+                mobility::count_left_front_leg_freedoms(&sample.lizard, &sample.solution);
+            Some((freedoms as f64 - 1.0).abs())
         },
     ),
     Equation::new(
@@ -41,11 +39,9 @@ pub const EQUATIONS: &[Equation] = &[
             let five_bar = proportions.at_scale(d);
             let sum =
                 five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base / 2.0;
-            Some(
-                (sum / PROPORTION_SUM - d)
-                    .abs()
-                    .max((proportions.scale_for_base(five_bar.base) - d).abs()),
-            )
+            let sum_error = (sum / PROPORTION_SUM - d).abs();
+            let base_error = (proportions.scale_for_base(five_bar.base) - d).abs();
+            Some(sum_error.max(base_error))
         },
     ),
     Equation::new(
@@ -133,8 +129,8 @@ pub const EQUATIONS: &[Equation] = &[
     ),
 ];
 
-/// The largest radius error of the circle equation at random points on the limits of the arms' reach. `y_term` returns
-/// the equation's term in y.
+/// Computes the largest radius error of the circle equation at random points on the limits of the arms' reach. `y_term`
+/// returns the equation's term in y.
 fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     let five_bar = sample.lizard.end(End::Head);
     let mut max_error = 0.0_f64;
@@ -153,7 +149,8 @@ fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     Some(max_error)
 }
 
-/// The LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's radius.
+/// Computes the LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's
+/// radius.
 fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
     let five_bar = sample.lizard.end(End::Head);
     Workspace::for_five_bar(&five_bar)
@@ -162,7 +159,7 @@ fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
             let radius = circle.radius * radius_factor * sample.random[0].sqrt();
             lci(
                 &five_bar,
-                circle.centre + Vector::direction(360.0 * sample.random[1]) * radius,
+                circle.centre + Vector::from_angle(360.0 * sample.random[1]) * radius,
             )
         })
 }

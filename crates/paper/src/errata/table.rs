@@ -2,43 +2,43 @@
 
 use std::fmt::Write as _;
 
-use super::entry::Entry;
+use super::equation_result::EquationResult;
 
 /// Formats the table of all equations as lines for a terminal.
-pub fn format_text(entries: &[Entry], sample_count: u32) -> String {
-    let holding_count = entries.iter().filter(|entry| entry.holds).count();
-    let mut page = format!(
+pub fn format_text(results: &[EquationResult], sample_count: u32) -> String {
+    let holding_count = results.iter().filter(|result| result.holds).count();
+    let mut text = format!(
         "{} printed equations at {sample_count} random poses: {holding_count} hold, {} do not.\n",
-        entries.len(),
-        entries.len() - holding_count
+        results.len(),
+        results.len() - holding_count
     );
-    for entry in entries {
-        let mark = if entry.holds { "holds" } else { "FAILS" };
+    for result in results {
+        let mark = if result.holds { "holds" } else { "FAILS" };
         let _ = write!(
-            page,
+            text,
             "\n{mark}  {}\n       printed    {}\n",
-            entry.place, entry.printed
+            result.location, result.printed_form
         );
-        if !entry.holds || entry.aside.is_some() {
-            let _ = writeln!(page, "       worst      {}", entry.format_error());
+        if !result.holds || result.special_case.is_some() {
+            let _ = writeln!(text, "       worst      {}", result.format_error());
         }
-        match entry.holds_clockwise {
-            Some(true) => page += "       clockwise  holds\n",
-            Some(false) => page += "       clockwise  fails\n",
+        match result.holds_clockwise {
+            Some(true) => text += "       clockwise  holds\n",
+            Some(false) => text += "       clockwise  fails\n",
             None => {}
         }
-        if let (Some(form), Some(is_correct)) = (entry.corrected, entry.corrected_holds) {
+        if let (Some(form), Some(is_correct)) = (result.corrected_form, result.corrected_holds) {
             let verdict = if is_correct { "holds" } else { "fails" };
-            let _ = writeln!(page, "       corrected  {form}: {verdict}");
+            let _ = writeln!(text, "       corrected  {form}: {verdict}");
         }
     }
-    page
+    text
 }
 
 /// Formats the text of docs/errata.md.
-pub fn format_markdown(entries: &[Entry], sample_count: u32) -> String {
-    let holding_count = entries.iter().filter(|entry| entry.holds).count();
-    let mut page = format!(
+pub fn format_markdown(results: &[EquationResult], sample_count: u32) -> String {
+    let holding_count = results.iter().filter(|result| result.holds).count();
+    let mut text = format!(
         "# Errata of the paper, measured
 
 This page is the output of `lizard errata --markdown`; a test fails if it is out of date.
@@ -60,23 +60,23 @@ poses and holds.
 | place | printed | verdict | largest error | corrected |
 |---|---|---|---|---|
 ",
-        entries.len()
+        results.len()
     );
     let escape_cell = |text: &str| text.replace('|', "\\|");
-    for entry in entries {
-        let corrected = match (entry.corrected, entry.corrected_holds) {
+    for result in results {
+        let corrected = match (result.corrected_form, result.corrected_holds) {
             (Some(form), Some(true)) => escape_cell(form),
             (Some(form), _) => format!("{} (fails too)", escape_cell(form)),
             _ => "-".to_string(),
         };
         let _ = writeln!(
-            page,
+            text,
             "| {} | {} | {} | {} | {corrected} |",
-            escape_cell(entry.place),
-            escape_cell(entry.printed),
-            entry.verdict(),
-            escape_cell(&entry.format_error())
+            escape_cell(result.location),
+            escape_cell(result.printed_form),
+            result.verdict(),
+            escape_cell(&result.format_error())
         );
     }
-    page
+    text
 }

@@ -3,7 +3,7 @@
 use lizard_kinematics::{Real, Solution, Vector};
 use lizard_robot::Robot;
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::joints::Cranks;
 use crate::bodies::layout::Layout;
 use crate::bodies::{chassis, ends, legs, links, sliders, struts};
@@ -24,7 +24,7 @@ pub struct Assembly {
 impl Assembly {
     /// Builds the bodies of a robot, without checking that they fit.
     pub fn new(robot: &Robot) -> Self {
-        let mut builder = Builder::new(robot);
+        let mut builder = AssemblyBuilder::new(robot);
         chassis::add(&mut builder);
         links::add(&mut builder);
         ends::add(&mut builder);
@@ -95,17 +95,16 @@ impl Assembly {
         mount: Mount,
         cranks: &Cranks<T>,
     ) -> Placement<T> {
-        let to_constant = |v: Vector| Vector::new(T::constant(v.x), T::constant(v.y));
         let placement_on_crank = |servo: usize, origin: Vector| Placement {
-            origin: to_constant(origin),
+            origin: Vector::constant(origin),
             x_axis: cranks.directions[servo],
         };
         let link_placement = |servo: usize| placement_on_crank(servo, self.layout.shafts[servo]);
         let legs = &self.layout.legs;
         match mount {
             Mount::Chassis => Placement {
-                origin: to_constant(Placement::CHASSIS.origin),
-                x_axis: to_constant(Placement::CHASSIS.x_axis),
+                origin: Vector::constant(Placement::CHASSIS.origin),
+                x_axis: Vector::constant(Placement::CHASSIS.x_axis),
             },
             Mount::Link(servo) => link_placement(servo),
             Mount::Crank(servo) => placement_on_crank(servo, legs[servo].crank_pivot),
@@ -113,11 +112,11 @@ impl Assembly {
             Mount::Foot(servo) => Placement {
                 origin: placement_on_crank(servo, legs[servo].crank_pivot)
                     .map(legs[servo].crank_joint),
-                x_axis: to_constant(legs[servo].coupler_direction),
+                x_axis: Vector::constant(legs[servo].coupler_direction),
             },
             Mount::Strut(servo) => Placement {
                 origin: link_placement(servo).map(legs[servo].anchor),
-                x_axis: to_constant(legs[servo].strut_direction),
+                x_axis: Vector::constant(legs[servo].strut_direction),
             },
             Mount::Coupler(servo) => {
                 let (end, index) = end_and_index(servo);
@@ -131,7 +130,7 @@ impl Assembly {
             }
             Mount::Sleeve(side) | Mount::Rod(side) => {
                 let slider = cranks.slider(side);
-                let rear_shaft = to_constant(self.layout.shafts[side.servos()[1]]);
+                let rear_shaft = Vector::constant(self.layout.shafts[side.servos()[1]]);
                 let tip = match mount {
                     Mount::Rod(_) => slider.front_tip,
                     _ => slider.rear_tip,

@@ -7,16 +7,16 @@ use crate::bodies::layout::Layout;
 use crate::bodies::names;
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_PLAY, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length};
+use crate::layers::stack::{HEAD_CLEARANCE, HEX_HEAD_HEIGHT, Span, Stack, find_screw_length};
 
 /// The direction from a screw's head to its tip.
 #[derive(Clone, Copy, PartialEq)]
-pub enum Direction {
+pub enum ScrewDirection {
     Up,
     Down,
 }
 
-impl Direction {
+impl ScrewDirection {
     fn sign(self) -> f64 {
         match self {
             Self::Up => 1.0,
@@ -26,7 +26,7 @@ impl Direction {
 }
 
 /// A robot's dimensions and the bodies added so far.
-pub struct Builder<'a> {
+pub struct AssemblyBuilder<'a> {
     /// Robot whose bodies are built.
     pub robot: &'a Robot,
     /// Dimensions of the robot's parts.
@@ -39,52 +39,46 @@ pub struct Builder<'a> {
     pub bodies: Vec<Body>,
 }
 
-/// A screw and the height of its nut.
-pub struct Bolt<'a> {
-    /// Name of the bolt, without the word "screw" or "nut".
+/// A screw to add, with a nut or without one.
+pub struct Screw<'a> {
+    /// Name of the screw and of its nut, without the word "screw" or "nut".
     pub name: &'a str,
     /// Mount that the screw moves with.
     pub mount: Mount,
     /// Position of the screw's axis, mount frame, mm.
     pub position: Vector,
     /// Height of the face under the screw's head, mm.
-    pub head_z: f64,
+    pub seat_z: f64,
     /// Direction from the screw's head to its tip.
-    pub direction: Direction,
-    /// Height of the face on which the nut bears, mm.
-    pub nut_z: f64,
-    /// Length below the head, mm; `None` for the length that the nut needs.
-    pub length: Option<f64>,
+    pub direction: ScrewDirection,
     /// Names of the bodies with other mounts that screw and nut may touch.
-    pub contacts: &'a [&'a str],
+    pub allowed_contacts: &'a [&'a str],
     /// True for a hexagon head sunk into the part; false for a button head.
-    pub is_hex: bool,
+    pub has_hex_head: bool,
 }
 
-impl<'a> Bolt<'a> {
-    /// Creates a bolt with a button head and without contacts; its nut, if any, is at height 0.
+impl<'a> Screw<'a> {
+    /// Creates a screw with a button head and without allowed contacts.
     pub fn new(
         name: &'a str,
         mount: Mount,
         position: Vector,
-        head_z: f64,
-        direction: Direction,
+        seat_z: f64,
+        direction: ScrewDirection,
     ) -> Self {
         Self {
             name,
             mount,
             position,
-            head_z,
+            seat_z,
             direction,
-            nut_z: 0.0,
-            length: None,
-            contacts: &[],
-            is_hex: false,
+            allowed_contacts: &[],
+            has_hex_head: false,
         }
     }
 }
 
-impl<'a> Builder<'a> {
+impl<'a> AssemblyBuilder<'a> {
     /// Creates a builder without bodies.
     pub fn new(robot: &'a Robot) -> Self {
         let parts = robot.parts();
@@ -133,12 +127,12 @@ impl<'a> Builder<'a> {
     }
 
     /// Makes a hole into which a screw cuts its thread.
-    pub fn thread_hole(&self, centre: Vector) -> Shape {
+    pub fn pilot_hole(&self, centre: Vector) -> Shape {
         Shape::disc(centre, 0.43 * self.parts.screw.diameter)
     }
 
-    /// Makes the recess for a sunk screw head.
-    pub fn head_recess(&self, centre: Vector) -> Shape {
+    /// Makes the counterbore for a sunk screw head.
+    pub fn counterbore(&self, centre: Vector) -> Shape {
         Shape::disc(centre, self.parts.screw.head / 2.0 + self.parts.fit)
     }
 
@@ -189,7 +183,7 @@ impl<'a> Builder<'a> {
         mount: Mount,
         centre: Vector,
         z: Span,
-        contacts: &[&str],
+        allowed_contacts: &[&str],
     ) {
         let hole = self.clearance_hole(centre);
         let ring = Prism::new(
@@ -198,70 +192,72 @@ impl<'a> Builder<'a> {
             z,
         );
         self.add_printed(name, mount, [ring]);
-        self.allow_contact(contacts);
+        self.allow_contact(allowed_contacts);
     }
 
-    /// Adds a screw and its nut.
-    pub fn add_bolt(&mut self, bolt: &Bolt) {
-        let screw = self.parts.screw;
-        let sign = bolt.direction.sign();
-        let nut_end = bolt.nut_z + sign * screw.nut_height;
-        let length = bolt
-            .length
-            .unwrap_or_else(|| find_screw_length((nut_end - bolt.head_z).abs()));
-        self.add_screw(bolt, length);
-        let flats = Shape::hexagon(bolt.position, screw.nut);
-        let thread = Shape::disc(bolt.position, screw.diameter / 2.0);
-        let nut = Prism::new([flats], [thread], order_heights(bolt.nut_z, nut_end));
-        self.add_body(format!("nut {}", bolt.name), Kind::Nut, bolt.mount, [nut]);
-        self.allow_contact(bolt.contacts);
+    /// Adds a screw that is as long as its nut needs, and the nut. `nut_z` is the height of the face on which the nut
+    /// bears, mm.
+    pub fn add_bolt(&mut self, screw: &Screw, nut_z: f64) {
+        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
+        self.add_screw(screw, find_screw_length((nut_end - screw.seat_z).abs()));
+        self.add_nut(screw, nut_z);
     }
 
-    /// Adds a screw without a nut.
-    pub fn add_screw(&mut self, bolt: &Bolt, length: f64) {
-        let screw = self.parts.screw;
-        let sign = bolt.direction.sign();
+    /// Adds the nut of a screw. `nut_z` is the height of the face on which the nut bears, mm.
+    pub fn add_nut(&mut self, screw: &Screw, nut_z: f64) {
+        let nut_end = nut_z + screw.direction.sign() * self.parts.screw.nut_height;
+        let nut = self.make_nut(screw.position, order_heights(nut_z, nut_end));
+        self.add_body(format!("nut {}", screw.name), Kind::Nut, screw.mount, [nut]);
+        self.allow_contact(screw.allowed_contacts);
+    }
+
+    /// Makes the layer of a nut.
+    pub fn make_nut(&self, position: Vector, z: Span) -> Prism {
+        let hexagon = Shape::hexagon(position, self.parts.screw.nut);
+        let thread = Shape::disc(position, self.parts.screw.diameter / 2.0);
+        Prism::new([hexagon], [thread], z)
+    }
+
+    /// Adds a screw of a length (mm) below its head, without a nut.
+    pub fn add_screw(&mut self, screw: &Screw, length: f64) {
+        let size = self.parts.screw;
+        let sign = screw.direction.sign();
         let build_prism =
             |shape: Shape, from: f64, to: f64| Prism::solid([shape], order_heights(from, to));
-        let shank = Shape::disc(bolt.position, screw.diameter / 2.0);
-        let (head, height, kind) = if bolt.is_hex {
-            let hexagon = Shape::hexagon(bolt.position, screw.nut);
+        let shank = Shape::disc(screw.position, size.diameter / 2.0);
+        let (head, height, kind) = if screw.has_hex_head {
+            let hexagon = Shape::hexagon(screw.position, size.nut);
             (hexagon, HEX_HEAD_HEIGHT, Kind::HexScrew(length))
         } else {
-            let disc = Shape::disc(bolt.position, screw.head / 2.0);
-            (disc, screw.head_height, Kind::Screw(length))
+            let disc = Shape::disc(screw.position, size.head / 2.0);
+            (disc, size.head_height, Kind::Screw(length))
         };
         let mut prisms = vec![
-            build_prism(shank, bolt.head_z, bolt.head_z + sign * length),
-            build_prism(head, bolt.head_z - sign * height, bolt.head_z),
+            build_prism(shank, screw.seat_z, screw.seat_z + sign * length),
+            build_prism(head, screw.seat_z - sign * height, screw.seat_z),
         ];
         prisms.sort_by(|a, b| a.z[0].total_cmp(&b.z[0]));
-        self.add_body(format!("screw {}", bolt.name), kind, bolt.mount, prisms);
-        self.allow_contact(bolt.contacts);
+        self.add_body(format!("screw {}", screw.name), kind, screw.mount, prisms);
+        self.allow_contact(screw.allowed_contacts);
     }
 
     /// Adds the bolt of a joint on a servo's link. A pocket in the link's underside keeps the hexagon head from
-    /// turning, since no key can reach the head once the link is on its servo. `top` is the joint's upper face, mm.
+    /// turning, since no wrench can reach the head once the link is on its servo. `top` is the joint's upper face, mm.
     pub fn add_link_joint(
         &mut self,
         name: &str,
         mount: Mount,
         position: Vector,
         top: f64,
-        contacts: &[&str],
+        allowed_contacts: &[&str],
     ) {
-        self.add_bolt(&Bolt {
-            nut_z: top + HEAD_PLAY,
-            contacts,
-            is_hex: true,
-            ..Bolt::new(
-                name,
-                mount,
-                position,
-                self.stack.hex_head_face,
-                Direction::Up,
-            )
-        });
+        let seat_z = self.stack.hex_head_face;
+        let screw = Screw {
+            allowed_contacts,
+            has_hex_head: true,
+            ..Screw::new(name, mount, position, seat_z, ScrewDirection::Up)
+        };
+        self.add_bolt(&screw, top + HEAD_CLEARANCE);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::fittings;
 use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::bodies::leads;
@@ -29,17 +29,17 @@ const UNO_HOLES: [(f64, f64); 4] = [
     (-8.89, 31.75),
 ];
 /// Index in [`UNO_HOLES`] of the hole beside the pin AREF, whose header leaves no room for a screw's head.
-const UNO_TIGHT_HOLE: usize = 1;
+const UNO_SCREWLESS_HOLE: usize = 1;
 
 fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
 }
 
 /// Adds the bodies that do not move.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     add_plate(builder);
     for servo in 0..4 {
-        add_case(builder, servo);
+        add_servo(builder, servo);
     }
     leads::add(builder);
     add_battery(builder);
@@ -48,15 +48,15 @@ pub fn add(builder: &mut Builder) {
     add_board(builder);
 }
 
-/// Outline of a servo's case from above, wider by `margin` (mm) on each side.
-fn case_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
+/// Makes the outline of a servo's case from above, wider by `margin` (mm) on each side.
+fn case_outline(builder: &AssemblyBuilder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
     let size = vector(body.width + 2.0 * margin, body.length + 2.0 * margin);
     Shape::rectangle(case_middle(builder, servo), size, 0.0)
 }
 
 /// Middle of a servo's case from above, chassis frame, mm.
-fn case_middle(builder: &Builder, servo: usize) -> Vector {
+fn case_middle(builder: &AssemblyBuilder, servo: usize) -> Vector {
     builder.layout.plate.case_centres[servo]
 }
 
@@ -66,14 +66,14 @@ fn inward_direction(servo: usize) -> Vector {
 }
 
 /// Positions of the two screws that hold a servo's flange.
-fn flange_hole_positions(builder: &Builder, servo: usize) -> [Vector; 2] {
+fn flange_hole_positions(builder: &AssemblyBuilder, servo: usize) -> [Vector; 2] {
     let offset = inward_direction(servo) * (builder.parts.servo.holes / 2.0);
     let middle = case_middle(builder, servo);
     [middle - offset, middle + offset]
 }
 
-/// Outline of a servo's seat, wider by `margin` (mm) on each side.
-fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
+/// Makes the outline of a servo's seat, wider by `margin` (mm) on each side.
+fn seat_outline(builder: &AssemblyBuilder, servo: usize, margin: f64) -> Shape {
     let body = &builder.parts.servo;
     let border = builder.parts.fit + builder.parts.wall + margin;
     let size = vector(body.width + 2.0 * border, body.flange + 2.0 + 2.0 * margin);
@@ -81,7 +81,7 @@ fn seat_outline(builder: &Builder, servo: usize, margin: f64) -> Shape {
 }
 
 /// Makes the cut-outs for a servo in the plate and in its seat: first for case and lead, then the holes for the screws.
-fn make_cutouts(builder: &Builder, servo: usize) -> Vec<Shape> {
+fn make_servo_cutouts(builder: &AssemblyBuilder, servo: usize) -> Vec<Shape> {
     let (parts, outward) = (builder.parts, End::from_servo(servo).sign());
     let notch = leads::make_lead_notch(
         &parts.servo,
@@ -101,12 +101,14 @@ fn standoff_positions() -> [Vector; 4] {
     [vector(-x, y), vector(x, y), vector(x, -y), vector(-x, -y)]
 }
 
-fn add_plate(builder: &mut Builder) {
+fn add_plate(builder: &mut AssemblyBuilder) {
     let (stack, layout) = (builder.stack, builder.layout);
     let plate = layout.plate;
     let seats = [0, 1, 2, 3].map(|servo| seat_outline(builder, servo, 0.0));
     // First all openings, then all holes: the files list the shapes in this order, and must not change.
-    let servo_cutouts: Vec<_> = (0..4).map(|servo| make_cutouts(builder, servo)).collect();
+    let servo_cutouts: Vec<_> = (0..4)
+        .map(|servo| make_servo_cutouts(builder, servo))
+        .collect();
     let openings = servo_cutouts.iter().flat_map(|shapes| &shapes[..2]);
     let all_cutouts: Vec<_> = openings
         .chain(servo_cutouts.iter().flat_map(|shapes| &shapes[2..]))
@@ -135,7 +137,7 @@ fn add_plate(builder: &mut Builder) {
     through_holes.extend(leads::make_wire_holes());
     through_holes.extend(fittings::make_plate_slots(builder));
     let [low, high] = stack.plate;
-    let engraved_cuts = [&through_holes[..], &number_strokes(builder)].concat();
+    let engraved_cuts = [&through_holes[..], &make_number_strokes(builder)].concat();
     let prisms = [
         Prism::new(
             filled.clone(),
@@ -149,7 +151,7 @@ fn add_plate(builder: &mut Builder) {
 }
 
 /// Makes the layers of the plate's piece around one servo and its leg's pivots, which is printed first, as a trial.
-pub fn make_corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+pub fn make_corner_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism> {
     /// Margin of the plate around the seat, mm.
     const SEAT_MARGIN: f64 = 2.0;
     let (parts, stack, plate) = (builder.parts, builder.stack, builder.layout.plate);
@@ -163,7 +165,7 @@ pub fn make_corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
         filled.push(Shape::bar(from, to, plate.arm_half_width - 0.01));
         filled.push(Shape::bar(to, middle, plate.arm_half_width - 0.02));
     }
-    let servo_cutouts = make_cutouts(builder, servo);
+    let servo_cutouts = make_servo_cutouts(builder, servo);
     let pivots =
         [leg.crank_pivot, leg.follower_pivot].map(|position| builder.clearance_hole(position));
     let raised_seat = stack.seat.map(|z| z + parts.plate);
@@ -181,8 +183,8 @@ pub fn make_corner_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     ]
 }
 
-/// The strokes of the servos' numbers, engraved beside the seats to distinguish head and tail.
-fn number_strokes(builder: &Builder) -> Vec<Shape> {
+/// Makes the strokes of the servos' numbers, engraved beside the seats to distinguish head and tail.
+fn make_number_strokes(builder: &AssemblyBuilder) -> Vec<Shape> {
     let body = &builder.parts.servo;
     let strokes = (0..4).flat_map(|servo| {
         let [width, height] = mark::mark_size("1");
@@ -196,7 +198,7 @@ fn number_strokes(builder: &Builder) -> Vec<Shape> {
     strokes.collect()
 }
 
-fn add_case(builder: &mut Builder, servo: usize) {
+fn add_servo(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let body = builder.parts.servo;
     let bottom = builder.stack.servo_bottom;
@@ -238,14 +240,14 @@ fn add_case(builder: &mut Builder, servo: usize) {
     }
 }
 
-fn add_battery(builder: &mut Builder) {
+fn add_battery(builder: &mut AssemblyBuilder) {
     let [x, y, z] = builder.parts.battery;
     let block = Shape::rectangle(Vector::default(), vector(x, y), 0.0);
     let block = Prism::solid([block], [0.0, z]);
     builder.add_body("battery", Kind::Battery, Mount::Chassis, [block]);
 }
 
-fn add_deck(builder: &mut Builder) {
+fn add_deck(builder: &mut AssemblyBuilder) {
     let (stack, parts) = (builder.stack, builder.parts);
     let [x, y] = STANDOFF_DISTANCES;
     let bar_between = |(ax, ay): (f64, f64), (bx, by): (f64, f64)| {
@@ -263,12 +265,12 @@ fn add_deck(builder: &mut Builder) {
     let [wings, openings] = fittings::make_wing_shapes(UNO_HOLES);
     filled.extend(wings);
     let screws = standoff_positions().map(|position| builder.clearance_hole(position));
-    let threads = UNO_HOLES.map(|(x, y)| builder.thread_hole(vector(x, y)));
+    let pilot_holes = UNO_HOLES.map(|(x, y)| builder.pilot_hole(vector(x, y)));
     // The window saves weight; the cable ties of the fittings under the deck pass through it.
     let window = Shape::rectangle(vector(0.0, 4.0), vector(12.0, 36.0), 3.0);
     let holes = [
         &screws[..],
-        &threads,
+        &pilot_holes,
         &leads::make_wire_holes(),
         &[window],
         &openings,
@@ -277,44 +279,42 @@ fn add_deck(builder: &mut Builder) {
     let bosses = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 4.0));
     let prisms = [
         Prism::new(filled, holes, stack.deck),
-        Prism::new(bosses, threads, stack.board_boss),
+        Prism::new(bosses, pilot_holes, stack.board_boss),
     ];
     builder.add_printed("deck", Mount::Chassis, prisms);
     for (number, position) in (1..).zip(standoff_positions()) {
         let length = stack.deck[0];
-        let (post, thread) = (
-            Shape::disc(position, STANDOFF_RADIUS),
-            builder.thread_hole(position),
-        );
-        let post = Prism::new([post], [thread], [0.0, length]);
+        let post = Shape::disc(position, STANDOFF_RADIUS);
+        let post = Prism::new([post], [builder.pilot_hole(position)], [0.0, length]);
         let name = format!("standoff {number}");
         builder.add_body(&name, Kind::Standoff(length), Mount::Chassis, [post]);
-        for (end, head_z, direction) in [
-            ("below", stack.plate[0], Direction::Up),
-            ("above", stack.deck[1], Direction::Down),
+        for (end, seat_z, direction) in [
+            ("below", stack.plate[0], ScrewDirection::Up),
+            ("above", stack.deck[1], ScrewDirection::Down),
         ] {
             let name = format!("{name} {end}");
-            let bolt = Bolt::new(&name, Mount::Chassis, position, head_z, direction);
-            builder.add_screw(&bolt, parts.plate + 4.0);
+            let screw = Screw::new(&name, Mount::Chassis, position, seat_z, direction);
+            builder.add_screw(&screw, parts.plate + 4.0);
         }
     }
 }
 
-fn add_board(builder: &mut Builder) {
+fn add_board(builder: &mut AssemblyBuilder) {
     let low = builder.stack.board_boss[1];
     let [x, y, z] = UNO_SIZE;
     let top = low + UNO_BOARD_THICKNESS;
     let build_block = |x: f64, y: f64| [Shape::rectangle(Vector::default(), vector(x, y), 0.0)];
     let holes = UNO_HOLES.map(|(x, y)| Shape::disc(vector(x, y), 1.6));
-    let heads = UNO_HOLES.map(|(x, y)| builder.head_recess(vector(x, y)));
+    let heads = UNO_HOLES.map(|(x, y)| builder.counterbore(vector(x, y)));
     let board = Prism::new(build_block(x, y), holes, [low, top]);
     let components = Prism::new(build_block(x - 4.0, y - 4.0), heads, [top, low + z]);
     builder.add_body("board", Kind::Board, Mount::Chassis, [board, components]);
     for (index, (x, y)) in UNO_HOLES.into_iter().enumerate() {
-        if index != UNO_TIGHT_HOLE {
+        if index != UNO_SCREWLESS_HOLE {
             let name = format!("board {}", index + 1);
-            let bolt = Bolt::new(&name, Mount::Chassis, vector(x, y), top, Direction::Down);
-            builder.add_screw(&bolt, 10.0);
+            let (position, direction) = (vector(x, y), ScrewDirection::Down);
+            let screw = Screw::new(&name, Mount::Chassis, position, top, direction);
+            builder.add_screw(&screw, 10.0);
         }
     }
 }

@@ -3,15 +3,15 @@
 //!
 //! These parts drive nothing. The screw of the end point and a second screw fix each part to a coupler: the left tail
 //! link under the lower coupler, the right tail link and the head on the upper coupler. At neutral the head points
-//! straight ahead, and the tail links point back, spread by a few degrees.
+//! straight forward, and the tail links point back, spread by a few degrees.
 
 use lizard_kinematics::{End, Solution, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Mount, Prism, coupler_length, end_and_index};
 use crate::layers::shape::Shape;
-use crate::layers::stack::HEAD_PLAY;
+use crate::layers::stack::HEAD_CLEARANCE;
 
 /// Thickness of a decorative part, mm.
 const THICKNESS: f64 = 3.0;
@@ -25,61 +25,56 @@ const TAIL_LINK_ANGLE: f64 = 3.5;
 /// Decorative parts of an end beyond its couplers.
 #[derive(Default)]
 pub struct EndDecoration {
-    /// Thickness of the part under the lower coupler at the end point, mm; 0 without such a part.
+    /// Thickness of the part under the lower coupler at the end point, mm; 0 if there is no such part.
     pub lower_thickness: f64,
-    /// Thickness of the part on the upper coupler, mm; 0 without such a part.
+    /// Thickness of the part on the upper coupler, mm; 0 if there is no such part.
     pub upper_thickness: f64,
     /// Names of the bodies on the upper coupler.
     pub upper_bodies: Vec<String>,
 }
 
-/// Length of an end's decorative part beyond the end point, mm; 0 without such a part.
-fn decoration_length(builder: &Builder, end: End) -> f64 {
+/// True if an end has a decorative part, whose length is not 0.
+fn has_decoration(builder: &AssemblyBuilder, end: End) -> bool {
     match end {
-        End::Head => builder.parts.head,
-        End::Tail => builder.parts.tail,
+        End::Head => builder.parts.head > 0.0,
+        End::Tail => builder.parts.tail > 0.0,
     }
 }
 
-/// Makes the holes for the second screw in a coupler's lower and upper layer; `None` for a coupler without a decorative
+/// Makes the holes for the second screw in a coupler's lower and upper layer; `None` if the coupler has no decorative
 /// part. In the tail's left coupler, the screw's head is sunk into the upper layer.
-pub fn make_second_screw_holes(
-    builder: &Builder,
-    servo: usize,
-    point: Vector,
-) -> Option<[Shape; 2]> {
+pub fn make_second_screw_holes(builder: &AssemblyBuilder, servo: usize) -> Option<[Shape; 2]> {
     let (end, index) = end_and_index(servo);
-    let position = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
-    match (decoration_length(builder, end) > 0.0, end, index) {
+    let position = second_screw_position(builder, servo);
+    match (has_decoration(builder, end), end, index) {
         (true, End::Tail, 0) => Some([
             builder.clearance_hole(position),
-            builder.head_recess(position),
+            builder.counterbore(position),
         ]),
-        (true, _, 1) => Some([builder.thread_hole(position), builder.thread_hole(position)]),
+        (true, _, 1) => Some([builder.pilot_hole(position), builder.pilot_hole(position)]),
         _ => None,
     }
 }
 
 /// Adds an end's decorative parts with their second screws.
-pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
-    let length = decoration_length(builder, end);
+pub fn add(builder: &mut AssemblyBuilder, end: End) -> EndDecoration {
     let neutral = builder.robot.lizard().solve(&builder.robot.neutral_pose());
-    let (true, Ok(neutral)) = (length > 0.0, neutral) else {
+    let (true, Ok(neutral)) = (has_decoration(builder, end), neutral) else {
         return EndDecoration::default();
     };
     let [left, right] = end.servos();
     let (lower_thickness, name, upper_part) = match end {
         End::Head => {
-            let part = make_head_part(builder, right, &neutral, length);
+            let part = make_head_part(builder, right, &neutral);
             (0.0, "head plate".to_owned(), part)
         }
         End::Tail => {
-            let lower_part = make_tail_part(builder, left, &neutral, length);
+            let lower_part = make_tail_part(builder, left, &neutral);
             add_under_lower_coupler(builder, left, lower_part);
             (
                 THICKNESS,
                 format!("tail {}", servo_and_leg_names(right).0),
-                make_tail_part(builder, right, &neutral, length),
+                make_tail_part(builder, right, &neutral),
             )
         }
     };
@@ -95,14 +90,13 @@ pub fn add(builder: &mut Builder, end: End) -> EndDecoration {
 type FlatPart = (Vec<Shape>, Vec<Shape>);
 
 /// Computes an end point, and the direction that points outward at neutral, both in a coupler's frame.
-fn compute_point_and_direction(builder: &Builder, servo: usize, neutral: &Solution) -> [Vector; 2] {
+fn point_and_direction(builder: &AssemblyBuilder, servo: usize, neutral: &Solution) -> [Vector; 2] {
     let (end, index) = end_and_index(servo);
     let five_bar = neutral.end(end);
     let coupler_direction = end.mirror([five_bar.left_coupler, five_bar.right_coupler][index]);
     let chassis_direction = Vector::new(0.0, end.sign());
-    let point = Vector::new(coupler_length(builder.robot, servo), 0.0);
     [
-        point,
+        Vector::new(coupler_length(builder.robot, servo), 0.0),
         Vector::new(
             chassis_direction.dot(coupler_direction),
             coupler_direction.cross(chassis_direction),
@@ -110,42 +104,42 @@ fn compute_point_and_direction(builder: &Builder, servo: usize, neutral: &Soluti
     ]
 }
 
-/// Turns a direction counter-clockwise by `angle_deg`.
+/// Rotates a direction counter-clockwise by `angle_deg`.
 fn rotate(direction: Vector, angle_deg: f64) -> Vector {
-    let turn = Vector::direction(angle_deg);
-    direction * turn.x + direction.rotated_left() * turn.y
+    let rotation = Vector::from_angle(angle_deg);
+    direction * rotation.x + direction.rotated_left() * rotation.y
 }
 
-fn make_tail_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
-    let [point, straight_direction] = compute_point_and_direction(builder, servo, neutral);
+fn make_tail_part(builder: &AssemblyBuilder, servo: usize, neutral: &Solution) -> FlatPart {
+    let length = builder.parts.tail;
+    let [end_point, straight_direction] = point_and_direction(builder, servo, neutral);
     // The left tail link points to the left, the right tail link to the right.
     let (_, index) = end_and_index(servo);
     let angle_deg = [-TAIL_LINK_ANGLE, TAIL_LINK_ANGLE][index];
     let link_direction = rotate(straight_direction, angle_deg);
     let half_width = builder.half_bar_width();
     let side_offset = link_direction.rotated_left() * (half_width - 1.5);
-    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
     let corners = [
-        point + side_offset,
-        point - side_offset,
-        point + link_direction * (length - 1.5),
+        end_point + side_offset,
+        end_point - side_offset,
+        end_point + link_direction * (length - 1.5),
     ];
     let filled = vec![
-        Shape::bar(second_screw, point, half_width),
+        Shape::bar(second_screw_position(builder, servo), end_point, half_width),
         Shape::hull(&corners, 1.5),
     ];
-    (filled, vec![builder.clearance_hole(point)])
+    (filled, vec![builder.clearance_hole(end_point)])
 }
 
-fn make_head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f64) -> FlatPart {
+fn make_head_part(builder: &AssemblyBuilder, servo: usize, neutral: &Solution) -> FlatPart {
     /// Radius of the head's corners, mm.
     const CORNER_RADIUS: f64 = 7.0;
     /// Radius of an eye, mm.
     const EYE_RADIUS: f64 = 2.5;
-    let [point, direction] = compute_point_and_direction(builder, servo, neutral);
+    let length = builder.parts.head;
+    let [end_point, direction] = point_and_direction(builder, servo, neutral);
     let point_at =
-        |ahead: f64, left: f64| point + direction * ahead + direction.rotated_left() * left;
-    let second_screw = point - Vector::new(SECOND_SCREW_DISTANCE, 0.0);
+        |forward: f64, left: f64| end_point + direction * forward + direction.rotated_left() * left;
     let half_width = 0.24 * length;
     let [cheek, neck] = [0.34 * length, -0.1 * length];
     let snout = (length - CORNER_RADIUS, 0.0);
@@ -156,59 +150,56 @@ fn make_head_part(builder: &Builder, servo: usize, neutral: &Solution, length: f
         (neck, -0.4 * half_width),
     ];
     let corners = sides.into_iter().chain([snout]);
-    let corners: Vec<_> = corners.map(|(ahead, left)| point_at(ahead, left)).collect();
+    let corners: Vec<_> = corners
+        .map(|(forward, left)| point_at(forward, left))
+        .collect();
     let face = Shape::hull(&corners, CORNER_RADIUS);
     let eyes = [half_width, -half_width]
         .map(|left| Shape::disc(point_at(0.42 * length, left), EYE_RADIUS));
-    let mut cut = vec![builder.clearance_hole(point)];
+    let mut cut = vec![builder.clearance_hole(end_point)];
     cut.extend(eyes);
     let filled = vec![
-        Shape::bar(second_screw, point, builder.half_bar_width()),
+        Shape::bar(
+            second_screw_position(builder, servo),
+            end_point,
+            builder.half_bar_width(),
+        ),
         face,
     ];
     (filled, cut)
 }
 
 /// Position of the second screw in a coupler's frame, mm.
-fn second_screw_position(builder: &Builder, servo: usize) -> Vector {
+fn second_screw_position(builder: &AssemblyBuilder, servo: usize) -> Vector {
     Vector::new(
         coupler_length(builder.robot, servo) - SECOND_SCREW_DISTANCE,
         0.0,
     )
 }
 
-fn add_on_upper_coupler(
-    builder: &mut Builder,
-    servo: usize,
-    name: &str,
-    (filled, mut cut): FlatPart,
-) {
+fn add_on_upper_coupler(builder: &mut AssemblyBuilder, servo: usize, name: &str, part: FlatPart) {
+    let (filled, mut cut) = part;
     let low = builder.stack.upper_coupler[1];
     cut.push(builder.clearance_hole(second_screw_position(builder, servo)));
     let z = [low, low + THICKNESS];
     builder.add_printed(name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
-    add_screw(builder, name, servo, z[1]);
+    add_second_screw(builder, name, servo, z[1]);
 }
 
-fn add_under_lower_coupler(builder: &mut Builder, servo: usize, (filled, mut cut): FlatPart) {
+fn add_under_lower_coupler(builder: &mut AssemblyBuilder, servo: usize, part: FlatPart) {
+    let (filled, mut cut) = part;
     let high = builder.stack.lower_coupler[0];
-    cut.push(builder.thread_hole(second_screw_position(builder, servo)));
+    cut.push(builder.pilot_hole(second_screw_position(builder, servo)));
     let z = [high - THICKNESS, high];
     let name = format!("tail {}", servo_and_leg_names(servo).0);
     builder.add_printed(&name, Mount::Coupler(servo), [Prism::new(filled, cut, z)]);
     // The screw's head is sunk, since the upper coupler turns above it.
-    let seat_z = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - HEAD_PLAY;
-    add_screw(builder, &name, servo, seat_z);
+    let seat_z = builder.stack.lower_coupler[1] - builder.parts.screw.head_height - HEAD_CLEARANCE;
+    add_second_screw(builder, &name, servo, seat_z);
 }
 
-fn add_screw(builder: &mut Builder, part_name: &str, servo: usize, head_z: f64) {
-    let position = second_screw_position(builder, servo);
-    let bolt = Bolt::new(
-        part_name,
-        Mount::Coupler(servo),
-        position,
-        head_z,
-        Direction::Down,
-    );
-    builder.add_screw(&bolt, SECOND_SCREW_LENGTH);
+fn add_second_screw(builder: &mut AssemblyBuilder, part_name: &str, servo: usize, seat_z: f64) {
+    let (mount, position) = (Mount::Coupler(servo), second_screw_position(builder, servo));
+    let screw = Screw::new(part_name, mount, position, seat_z, ScrewDirection::Down);
+    builder.add_screw(&screw, SECOND_SCREW_LENGTH);
 }

@@ -2,15 +2,15 @@
 
 use lizard_kinematics::{End, Vector};
 
-use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::decoration;
 use crate::bodies::names::{coupler_name, servo_and_leg_names};
 use crate::layers::body::{Mount, Prism, coupler_length};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_PLAY, Span, Stack};
+use crate::layers::stack::{HEAD_CLEARANCE, Span, Stack};
 
 /// Adds the couplers of both ends, the screws and spacers of their joints, and the decorative parts.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for end in End::ALL {
         let [left, right] = end.servos();
         let Stack {
@@ -25,32 +25,35 @@ pub fn add(builder: &mut Builder) {
         for (servo, top, spacer_top) in [(left, lower[1], None), (right, upper[1], Some(upper[0]))]
         {
             let tip = Vector::new(builder.layout.crank_lengths[servo], 0.0);
-            let (mount, contacts) = (Mount::Link(servo), [&*coupler_name(servo)]);
+            let (mount, allowed_contacts) = (Mount::Link(servo), [&*coupler_name(servo)]);
             let (name, _) = servo_and_leg_names(servo);
             if let Some(spacer_top) = spacer_top {
                 let name = format!("tip spacer {name}");
-                builder.add_spacer(name, mount, tip, [link[1], spacer_top], &contacts);
+                builder.add_spacer(name, mount, tip, [link[1], spacer_top], &allowed_contacts);
             }
-            builder.add_link_joint(&format!("tip {name}"), mount, tip, top, &contacts);
+            builder.add_link_joint(&format!("tip {name}"), mount, tip, top, &allowed_contacts);
         }
         // The screw of the end point joins both couplers and the decorative parts.
-        let apex = Vector::new(coupler_length(builder.robot, left), 0.0);
+        let end_point = Vector::new(coupler_length(builder.robot, left), 0.0);
         let decoration = decoration::add(builder, end);
-        let mut contacts: Vec<&str> = decoration.upper_bodies.iter().map(String::as_str).collect();
         let upper_coupler_name = coupler_name(right);
-        contacts.push(&upper_coupler_name);
-        let (head_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
-        builder.add_bolt(&Bolt {
-            nut_z: upper[1] + decoration.upper_thickness + HEAD_PLAY,
-            contacts: &contacts,
-            ..Bolt::new(end.name(), mount, apex, head_z, Direction::Up)
-        });
+        let upper_bodies = decoration.upper_bodies.iter().map(String::as_str);
+        let allowed_contacts: Vec<_> = upper_bodies.chain([&*upper_coupler_name]).collect();
+        let (seat_z, mount) = (lower[0] - decoration.lower_thickness, Mount::Coupler(left));
+        let screw = Screw {
+            allowed_contacts: &allowed_contacts,
+            ..Screw::new(end.name(), mount, end_point, seat_z, ScrewDirection::Up)
+        };
+        builder.add_bolt(
+            &screw,
+            upper[1] + decoration.upper_thickness + HEAD_CLEARANCE,
+        );
     }
 }
 
 /// Adds the coupler of a servo between the heights `z`, mm. A coupler with a decorative part has two layers, since the
 /// head of the part's second screw may be sunk into the upper layer.
-fn add_coupler(builder: &mut Builder, servo: usize, z: Span) {
+fn add_coupler(builder: &mut AssemblyBuilder, servo: usize, z: Span) {
     let from = Vector::default();
     let to = Vector::new(coupler_length(builder.robot, servo), 0.0);
     let build_layer = |hole: Option<Shape>, z: Span| {
@@ -61,9 +64,9 @@ fn add_coupler(builder: &mut Builder, servo: usize, z: Span) {
         cut.extend(hole);
         Prism::new(filled, cut, z)
     };
-    let prisms = match decoration::make_second_screw_holes(builder, servo, to) {
+    let prisms = match decoration::make_second_screw_holes(builder, servo) {
         Some([lower_hole, upper_hole]) => {
-            let seat_z = z[1] - builder.parts.screw.head_height - HEAD_PLAY;
+            let seat_z = z[1] - builder.parts.screw.head_height - HEAD_CLEARANCE;
             let lower = build_layer(Some(lower_hole), [z[0], seat_z]);
             vec![lower, build_layer(Some(upper_hole), [seat_z, z[1]])]
         }

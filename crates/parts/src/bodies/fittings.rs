@@ -1,4 +1,4 @@
-//! Bodies of the power supply, the terminal strips, the plugs and the strap.
+//! Bodies of the fittings: power supply, terminal strips, plugs and strap.
 //!
 //! Each fitting is a body, so that the proof of fit and the mass include it. Since no part of the robot moves above the
 //! deck, the deck has two wings beside the board for the fittings that must be reached by hand: on the right the parts
@@ -6,7 +6,7 @@
 
 use lizard_kinematics::Vector;
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::layout::{STANDOFF_DISTANCES, STANDOFF_RADIUS, UNO_BOARD_THICKNESS, UNO_SIZE};
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::fitting::{Fitting, STRAP_SECTION, STRIP_PITCH};
@@ -16,16 +16,17 @@ use crate::layers::shape::Shape;
 const STRAP_SLOT: [f64; 2] = [17.0, 2.4];
 /// Size of a slot for a cable tie, mm: along the plate and across.
 const TIE_SLOT: [f64; 2] = [4.0, 2.0];
-/// Least distance between the terminal strips' middles and the plate's middle, mm.
+/// Smallest distance between the terminal strips' middles and the plate's middle, mm.
 const MIN_STRIP_X: f64 = 13.2;
 /// Distance from the plate's middle to the cable ties, which pass beside the battery's ends, mm.
 const TIE_DISTANCE: f64 = 31.5;
 /// Thickness of a cable tie, mm.
 const TIE_THICKNESS: f64 = 1.6;
 
-/// Distances from the deck's middle to a wing's inner and outer edge, and half the wing's length, mm. A longer wing
-/// would cover nuts of the sliders.
-const WING_EDGES_AND_HALF_LENGTH: [f64; 3] = [25.2, 51.2, 40.0];
+/// Distances from the deck's middle to a wing's inner and outer edge, mm.
+const WING_EDGES: [f64; 2] = [25.2, 51.2];
+/// Half of a wing's length, mm. A longer wing would cover nuts of the sliders.
+const WING_HALF_LENGTH: f64 = 40.0;
 /// Openings of a wing, mm: for each, the limits in x, away from the middle, and the limits in y. The openings save
 /// weight; the material between them is the arm that carries the wing.
 const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
@@ -36,10 +37,12 @@ const WING_OPENINGS: [[[f64; 2]; 2]; 2] = [
 const WING_FITTING_X: f64 = 29.5;
 /// Distances from the middle to a wing's cable ties, mm: on the inner and on the outer side of the fittings.
 const WING_TIE_X: [f64; 2] = [28.0, 48.4];
-/// Height of the barrel jack's middle above the board, and its length beyond the board's edge, mm.
-const SOCKET_HEIGHT_AND_OVERHANG: [f64; 2] = [6.5, 2.0];
-/// The barrel jack's middle, mm to the right of the board's middle.
-const SOCKET_X: f64 = 19.05;
+/// Height of the barrel jack's middle above the board, mm.
+const JACK_HEIGHT: f64 = 6.5;
+/// Length of the barrel jack beyond the board's edge, mm.
+const JACK_OVERHANG: f64 = 2.0;
+/// Position of the barrel jack's middle, mm to the right of the board's middle.
+const JACK_X: f64 = 19.05;
 
 fn vector(x: f64, y: f64) -> Vector {
     Vector::new(x, y)
@@ -51,26 +54,23 @@ fn make_slot(x: f64, y: f64, [slot_length, slot_width]: [f64; 2]) -> Shape {
 }
 
 /// Makes the plate's slots: for the battery's strap if the plate is wide enough, and for the terminal strips' ties.
-pub fn make_plate_slots(builder: &Builder) -> Vec<Shape> {
+pub fn make_plate_slots(builder: &AssemblyBuilder) -> Vec<Shape> {
     let mut slots = Vec::new();
     if let Some(x) = strap_slot_x(builder) {
         slots.extend([-x, x].map(|x| make_slot(x, 0.0, STRAP_SLOT)));
     }
     let strip_distance = strip_x(builder);
-    for x in [
-        -strip_distance - 4.5,
-        -strip_distance + 4.5,
-        strip_distance - 4.5,
-        strip_distance + 4.5,
-    ] {
-        slots.extend([-TIE_DISTANCE, TIE_DISTANCE].map(|y| make_slot(x, y, TIE_SLOT)));
+    for middle in [-strip_distance, strip_distance] {
+        for x in [middle - 4.5, middle + 4.5] {
+            slots.extend([-TIE_DISTANCE, TIE_DISTANCE].map(|y| make_slot(x, y, TIE_SLOT)));
+        }
     }
     slots
 }
 
 /// Distance from the plate's middle to the terminal strips' middles, mm. The servos' leads pass between the strips,
 /// along the inner sides of the servos' cases.
-fn strip_x(builder: &Builder) -> f64 {
+fn strip_x(builder: &AssemblyBuilder) -> f64 {
     let plate = builder.layout.plate;
     let cases = plate.case_centres.iter().map(|case| case.x.abs());
     let lead_edge = cases.fold(0.0, f64::max) - plate.case_size.x / 2.0;
@@ -80,12 +80,12 @@ fn strip_x(builder: &Builder) -> f64 {
 /// Makes the filled shapes of the deck's wings and of the arms from the wings to the board's holes; then the openings
 /// and slots in the wings.
 pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
-    let [inner, outer, half_length] = WING_EDGES_AND_HALF_LENGTH;
+    let [inner, outer] = WING_EDGES;
     let middle = (inner + outer) / 2.0;
     let mut filled = Vec::new();
     let mut cut = Vec::new();
     for side in [-1.0, 1.0] {
-        let size = vector(outer - inner, 2.0 * half_length);
+        let size = vector(outer - inner, 2.0 * WING_HALF_LENGTH);
         filled.push(Shape::rectangle(vector(side * middle, 0.0), size, 4.0));
         for [x, y] in WING_OPENINGS {
             let size = vector(x[1] - x[0], y[1] - y[0]);
@@ -113,23 +113,23 @@ pub fn make_wing_shapes(board_holes: [(f64, f64); 4]) -> [Vec<Shape>; 2] {
 
 /// Size of a fitting along an axis, mm: 0 to the right, 1 forward, 2 up.
 fn fitting_size(fitting: Fitting, axis: usize) -> f64 {
-    fitting.facts().size[axis]
+    fitting.spec().size[axis]
 }
 
 /// Position of the signal strip's middle, mm forward of the plate's middle. The strip begins at the wing's rear end.
 fn signal_strip_y() -> f64 {
-    0.5 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::SignalStrip, 1) / 2.0
+    0.5 - WING_HALF_LENGTH + fitting_size(Fitting::SignalStrip, 1) / 2.0
 }
 
 /// Position of the fuse's middle, mm forward of the plate's middle. The fuse is at the wing's front end.
 fn fuse_y() -> f64 {
-    WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
+    WING_HALF_LENGTH - 0.5 - fitting_size(Fitting::Fuse, 1) / 2.0
 }
 
 /// Position of the switch's middle, mm forward of the plate's middle. The switch is at the wing's rear end, and its
 /// cable tie goes around this end.
 fn switch_y() -> f64 {
-    0.3 - WING_EDGES_AND_HALF_LENGTH[2] + fitting_size(Fitting::Switch, 1) / 2.0
+    0.3 - WING_HALF_LENGTH + fitting_size(Fitting::Switch, 1) / 2.0
 }
 
 /// Position of the slot for the cable tie in front of the switch, mm forward of the plate's middle.
@@ -139,7 +139,7 @@ fn switch_tie_y() -> f64 {
 
 /// Distance from the plate's middle to the strap's slots, mm; `None` if the plate is too narrow for slots beside the
 /// battery, so that the strap goes around battery and plate.
-fn strap_slot_x(builder: &Builder) -> Option<f64> {
+fn strap_slot_x(builder: &AssemblyBuilder) -> Option<f64> {
     let [battery_width, _, _] = builder.parts.battery;
     let x = (battery_width + STRAP_SECTION[1]) / 2.0;
     let min_half_width = x + STRAP_SLOT[1] / 2.0 + builder.parts.wall;
@@ -147,7 +147,7 @@ fn strap_slot_x(builder: &Builder) -> Option<f64> {
 }
 
 /// Adds all fittings.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     add_under_deck_and_plate(builder);
     add_on_deck(builder);
     add_plugs(builder);
@@ -155,21 +155,14 @@ pub fn add(builder: &mut Builder) {
 }
 
 /// Adds a fitting as a block of its own size with its lower face at the height `low`, mm.
-fn add_block(builder: &mut Builder, fitting: Fitting, middle: Vector, low: f64) {
-    let size = fitting.facts().size;
-    add_sized_block(
-        builder,
-        fitting,
-        fitting.name().to_owned(),
-        middle,
-        low,
-        size,
-    );
+fn add_block(builder: &mut AssemblyBuilder, fitting: Fitting, middle: Vector, low: f64) {
+    let (name, size) = (fitting.name().to_owned(), fitting.spec().size);
+    add_sized_block(builder, fitting, name, middle, low, size);
 }
 
 /// Adds a fitting as a block of a given width, length and height, mm.
 fn add_sized_block(
-    builder: &mut Builder,
+    builder: &mut AssemblyBuilder,
     fitting: Fitting,
     name: String,
     middle: Vector,
@@ -182,12 +175,12 @@ fn add_sized_block(
 }
 
 /// Adds the fittings under the deck and under the plate.
-fn add_under_deck_and_plate(builder: &mut Builder) {
+fn add_under_deck_and_plate(builder: &mut AssemblyBuilder) {
     let stack = builder.stack;
     // The fittings hang below the strap and the heads of the standoffs' screws.
     let lower_ceiling =
         stack.plate[0] - STRAP_SECTION[1].max(builder.parts.screw.head_height) - 0.3;
-    let deck = stack.deck[0];
+    let deck_bottom = stack.deck[0];
     let half_free_length = STANDOFF_DISTANCES[1] - 3.4;
     let half_length = |fitting: Fitting| fitting_size(fitting, 1) / 2.0;
     let strip_distance = strip_x(builder);
@@ -200,13 +193,13 @@ fn add_under_deck_and_plate(builder: &mut Builder) {
             Fitting::Alarm,
             0.0,
             half_length(Fitting::Alarm) - half_free_length,
-            deck,
+            deck_bottom,
         ),
         (
             Fitting::Converter,
             0.0,
             half_free_length - half_length(Fitting::Converter),
-            deck,
+            deck_bottom,
         ),
         (Fitting::GroundStrip, -strip_distance, 0.0, lower_ceiling),
         (
@@ -232,44 +225,23 @@ fn add_under_deck_and_plate(builder: &mut Builder) {
 }
 
 /// Adds the fittings on the deck's wings.
-fn add_on_deck(builder: &mut Builder) {
+fn add_on_deck(builder: &mut AssemblyBuilder) {
     let top = builder.stack.deck[1];
     let half_width = |fitting: Fitting| fitting_size(fitting, 0) / 2.0;
-    let wing_x = |fitting: Fitting| WING_FITTING_X + half_width(fitting);
-    add_block(
-        builder,
-        Fitting::SignalStrip,
-        vector(-wing_x(Fitting::SignalStrip), signal_strip_y()),
-        top,
-    );
-    let radio_y = WING_EDGES_AND_HALF_LENGTH[2] - 0.5 - fitting_size(Fitting::RadioSpace, 1) / 2.0;
-    add_block(
-        builder,
-        Fitting::RadioSpace,
-        vector(-wing_x(Fitting::RadioSpace), radio_y),
-        top,
-    );
-    add_block(
-        builder,
-        Fitting::Fuse,
-        vector(wing_x(Fitting::Fuse), fuse_y()),
-        top,
-    );
-    add_block(
-        builder,
-        Fitting::Switch,
-        vector(wing_x(Fitting::Switch), switch_y()),
-        top,
-    );
+    let radio_y = WING_HALF_LENGTH - 0.5 - fitting_size(Fitting::RadioSpace, 1) / 2.0;
     let plus_y = fuse_y()
         - (fitting_size(Fitting::Fuse, 1) + fitting_size(Fitting::PlusTerminal, 1)) / 2.0
         - 0.3;
-    add_block(
-        builder,
-        Fitting::PlusTerminal,
-        vector(wing_x(Fitting::PlusTerminal), plus_y),
-        top,
-    );
+    for (fitting, side, y) in [
+        (Fitting::SignalStrip, -1.0, signal_strip_y()),
+        (Fitting::RadioSpace, -1.0, radio_y),
+        (Fitting::Fuse, 1.0, fuse_y()),
+        (Fitting::Switch, 1.0, switch_y()),
+        (Fitting::PlusTerminal, 1.0, plus_y),
+    ] {
+        let x = side * (WING_FITTING_X + half_width(fitting));
+        add_block(builder, fitting, vector(x, y), top);
+    }
     // Each resistor leads from a signal terminal to the middle terminal: two resistors span one pitch, two span two.
     let resistor_x = -WING_FITTING_X
         - fitting_size(Fitting::SignalStrip, 0)
@@ -282,61 +254,47 @@ fn add_on_deck(builder: &mut Builder) {
             resistor_x - row * row_pitch,
             signal_strip_y() + pitches * STRIP_PITCH,
         );
-        let (size, name) = (Fitting::Resistor.facts().size, format!("resistor {number}"));
+        let (size, name) = (Fitting::Resistor.spec().size, format!("resistor {number}"));
         add_sized_block(builder, Fitting::Resistor, name, middle, top + 4.0, size);
     }
 }
 
 /// Adds the plug in the board's barrel jack, and the battery's plug in front of the battery, or on top of it if a long
 /// battery leaves no room in front.
-fn add_plugs(builder: &mut Builder) {
+fn add_plugs(builder: &mut AssemblyBuilder) {
     let [_, battery_length, battery_height] = builder.parts.battery;
-    let [width, thickness, height] = Fitting::BatteryPlug.facts().size;
+    let [width, thickness, height] = Fitting::BatteryPlug.spec().size;
     let battery_end = battery_length / 2.0 + 0.3;
-    let name = Fitting::BatteryPlug.name().to_owned();
-    if battery_end + thickness <= STANDOFF_DISTANCES[1] - STANDOFF_RADIUS {
-        let middle = vector(0.0, battery_end + thickness / 2.0);
-        add_sized_block(
-            builder,
-            Fitting::BatteryPlug,
-            name,
-            middle,
-            TIE_THICKNESS,
-            [width, thickness, height],
-        );
+    let (y, low, size) = if battery_end + thickness <= STANDOFF_DISTANCES[1] - STANDOFF_RADIUS {
+        let y = battery_end + thickness / 2.0;
+        (y, TIE_THICKNESS, [width, thickness, height])
     } else {
-        let middle = vector(0.0, STRAP_SECTION[0] / 2.0 + 1.0 + height / 2.0);
-        let low = battery_height + 0.2;
-        add_sized_block(
-            builder,
-            Fitting::BatteryPlug,
-            name,
-            middle,
-            low,
-            [width, height, thickness],
-        );
-    }
-    let [socket_height, socket_overhang] = SOCKET_HEIGHT_AND_OVERHANG;
-    let [_, plug_length, plug_height] = Fitting::BarrelPlug.facts().size;
-    let y = -(UNO_SIZE[1] + plug_length) / 2.0 - socket_overhang - 0.1;
-    let low = builder.stack.board_boss[1] + UNO_BOARD_THICKNESS + socket_height - plug_height / 2.0;
-    add_block(builder, Fitting::BarrelPlug, vector(SOCKET_X, y), low);
+        let y = STRAP_SECTION[0] / 2.0 + 1.0 + height / 2.0;
+        (y, battery_height + 0.2, [width, height, thickness])
+    };
+    let (fitting, middle) = (Fitting::BatteryPlug, vector(0.0, y));
+    let name = fitting.name().to_owned();
+    add_sized_block(builder, fitting, name, middle, low, size);
+    let [_, plug_length, plug_height] = Fitting::BarrelPlug.spec().size;
+    let y = -(UNO_SIZE[1] + plug_length) / 2.0 - JACK_OVERHANG - 0.1;
+    let low = builder.stack.board_boss[1] + UNO_BOARD_THICKNESS + JACK_HEIGHT - plug_height / 2.0;
+    add_block(builder, Fitting::BarrelPlug, vector(JACK_X, y), low);
 }
 
 /// Adds the strap around battery and plate.
-fn add_strap(builder: &mut Builder) {
+fn add_strap(builder: &mut AssemblyBuilder) {
     let stack = builder.stack;
     let [battery_x, battery_y, battery_z] = builder.parts.battery;
     let [width, thickness] = STRAP_SECTION;
     let width = width.min(battery_y);
-    let x = battery_x / 2.0;
     let bar_between = |from: f64, to: f64| {
-        let middle = Vector::new((from + to) / 2.0, 0.0);
-        Shape::rectangle(middle, Vector::new(to - from, width), 0.0)
+        let middle = vector((from + to) / 2.0, 0.0);
+        Shape::rectangle(middle, vector(to - from, width), 0.0)
     };
+    let half_battery_x = battery_x / 2.0;
     let half_width = match strap_slot_x(builder) {
-        Some(_) => x,
-        None => x.max(builder.layout.plate.half_size.x),
+        Some(_) => half_battery_x,
+        None => half_battery_x.max(builder.layout.plate.half_size.x),
     };
     let sides = [
         bar_between(-half_width - thickness, -half_width),

@@ -1,7 +1,7 @@
 //! The robot seen from above: pivots, anchors and lengths of links, all independent of the pose.
 
 use lizard_kinematics::{End, Side, Vector};
-use lizard_robot::servo::ARM_SIDE;
+use lizard_robot::servo::ARM_TURN_SIGN;
 use lizard_robot::{LegPlan, Plate, Robot};
 
 /// Distances from the plate's middle to the standoffs, mm: to the right, forward.
@@ -15,7 +15,7 @@ pub const UNO_SIZE: [f64; 3] = [53.34, 68.58, 12.0];
 /// Thickness of an Arduino UNO's board, mm.
 pub const UNO_BOARD_THICKNESS: f64 = 1.6;
 
-/// Pivots of all moving bodies, lengths of the servos' links, and the plate's outline.
+/// Pivots of all moving bodies, lengths of the servo links, and the plate's outline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     /// Servos' shafts, chassis frame, servo order, mm.
@@ -50,7 +50,7 @@ impl Layout {
         }
         Self {
             shafts: lizard.shafts(),
-            arm_signs: ARM_SIDE,
+            arm_signs: ARM_TURN_SIGN,
             crank_lengths,
             arm_lengths,
             legs: *robot.legs(),

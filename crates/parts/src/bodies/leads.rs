@@ -7,7 +7,7 @@
 use lizard_kinematics::{End, Vector};
 use lizard_robot::ServoBody;
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::layout::STANDOFF_DISTANCES;
 use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
@@ -16,9 +16,9 @@ use crate::layers::shape::Shape;
 /// Width and thickness of a lead, mm.
 pub const LEAD_SECTION: [f64; 2] = [4.0, 1.2];
 /// Difference in width between a notch and its lead, mm.
-const NOTCH_PLAY: f64 = 1.0;
-/// Height of a lead's lower edge above the case's bottom, and height of the lead on edge, mm.
-const LEAD_EXIT: [f64; 2] = [3.0, 4.0];
+const NOTCH_CLEARANCE: f64 = 1.0;
+/// Height of the lower edge of a lead, which lies on edge, above the case's bottom, mm.
+const LEAD_EXIT_HEIGHT: f64 = 3.0;
 /// Length of a lead between the case and the fold, mm.
 const BEND_LENGTH: f64 = 4.0;
 /// Size of a hole for the leads and the wires, mm: across and along the plate.
@@ -32,7 +32,7 @@ pub fn make_lead_notch(body: &ServoBody, middle: Vector, fit: f64, outward: f64)
     let reach = body.length / 2.0 + LEAD_SECTION[1] + fit;
     // The notch overlaps the opening for the case.
     let from = body.length / 2.0 - 2.0;
-    let half_width = (LEAD_SECTION[0] + NOTCH_PLAY) / 2.0;
+    let half_width = (LEAD_SECTION[0] + NOTCH_CLEARANCE) / 2.0;
     let corner_at = |x: f64, y: f64| middle + Vector::new(x, outward * y);
     let [left, right] = [-half_width, half_width].map(|x| [from, reach].map(|y| corner_at(x, y)));
     Shape::hull(&[left, right].concat(), 0.0)
@@ -51,7 +51,7 @@ pub fn make_wire_holes() -> [Shape; 2] {
 }
 
 /// Adds the leads of all servos.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for servo in 0..4 {
         let (name, _) = servo_and_leg_names(servo);
         let outward = End::from_servo(servo).sign();
@@ -65,7 +65,7 @@ pub fn add(builder: &mut Builder) {
         let vector = Vector::new;
         let riser_position = wire_hole_centre(outward) + vector(-inward_sign * 1.6, 0.0);
         let radius = LEAD_SECTION[1];
-        let low = builder.stack.servo_bottom + LEAD_EXIT[0];
+        let low = builder.stack.servo_bottom + LEAD_EXIT_HEIGHT;
         let [bend, corner] = [vector(middle.x, bend_y), vector(x, bend_y)];
         let inner_corner = vector(x, middle.y - outward * half_size.y);
         let lead_path = vec![
@@ -74,12 +74,12 @@ pub fn add(builder: &mut Builder) {
             Shape::bar(corner, inner_corner, radius),
             Shape::bar(inner_corner, riser_position, radius),
         ];
-        let z_range = [low, low + LEAD_EXIT[1]];
+        let z = [low, low + LEAD_SECTION[0]];
         let prisms = vec![
-            Prism::solid(lead_path, z_range),
+            Prism::solid(lead_path, z),
             Prism::solid(
                 [Shape::disc(riser_position, radius)],
-                [z_range[1], builder.stack.deck[1]],
+                [z[1], builder.stack.deck[1]],
             ),
         ];
         builder.add_body(format!("lead {name}"), Kind::Lead, Mount::Chassis, prisms);

@@ -7,15 +7,15 @@
 use lizard_kinematics::Vector;
 use lizard_robot::LegPlan;
 
-use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::names::servo_and_leg_names;
 use crate::bodies::pads;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_PLAY, LEAF_THICKNESS, PAD_LIP_HEIGHT};
+use crate::layers::stack::{HEAD_CLEARANCE, LEAF_THICKNESS, PAD_LIP_HEIGHT};
 
 /// Radius of the boss around a foot's nut, mm.
-const TIP_RADIUS: f64 = 5.0;
+const FOOT_BOSS_RADIUS: f64 = 5.0;
 /// Distances from the follower's joint to the two screws of the foot's column, mm.
 const CLAMP_DISTANCES: [f64; 2] = [21.0, 9.0];
 /// Length of the screws that fix the column to the coupler and cut their thread into the column, mm.
@@ -41,7 +41,7 @@ fn compute_leaf_length(width: f64) -> f64 {
 }
 
 /// Adds all legs.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for servo in 0..4 {
         add_crank(builder, servo);
         add_follower(builder, servo);
@@ -51,7 +51,7 @@ pub fn add(builder: &mut Builder) {
     }
 }
 
-fn add_crank(builder: &mut Builder, servo: usize) {
+fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan {
@@ -87,7 +87,7 @@ fn add_crank(builder: &mut Builder, servo: usize) {
     builder.add_printed(format!("crank {leg}"), Mount::Crank(servo), prisms);
 }
 
-fn add_follower(builder: &mut Builder, servo: usize) {
+fn add_follower(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (pivot, joint) = (Vector::default(), builder.layout.legs[servo].crank_joint);
     let (stack, half_width) = (builder.stack, builder.half_bar_width());
@@ -103,37 +103,37 @@ fn add_follower(builder: &mut Builder, servo: usize) {
 }
 
 /// Positions of the two screws between coupler and foot, coupler frame, mm.
-fn clamp_positions(builder: &Builder) -> [Vector; 2] {
+fn clamp_positions(builder: &AssemblyBuilder) -> [Vector; 2] {
     let ground = builder.robot.lizard().leg.ground;
     CLAMP_DISTANCES.map(|distance| Vector::new(ground - distance, 0.0))
 }
 
 /// Height of the faces under the sunk heads of the screws between coupler and foot, mm.
-fn clamp_seat(builder: &Builder) -> f64 {
-    builder.stack.leg_coupler[1] - builder.parts.screw.head_height - HEAD_PLAY
+fn clamp_seat_z(builder: &AssemblyBuilder) -> f64 {
+    builder.stack.leg_coupler[1] - builder.parts.screw.head_height - HEAD_CLEARANCE
 }
 
-fn add_coupler(builder: &mut Builder, servo: usize) {
+fn add_coupler(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let stack = builder.stack;
     let ground = builder.robot.lizard().leg.ground;
     let (from, to) = (Vector::default(), Vector::new(ground, 0.0));
     let clamps = clamp_positions(builder);
     let through_holes = clamps.map(|position| builder.clearance_hole(position));
-    let head_recesses = clamps.map(|position| builder.head_recess(position));
+    let counterbores = clamps.map(|position| builder.counterbore(position));
     let joints = [builder.clearance_hole(from), builder.clearance_hole(to)];
     let mut bar = vec![Shape::bar(from, to, builder.half_bar_width())];
     bar.extend(clamps.map(|position| Shape::disc(position, builder.head_boss_radius())));
-    let (seat_z, [low, high]) = (clamp_seat(builder), stack.leg_coupler);
+    let (seat_z, [low, high]) = (clamp_seat_z(builder), stack.leg_coupler);
     let through_holes = [joints.clone(), through_holes].concat();
     let prisms = [
         Prism::new(bar.clone(), through_holes, [low, seat_z]),
-        Prism::new(bar, [joints, head_recesses].concat(), [seat_z, high]),
+        Prism::new(bar, [joints, counterbores].concat(), [seat_z, high]),
     ];
     builder.add_printed(format!("leg coupler {leg}"), Mount::Foot(servo), prisms);
 }
 
-fn add_foot(builder: &mut Builder, servo: usize) {
+fn add_foot(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let stack = builder.stack;
     let foot = builder.layout.legs[servo].foot;
@@ -149,46 +149,39 @@ fn add_foot(builder: &mut Builder, servo: usize) {
         Shape::bar(clamps[0], clamps[1], COLUMN_HALF_WIDTH),
         Shape::bar(clamps[0], root, COLUMN_HALF_WIDTH - 0.01),
     ];
-    let tip = Shape::disc(foot, TIP_RADIUS);
+    let boss = Shape::disc(foot, FOOT_BOSS_RADIUS);
     let leaf = vec![
         Shape::bar(root, foot, half_width),
-        tip.clone(),
+        boss.clone(),
         Shape::bar(clamps[0], clamps[1], half_width - 0.01),
         Shape::bar(clamps[0], root, half_width - 0.02),
     ];
     let (pocket, hole) = (builder.nut_pocket(foot), builder.clearance_hole(foot));
-    let threads = clamps.map(|position| builder.thread_hole(position));
+    let pilot_holes = clamps.map(|position| builder.pilot_hole(position));
     let [_, boss_top] = stack.foot_boss;
     let nut_z = stack.leaf[0] + builder.parts.screw.nut_height;
     let hole_bottom = stack.leg_coupler[0] - CLAMP_HOLE_DEPTH;
-    let column_and_tip = [&column[..], &[tip]].concat();
+    let column_and_boss = [&column[..], &[boss]].concat();
     let prisms = [
         Prism::new(leaf, [pocket.clone()], stack.leaf),
-        Prism::new(column_and_tip.clone(), [pocket], [stack.leaf[1], nut_z]),
-        Prism::new(column_and_tip, [hole], [nut_z, boss_top]),
+        Prism::new(column_and_boss.clone(), [pocket], [stack.leaf[1], nut_z]),
+        Prism::new(column_and_boss, [hole], [nut_z, boss_top]),
         Prism::solid(column.clone(), [boss_top, hole_bottom]),
-        Prism::new(column, threads, [hole_bottom, stack.leg_coupler[0]]),
+        Prism::new(column, pilot_holes, [hole_bottom, stack.leg_coupler[0]]),
     ];
     let mount = Mount::Foot(servo);
     builder.add_printed(format!("foot {leg}"), mount, prisms);
     for (number, position) in (1..).zip(clamps) {
         let name = format!("foot {leg} {number}");
-        let bolt = Bolt::new(&name, mount, position, clamp_seat(builder), Direction::Down);
-        builder.add_screw(&bolt, CLAMP_SCREW_LENGTH);
+        let (seat_z, direction) = (clamp_seat_z(builder), ScrewDirection::Down);
+        let screw = Screw::new(&name, mount, position, seat_z, direction);
+        builder.add_screw(&screw, CLAMP_SCREW_LENGTH);
     }
-    let head_z = stack.pad[1] - PAD_LIP_HEIGHT;
-    let name = format!("height {leg}");
-    builder.add_screw(
-        &Bolt::new(&name, mount, foot, head_z, Direction::Up),
-        FOOT_SCREW_LENGTH,
-    );
-    let screw = builder.parts.screw;
-    let (flats, thread) = (
-        Shape::hexagon(foot, screw.nut),
-        Shape::disc(foot, screw.diameter / 2.0),
-    );
-    let nut_prism = Prism::new([flats], [thread], [stack.leaf[0], nut_z]);
-    builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut_prism]);
+    let (name, seat_z) = (format!("height {leg}"), stack.pad[1] - PAD_LIP_HEIGHT);
+    let screw = Screw::new(&name, mount, foot, seat_z, ScrewDirection::Up);
+    builder.add_screw(&screw, FOOT_SCREW_LENGTH);
+    let nut = builder.make_nut(foot, [stack.leaf[0], nut_z]);
+    builder.add_body(format!("height nut {leg}"), Kind::Nut, mount, [nut]);
     // The coupler never turns, so a direction is constant in its frame.
     let coupler_direction = builder.layout.legs[servo].coupler_direction;
     let head_direction = Vector::new(coupler_direction.y, coupler_direction.x);
@@ -197,7 +190,7 @@ fn add_foot(builder: &mut Builder, servo: usize) {
 }
 
 /// Adds the bolts of a leg's pivots and joints, and the bolt that joins crank and strut.
-fn add_screws(builder: &mut Builder, servo: usize) {
+fn add_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let (_, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let LegPlan {
@@ -205,34 +198,31 @@ fn add_screws(builder: &mut Builder, servo: usize) {
         crank_joint: joint,
         ..
     } = builder.layout.legs[servo];
-    let (pivot, coupler) = (Vector::default(), format!("leg coupler {leg}"));
+    let (coupler, strut) = (format!("leg coupler {leg}"), builder.strut_name(leg));
+    let pivot = Vector::default();
     let crank = Mount::Crank(servo);
     for (mount, name) in [(crank, "crank"), (Mount::Follower(servo), "follower")] {
-        let (head_z, screw) = (stack.bearing[1] + HEAD_PLAY, format!("{name} pivot {leg}"));
-        builder.add_bolt(&Bolt {
-            nut_z: stack.plate[0] - HEAD_PLAY,
-            contacts: &["plate"],
-            ..Bolt::new(&screw, mount, pivot, head_z, Direction::Down)
-        });
-        let (head_z, screw) = (stack.leg_coupler[0], format!("{name} joint {leg}"));
-        builder.add_bolt(&Bolt {
-            nut_z: stack.crank[1] + HEAD_PLAY,
-            contacts: &[&coupler],
-            ..Bolt::new(&screw, mount, joint, head_z, Direction::Up)
-        });
+        let (pivot_name, joint_name) =
+            (format!("{name} pivot {leg}"), format!("{name} joint {leg}"));
+        let seat_z = stack.bearing[1] + HEAD_CLEARANCE;
+        let screw = Screw {
+            allowed_contacts: &["plate"],
+            ..Screw::new(&pivot_name, mount, pivot, seat_z, ScrewDirection::Down)
+        };
+        builder.add_bolt(&screw, stack.plate[0] - HEAD_CLEARANCE);
+        let seat_z = stack.leg_coupler[0];
+        let screw = Screw {
+            allowed_contacts: &[&coupler],
+            ..Screw::new(&joint_name, mount, joint, seat_z, ScrewDirection::Up)
+        };
+        builder.add_bolt(&screw, stack.crank[1] + HEAD_CLEARANCE);
     }
     let (nut_z, length) = stack.anchor_nut_height_and_screw_length(parts);
-    let name = format!("leg anchor {leg}");
-    builder.add_bolt(&Bolt {
-        nut_z,
-        length: Some(length),
-        contacts: &[&builder.strut_name(leg)],
-        ..Bolt::new(
-            &name,
-            crank,
-            anchor,
-            stack.anchor_head_face,
-            Direction::Down,
-        )
-    });
+    let (name, seat_z) = (format!("leg anchor {leg}"), stack.anchor_head_face);
+    let screw = Screw {
+        allowed_contacts: &[&strut],
+        ..Screw::new(&name, crank, anchor, seat_z, ScrewDirection::Down)
+    };
+    builder.add_screw(&screw, length);
+    builder.add_nut(&screw, nut_z);
 }

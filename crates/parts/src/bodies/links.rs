@@ -5,12 +5,12 @@
 use lizard_kinematics::Vector;
 use lizard_robot::Horn;
 
-use crate::bodies::builder::{Bolt, Builder, Direction};
+use crate::bodies::builder::{AssemblyBuilder, Screw, ScrewDirection};
 use crate::bodies::chassis::SPLINE_RADIUS;
 use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Kind, Mount, Prism};
 use crate::layers::shape::Shape;
-use crate::layers::stack::{HEAD_PLAY, Span};
+use crate::layers::stack::{HEAD_CLEARANCE, Span};
 
 /// Distances from the shaft to the horn's small screws, as fractions of the arm's length.
 const HORN_SCREW_FRACTIONS: [f64; 2] = [0.52, 0.83];
@@ -28,7 +28,7 @@ const RING_WALL: f64 = 1.1;
 pub const POCKET_FIT_FACTOR: f64 = 1.5;
 
 /// Adds the horns and links of all servos, with their screws.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for servo in 0..4 {
         add_horn(builder, servo);
         add_link(builder, servo);
@@ -57,7 +57,7 @@ pub fn make_horn_arm(horn: &Horn, margin: f64) -> Vec<Shape> {
     ]
 }
 
-fn add_horn(builder: &mut Builder, servo: usize) {
+fn add_horn(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let horn = builder.parts.horn;
     let [low, _] = builder.stack.horn_pocket;
@@ -83,7 +83,7 @@ fn add_horn(builder: &mut Builder, servo: usize) {
     builder.allow_contact(&[format!("servo {name}")]);
 }
 
-fn add_link(builder: &mut Builder, servo: usize) {
+fn add_link(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let (parts, stack, layout) = (builder.parts, builder.stack, builder.layout);
     let hub = Vector::default();
@@ -92,7 +92,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     let anchor = layout.legs[servo].anchor;
     let half_width = builder.half_bar_width();
     let hub_radius = parts.horn.hub / 2.0 + 2.0 * parts.fit + 1.5 * parts.wall;
-    // Without this brace the link would break in the corner between crank and arm.
+    // Without this brace, the link would break in the corner between crank and arm.
     let brace = Shape::hull(&[hub, tip * 0.45, arm_tip * 0.45], 0.6 * half_width);
     // The half widths of bars that start at the same point differ by 0.01 mm, so that no two bar ends coincide.
     let filled = vec![
@@ -106,7 +106,7 @@ fn add_link(builder: &mut Builder, servo: usize) {
     ];
     let horn_hub = Shape::disc(hub, parts.horn.hub / 2.0 + parts.fit);
     let holes = [builder.clearance_hole(tip), builder.clearance_hole(arm_tip)];
-    let pilots =
+    let pilot_holes =
         horn_screw_positions(&parts.horn).map(|position| Shape::disc(position, PILOT_RADIUS));
     let pocket = make_horn_arm(&parts.horn, POCKET_FIT_FACTOR * parts.fit);
     let anchor_hole = builder.clearance_hole(anchor);
@@ -119,10 +119,10 @@ fn add_link(builder: &mut Builder, servo: usize) {
             [low, stack.hex_head_face],
         ),
         (&[horn_hub], [low, stack.horn_pocket[0]]),
-        (&pilots, [low, stack.horn_pocket[0]]),
+        (&pilot_holes, [low, stack.horn_pocket[0]]),
         (&pocket, stack.horn_pocket),
         (&[anchor_hole], [low, high]),
-        (&[builder.head_recess(anchor)], stack.head_recess),
+        (&[builder.counterbore(anchor)], stack.counterbore),
     ];
     let mut heights: Vec<f64> = cuts.iter().flat_map(|(_, z)| *z).collect();
     heights.sort_by(f64::total_cmp);
@@ -143,7 +143,7 @@ fn horn_screw_positions(horn: &Horn) -> [Vector; 2] {
     HORN_SCREW_FRACTIONS.map(|fraction| Vector::new(fraction * horn.arm, 0.0))
 }
 
-fn add_horn_screws(builder: &mut Builder, servo: usize) {
+fn add_horn_screws(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, _) = servo_and_leg_names(servo);
     let top = builder.stack.horn_pocket[0] + builder.parts.horn.thickness;
     let [radius, head_height] = HORN_SCREW_HEAD_SIZE;
@@ -163,27 +163,27 @@ fn add_horn_screws(builder: &mut Builder, servo: usize) {
 }
 
 /// Adds the screw that holds the strut, and the ring that fills the gap below the link.
-fn add_anchor(builder: &mut Builder, servo: usize) {
+fn add_anchor(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let position = builder.layout.legs[servo].anchor;
     let strut = builder.strut_name(leg);
-    let ring_z = [stack.anchor_head_face, stack.link[0] - HEAD_PLAY];
+    let ring_z = [stack.anchor_head_face, stack.link[0] - HEAD_CLEARANCE];
     // The ring is thin enough to fit beside the spring's coil.
     let ring_disc = Shape::disc(position, parts.screw.diameter / 2.0 + RING_WALL);
     let prism = Prism::new([ring_disc], [builder.clearance_hole(position)], ring_z);
     builder.add_printed(format!("strut ring {name}"), Mount::Link(servo), [prism]);
     builder.allow_contact(&[&strut]);
-    let (mount, screw) = (Mount::Link(servo), format!("anchor {name}"));
-    builder.add_bolt(&Bolt {
-        nut_z: stack.strut_floor[0] - HEAD_PLAY,
-        contacts: &[&strut],
-        ..Bolt::new(
-            &screw,
-            mount,
+    let (name, seat_z) = (format!("anchor {name}"), stack.counterbore[0]);
+    let screw = Screw {
+        allowed_contacts: &[&strut],
+        ..Screw::new(
+            &name,
+            Mount::Link(servo),
             position,
-            stack.head_recess[0],
-            Direction::Down,
+            seat_z,
+            ScrewDirection::Down,
         )
-    });
+    };
+    builder.add_bolt(&screw, stack.strut_floor[0] - HEAD_CLEARANCE);
 }

@@ -1,6 +1,6 @@
 //! The bodies of the robot, and their placements at a pose.
 //!
-//! A robot has some eighty bodies: printed parts, servos, screws, a board, a battery. Each module makes the bodies of
+//! A robot has about eighty bodies: printed parts, servos, screws, a board, a battery. Each module makes the bodies of
 //! one area of the robot from its robot.toml; [`assembly`] collects them and computes their placements at a pose.
 
 pub(crate) mod assembly;

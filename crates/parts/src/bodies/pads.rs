@@ -26,23 +26,23 @@ const SNAP_INTERFERENCE: f64 = 0.65;
 const CONE_HEIGHT: f64 = 0.1;
 /// Depth of the notch for a strip's end, mm: the largest thickness of a strip.
 pub(crate) const NOTCH_DEPTH: f64 = 1.5;
-/// Least width of a strip, mm: wider than the key hole.
+/// Smallest width of a strip, mm: wider than the key hole.
 const MIN_STRIP_WIDTH: f64 = 5.0;
-/// Least thickness of material under the screw's head, mm.
+/// Smallest thickness of material under the screw's head, mm.
 const MIN_THICKNESS_UNDER_HEAD: f64 = 1.0;
 
-/// Least height of a pad, mm.
+/// Smallest height of a pad, mm.
 pub(crate) fn min_height(parts: &Parts) -> f64 {
     MIN_THICKNESS_UNDER_HEAD + parts.screw.head_height + PAD_LIP_HEIGHT
 }
 
-/// Least width of a pad, mm.
+/// Smallest width of a pad, mm.
 pub(crate) fn min_width(parts: &Parts) -> f64 {
     let notch_depth = if parts.strip > 0.0 { NOTCH_DEPTH } else { 0.0 };
     parts.screw.head + parts.fit + 2.0 * parts.wall + 2.0 * notch_depth
 }
 
-/// Least and greatest width of a strip along a pad, mm.
+/// Smallest and largest width of a strip along a pad, mm.
 pub(crate) fn strip_width_range(parts: &Parts) -> [f64; 2] {
     [MIN_STRIP_WIDTH, 0.7 * parts.pad.width - 2.0 * parts.fit]
 }
@@ -77,7 +77,7 @@ pub(crate) fn make_pad_layers(
     let pad_radius = pad.width / 2.0;
     let top = floor + pad.height;
     let seat = top - PAD_LIP_HEIGHT - screw.head_height;
-    let dome = pad.dome_height().unwrap_or(pad_radius).min(pad.height);
+    let dome_height = pad.dome_height().unwrap_or(pad_radius).min(pad.height);
     let hole_at = |z: f64| {
         let radius = if z < seat {
             KEY_HOLE_RADIUS
@@ -98,10 +98,10 @@ pub(crate) fn make_pad_layers(
     // At this height the sphere is as wide as the rim.
     let rim_height =
         pad.radius - (pad.radius.powi(2) - (KEY_HOLE_RADIUS + RIM_WIDTH).powi(2)).sqrt();
-    let cone_count = (dome / CONE_HEIGHT).ceil() as u32;
-    let heights = (0..=cone_count).map(|index| (f64::from(index) * CONE_HEIGHT).min(dome));
-    let cones = heights.filter(|height| *height > rim_height + CONE_HEIGHT / 2.0);
-    let mut levels: Vec<f64> = cones
+    let cone_count = (dome_height / CONE_HEIGHT).ceil() as u32;
+    let heights = (0..=cone_count).map(|index| (f64::from(index) * CONE_HEIGHT).min(dome_height));
+    let cone_heights = heights.filter(|height| *height > rim_height + CONE_HEIGHT / 2.0);
+    let mut levels: Vec<f64> = cone_heights
         .map(|height| floor + height)
         .chain([floor, floor + rim_height, seat, top - PAD_LIP_HEIGHT, top])
         .collect();

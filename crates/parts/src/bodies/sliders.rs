@@ -6,7 +6,7 @@
 use lizard_kinematics::{Side, Vector};
 use lizard_robot::Robot;
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::names::servo_and_leg_names;
 use crate::layers::body::{Mount, Prism};
 use crate::layers::shape::Shape;
@@ -15,9 +15,9 @@ use crate::layers::shape::Shape;
 pub const ROD_OFFSET: f64 = 9.0;
 /// Width of a rod, mm.
 pub(crate) const ROD_WIDTH: f64 = 6.0;
-/// Least length of the rod inside its sleeve, mm.
+/// Smallest length of the rod inside its sleeve, mm.
 const MIN_OVERLAP: f64 = 20.0;
-/// Least gap between the sleeve's front end and the front pin, at the shortest distance of the pins, mm.
+/// Smallest gap between the sleeve's front end and the front pin, at the shortest distance of the pins, mm.
 const MIN_GAP: f64 = 8.0;
 
 /// Lengths of a slider, mm.
@@ -44,16 +44,16 @@ impl SliderLengths {
 }
 
 /// Adds both sliders.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for side in Side::ALL {
-        let lengths = SliderLengths::new(side, find_slider_range(builder.robot, side));
+        let lengths = SliderLengths::new(side, compute_slider_range(builder.robot, side));
         add_sleeve(builder, side, &lengths);
         add_rod(builder, side, &lengths);
         add_pins(builder, side);
     }
 }
 
-fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
+fn add_sleeve(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths) {
     let (parts, stack) = (builder.parts, builder.stack);
     let half_width = builder.half_bar_width();
     let pin = Vector::default();
@@ -85,7 +85,7 @@ fn add_sleeve(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     builder.allow_contact(&[format!("rod {side}")]);
 }
 
-fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
+fn add_rod(builder: &mut AssemblyBuilder, side: Side, lengths: &SliderLengths) {
     let half_width = builder.half_bar_width();
     let pin = Vector::default();
     let middle = Vector::new(-lengths.rod / 2.0, lengths.lateral_offset);
@@ -101,7 +101,7 @@ fn add_rod(builder: &mut Builder, side: Side, lengths: &SliderLengths) {
     builder.add_printed(format!("rod {side}"), Mount::Rod(side), [prism]);
 }
 
-fn add_pins(builder: &mut Builder, side: Side) {
+fn add_pins(builder: &mut AssemblyBuilder, side: Side) {
     let [front, rear] = side.servos();
     let stack = builder.stack;
     let layout = builder.layout;
@@ -136,8 +136,8 @@ fn add_pins(builder: &mut Builder, side: Side) {
     );
 }
 
-/// Finds the shortest and the longest distance between a slider's pins, mm.
-pub fn find_slider_range(robot: &Robot, side: Side) -> [f64; 2] {
+/// Computes the shortest and the longest distance between a slider's pins, mm.
+pub fn compute_slider_range(robot: &Robot, side: Side) -> [f64; 2] {
     let (slider, limits) = (robot.lizard().side(side), robot.limits());
     [
         slider.nominal_length + limits.stroke_min,

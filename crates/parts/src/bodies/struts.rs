@@ -13,13 +13,13 @@
 use lizard_kinematics::Vector;
 use lizard_robot::SLOT_LENGTH;
 
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::names::{self, servo_and_leg_names};
 use crate::layers::body::{Body, Kind, Mount, Prism};
 use crate::layers::shape::Shape;
 
 /// Adds all struts, and their springs if they have any.
-pub fn add(builder: &mut Builder) {
+pub fn add(builder: &mut AssemblyBuilder) {
     for servo in 0..4 {
         let strut = make_strut(builder, servo, builder.has_slotted_struts());
         builder.bodies.push(strut);
@@ -30,13 +30,13 @@ pub fn add(builder: &mut Builder) {
 }
 
 /// Makes the struts of the kind that the robot does not have.
-pub fn make_alternatives(builder: &Builder) -> Vec<Body> {
+pub fn make_alternatives(builder: &AssemblyBuilder) -> Vec<Body> {
     let is_slotted = !builder.has_slotted_struts();
     let struts = (0..4).map(|servo| make_strut(builder, servo, is_slotted));
     struts.collect()
 }
 
-fn make_strut(builder: &Builder, servo: usize, is_slotted: bool) -> Body {
+fn make_strut(builder: &AssemblyBuilder, servo: usize, is_slotted: bool) -> Body {
     let (_, leg) = servo_and_leg_names(servo);
     Body {
         name: names::strut_name(is_slotted, leg),
@@ -56,13 +56,13 @@ fn point_at(x: f64) -> Vector {
 }
 
 /// Half of the width of the channel for spring, hooks and screw heads, mm.
-fn channel_half_width(builder: &Builder) -> f64 {
+fn channel_half_width(builder: &AssemblyBuilder) -> f64 {
     let parts = builder.parts;
-    let spring = parts.spring.outer_diameter / 2.0 + 1.5 * parts.fit;
-    (parts.screw.head / 2.0).max(spring) + parts.fit
+    let spring_radius = parts.spring.outer_diameter / 2.0 + 1.5 * parts.fit;
+    (parts.screw.head / 2.0).max(spring_radius) + parts.fit
 }
 
-fn make_slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
+fn make_slotted_prisms(builder: &AssemblyBuilder, servo: usize) -> Vec<Prism> {
     let (stack, half_width) = (builder.stack, channel_half_width(builder));
     let length = builder.layout.legs[servo].strut_length;
     let build_full_bar =
@@ -80,7 +80,7 @@ fn make_slotted_prisms(builder: &Builder, servo: usize) -> Vec<Prism> {
     ]
 }
 
-fn make_rigid_prism(builder: &Builder, servo: usize) -> Prism {
+fn make_rigid_prism(builder: &AssemblyBuilder, servo: usize) -> Prism {
     let [from, to] = [
         point_at(0.0),
         point_at(builder.layout.legs[servo].strut_length),
@@ -90,7 +90,7 @@ fn make_rigid_prism(builder: &Builder, servo: usize) -> Prism {
     Prism::new([bar], holes, builder.stack.rigid_strut)
 }
 
-fn add_spring(builder: &mut Builder, servo: usize) {
+fn add_spring(builder: &mut AssemblyBuilder, servo: usize) {
     let (name, leg) = servo_and_leg_names(servo);
     let (stack, parts) = (builder.stack, builder.parts);
     let length = builder.layout.legs[servo].strut_length;
@@ -106,8 +106,8 @@ fn add_spring(builder: &mut Builder, servo: usize) {
         [coil],
         [stack.coil_middle - radius, stack.coil_middle + radius],
     );
-    let (spring, mount) = (format!("spring {leg}"), Mount::Strut(servo));
-    builder.add_body(spring, Kind::Spring, mount, [coil]);
+    let mount = Mount::Strut(servo);
+    builder.add_body(format!("spring {leg}"), Kind::Spring, mount, [coil]);
     // The screw heads lie over the hooks and extend to the coil's ends.
     builder.allow_contact(&[
         format!("screw leg anchor {leg}"),

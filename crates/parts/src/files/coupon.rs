@@ -88,9 +88,9 @@ pub fn build_coupon(parts: &Parts) -> [Part; 2] {
     // Since the fit grows from column to column, each sleeve's roof begins higher than the previous sleeve's. Each
     // layer therefore has one bore less than the layer below it.
     let mut low = THICKNESS;
-    for (column, roof) in roof_heights.into_iter().enumerate() {
-        prisms.push(Prism::new(&*walls, &bores[column..], [low, roof]));
-        low = roof;
+    for (column, roof_z) in roof_heights.into_iter().enumerate() {
+        prisms.push(Prism::new(&*walls, &bores[column..], [low, roof_z]));
+        low = roof_z;
     }
     prisms.push(Prism::solid(walls, [low, low + 1.3]));
     let gauge = Shape::rectangle(vector(0.0, 0.0), vector(GAUGE_LENGTH, ROD_WIDTH), 1.0);

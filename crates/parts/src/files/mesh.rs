@@ -42,8 +42,8 @@ impl Mesh {
         }
         for face in &solid.faces {
             match face.surface {
-                Surface::Top(_) => builder.add_flat(face, false),
-                Surface::Bottom(_) => builder.add_flat(face, true),
+                Surface::Top(_) => builder.add_flat_face(face, false),
+                Surface::Bottom(_) => builder.add_flat_face(face, true),
                 Surface::Wall(side, end) | Surface::Slope(side, end, ..) => {
                     builder.add_wall(face, side, end);
                 }
@@ -135,7 +135,7 @@ impl MeshBuilder<'_> {
     }
 
     /// Adds a horizontal face; a face seen from below is triangulated as its mirror image.
-    fn add_flat(&mut self, face: &Face, is_below: bool) {
+    fn add_flat_face(&mut self, face: &Face, is_below: bool) {
         let mut corners: Vec<usize> = Vec::new();
         let mut hole_starts = Vec::new();
         for edges in &face.loops {
@@ -177,21 +177,21 @@ impl MeshBuilder<'_> {
         let mut high = self.collect_corners(&edges[first_rising + 1..edges.len() - 1]);
         high.push(self.start_corner(edges[edges.len() - 1]));
         high.reverse();
-        let find_position = |&corner: &usize| {
+        let compute_position = |&corner: &usize| {
             let [x, y, _] = self.mesh.corners[corner];
             position_along(side, end, Vector::new(x, y))
         };
-        let find_distances = |chain: &[usize]| {
-            let mut distances: Vec<f64> = chain.iter().map(find_position).collect();
-            distances[0] = 0.0;
-            distances
+        let compute_positions = |corners: &[usize]| {
+            let mut positions: Vec<f64> = corners.iter().map(compute_position).collect();
+            positions[0] = 0.0;
+            positions
         };
-        let (low_distances, high_distances) = (find_distances(&low), find_distances(&high));
+        let (low_positions, high_positions) = (compute_positions(&low), compute_positions(&high));
         let (mut i, mut j) = (0, 0);
         let mut triangles = Vec::new();
         while i + 1 < low.len() || j + 1 < high.len() {
             let is_low_next = j + 1 == high.len()
-                || (i + 1 < low.len() && low_distances[i + 1] <= high_distances[j + 1]);
+                || (i + 1 < low.len() && low_positions[i + 1] <= high_positions[j + 1]);
             if is_low_next {
                 triangles.push([low[i], low[i + 1], high[j]]);
                 i += 1;
@@ -241,7 +241,8 @@ fn find_corners_between(corners: &[(usize, Vector)], a: usize, b: usize) -> Vec<
     let (Some(&(_, from)), Some(&(_, to))) = (find_position(a), find_position(b)) else {
         return Vec::new();
     };
-    let (length, line) = ((to - from).length(), to - from);
+    let line = to - from;
+    let length = line.length();
     let locate_corner = |&(corner, position): &(usize, Vector)| {
         let distance = (position - from).dot(line) / length;
         let offset = line.cross(position - from) / length;

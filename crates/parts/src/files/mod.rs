@@ -1,7 +1,7 @@
 //! The files of a part: a solid, a mesh, and drawings for cutting the part from a sheet.
 //!
-//! A printer needs triangles without gaps, a CAD program exact surfaces, a laser closed lines. All files are made from
-//! the same layers, so they cannot contradict each other.
+//! A printer needs triangles without gaps; a CAD program needs exact surfaces; a laser cutter needs closed lines. All
+//! files are made from the same layers, so they cannot contradict each other.
 
 pub(crate) mod coupon;
 pub(crate) mod dxf;
@@ -19,43 +19,45 @@ use solid::Solid;
 
 /// A file to write.
 #[derive(Clone, Debug, PartialEq)]
-pub struct File {
+pub struct OutputFile {
     /// Path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
     /// Content.
     pub bytes: Vec<u8>,
 }
 
-impl File {
+impl OutputFile {
     /// Creates a text file.
-    pub fn text(path: String, text: String) -> Self {
+    pub fn from_text(path: impl Into<String>, text: String) -> Self {
         Self {
-            path,
+            path: path.into(),
             bytes: text.into_bytes(),
         }
     }
 }
 
-/// Makes the files of a part: STEP and STL, and DXF and SVG if the part can be cut from a sheet.
+/// Makes the files of a part: STEP and STL, and DXF and SVG if the part can be cut from a sheet. `kerf` is the width of
+/// the cut, mm.
 ///
 /// # Errors
-/// Returns [`BuildError::OpenSurface`] for a part whose layers do not form a closed surface.
-pub fn make_part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildError> {
+/// Returns [`BuildError::OpenSurface`] if the layers of the part do not form a closed surface.
+pub fn make_part_files(part: &Part, kerf: f64) -> Result<Vec<OutputFile>, BuildError> {
     let solid = Solid::from_prisms(&part.prisms);
     let (printed_layers, _) = part.build_printed_layers();
     let printed_solid = Solid::from_prisms(&printed_layers);
-    let mesh = match printed_solid.is_closed() {
-        true => Mesh::from_solid(&printed_solid),
-        false => return Err(BuildError::OpenSurface(part.name.clone())),
-    };
-    if !solid.is_closed() || !mesh.is_closed() {
-        return Err(BuildError::OpenSurface(part.name.clone()));
+    let open_surface = || Err(BuildError::OpenSurface(part.name.clone()));
+    if !solid.is_closed() || !printed_solid.is_closed() {
+        return open_surface();
+    }
+    let mesh = Mesh::from_solid(&printed_solid);
+    if !mesh.is_closed() {
+        return open_surface();
     }
     let name = part.file_stem();
     let step = step::format_step(&part.name, &solid);
     let mut files = vec![
-        File::text(format!("step/{name}.step"), step),
-        File {
+        OutputFile::from_text(format!("step/{name}.step"), step),
+        OutputFile {
             path: format!("stl/{name}.stl"),
             bytes: stl::encode_stl(&part.name, &mesh),
         },
@@ -63,8 +65,8 @@ pub fn make_part_files(part: &Part, kerf: f64) -> Result<Vec<File>, BuildError> 
     for sheet in sheet::draw_sheets(part) {
         let path = format!("cut/{}", sheet.name.replace(' ', "-"));
         let (dxf, svg) = (dxf::format_dxf(&sheet, kerf), svg::format_svg(&sheet, kerf));
-        files.push(File::text(format!("{path}.dxf"), dxf));
-        files.push(File::text(format!("{path}.svg"), svg));
+        files.push(OutputFile::from_text(format!("{path}.dxf"), dxf));
+        files.push(OutputFile::from_text(format!("{path}.svg"), svg));
     }
     Ok(files)
 }

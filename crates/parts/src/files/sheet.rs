@@ -17,19 +17,19 @@ pub struct Sheet {
     /// Thickness of the sheet, mm.
     pub thickness: f64,
     /// Layers of the drawing.
-    pub layers: Vec<Layer>,
+    pub layers: Vec<SheetLayer>,
 }
 
 /// A layer of a drawing: lines of one kind.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Layer {
+pub struct SheetLayer {
     /// Kind of the lines: `CUT`, or for example `POCKET_1.90_TOP` for pockets 1.9 mm deep from above.
     pub name: String,
     /// Closed lines of the layer.
     pub loops: Vec<Loop>,
 }
 
-impl Layer {
+impl SheetLayer {
     fn cut(loops: Vec<Loop>) -> Self {
         let name = "CUT".to_owned();
         Self { name, loops }
@@ -40,8 +40,8 @@ impl Layer {
 pub fn draw_sheets(part: &Part) -> Vec<Sheet> {
     let outlines: Vec<_> = part.prisms.iter().map(Outline::from_prism).collect();
     let outer_loops = |outline: &Outline| -> Vec<Loop> {
-        let pieces = outline.pieces.iter();
-        pieces.filter_map(|piece| piece.first().cloned()).collect()
+        let islands = outline.islands.iter();
+        islands.filter_map(|loops| loops.first().cloned()).collect()
     };
     let low = part.prisms.first().map_or(0.0, |prism| prism.z[0]);
     let high = part.prisms.last().map_or(0.0, |prism| prism.z[1]);
@@ -61,18 +61,19 @@ pub fn draw_sheets(part: &Part) -> Vec<Sheet> {
     let sheets = layers.map(|(number, (prism, outline))| Sheet {
         name: format!("{} sheet {number}", part.name),
         thickness: prism.z[1] - prism.z[0],
-        layers: vec![Layer::cut(outline.loops().cloned().collect())],
+        layers: vec![SheetLayer::cut(outline.loops().cloned().collect())],
     });
     sheets.collect()
 }
 
 /// Draws outline, holes and pockets of a part whose layers all have the same outer outline.
-fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64; 2]) -> Vec<Layer> {
-    let outer_loops = outlines[0].pieces.iter().filter_map(|piece| piece.first());
-    let mut layers = vec![Layer::cut(outer_loops.cloned().collect())];
+fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], z: [f64; 2]) -> Vec<SheetLayer> {
+    let [low, high] = z;
+    let outer_loops = outlines[0].islands.iter().filter_map(|loops| loops.first());
+    let mut layers = vec![SheetLayer::cut(outer_loops.cloned().collect())];
     for (index, outline) in outlines.iter().enumerate() {
-        let holes = outline.pieces.iter().flat_map(|piece| piece.iter().skip(1));
-        for hole in holes {
+        let islands = outline.islands.iter();
+        for hole in islands.flat_map(|loops| loops.iter().skip(1)) {
             // The layers are visited from the lowest up, so a pocket that is already listed is deeper.
             if layers.iter().any(|layer| layer.loops.contains(hole)) {
                 continue;
@@ -92,7 +93,7 @@ fn draw_pocket_layers(prisms: &[Prism], outlines: &[Outline], [low, high]: [f64;
             };
             match layers.iter_mut().find(|layer| layer.name == name) {
                 Some(layer) => layer.loops.push(hole.clone()),
-                None => layers.push(Layer {
+                None => layers.push(SheetLayer {
                     name,
                     loops: vec![hole.clone()],
                 }),
@@ -115,7 +116,7 @@ fn is_open(outline: &Outline, hole: &Loop) -> bool {
 }
 
 /// Computes the smallest and the largest x and y of a sheet, mm; points along each arc replace the arc.
-pub fn compute_extent(sheet: &Sheet) -> [Vector; 2] {
+pub fn compute_sheet_bounds(sheet: &Sheet) -> [Vector; 2] {
     let loops = sheet.layers.iter().flat_map(|layer| &layer.loops);
     let sides = loops.flat_map(Loop::sides_with_end_points);
     compute_bounds(sides.flat_map(|(side, to)| {

@@ -94,7 +94,7 @@ impl Solid {
             let upper = bottoms.get(level).unwrap_or(&empty_outline);
             let lower_pieces = builder.split_outline(level, lower, upper);
             let upper_pieces = builder.split_outline(level, upper, lower);
-            builder.add_flats(level, (lower, &lower_pieces), (upper, &upper_pieces));
+            builder.add_flat_faces(level, (lower, &lower_pieces), (upper, &upper_pieces));
             if let Some(layer) = level.checked_sub(1) {
                 let outlines = [&bottoms[layer], &tops[layer]];
                 builder.add_walls(level, outlines, &pieces_below, &lower_pieces);
@@ -206,7 +206,7 @@ impl SolidBuilder {
     }
 
     /// Adds the flat faces at a height where only one of the two layers has material.
-    fn add_flats(&mut self, level: usize, lower: OutlineAndPieces, upper: OutlineAndPieces) {
+    fn add_flat_faces(&mut self, level: usize, lower: OutlineAndPieces, upper: OutlineAndPieces) {
         let tops = self.subtract(lower, upper);
         self.add_faces(tops, Surface::Top(level), false);
         let bottoms = self.subtract(upper, lower);
@@ -261,11 +261,11 @@ impl SolidBuilder {
                 point = next_piece.to;
                 trail.push(next_piece);
             }
-            let outline = self.build_loop(&trail);
-            let area = outline.area();
+            let outline_loop = self.build_loop(&trail);
+            let area = outline_loop.area();
             if area > 0.0 {
-                let pieces = vec![vec![outline]];
-                outer_faces.push((area, Outline { pieces }, vec![trail]));
+                let islands = vec![vec![outline_loop]];
+                outer_faces.push((area, Outline { islands }, vec![trail]));
             } else {
                 holes.push(trail);
             }
@@ -385,11 +385,11 @@ pub(crate) fn position_along(side: Segment, to: Vector, point: Vector) -> f64 {
     }
 }
 
-/// Computes the bulge of an arc of `angle` (rad) with the sign of `model_bulge`; 0 if `model_bulge` is 0.
-fn compute_bulge(angle: f64, model_bulge: f64) -> f64 {
-    match model_bulge == 0.0 {
+/// Computes the bulge of an arc of `angle` (rad) with the sign of `reference_bulge`; 0 if `reference_bulge` is 0.
+fn compute_bulge(angle: f64, reference_bulge: f64) -> f64 {
+    match reference_bulge == 0.0 {
         true => 0.0,
-        false => libm::tan(angle / 4.0) * model_bulge.signum(),
+        false => libm::tan(angle / 4.0) * reference_bulge.signum(),
     }
 }
 

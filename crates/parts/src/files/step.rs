@@ -12,10 +12,10 @@ use crate::layers::outline::Segment;
 
 /// Formats a solid as a STEP file.
 pub fn format_step(name: &str, solid: &Solid) -> String {
-    let mut file = StepWriter::default();
-    let solid_id = file.add_solid(name, solid);
-    file.add_product(name, solid_id);
-    let data = file.text;
+    let mut writer = StepWriter::default();
+    let solid_id = writer.add_solid(name, solid);
+    writer.add_product(name, solid_id);
+    let data = writer.text;
     format!(
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('{name}, mm'),'2;1');\n\
          FILE_NAME('{name}.step','2000-01-01T00:00:00',(''),(''),'','lizard parts','');\n\
@@ -57,13 +57,9 @@ impl StepWriter {
         self.last_id
     }
 
-    fn add_triple(&mut self, kind: &str, [x, y, z]: [f64; 3]) -> usize {
-        self.add(&format!(
-            "{kind}('',({},{},{}))",
-            format_real(x),
-            format_real(y),
-            format_real(z)
-        ))
+    fn add_triple(&mut self, kind: &str, coordinates: [f64; 3]) -> usize {
+        let [x, y, z] = coordinates.map(format_real);
+        self.add(&format!("{kind}('',({x},{y},{z}))"))
     }
 
     /// Adds a frame with an origin, a z axis and an x axis.
@@ -91,11 +87,10 @@ impl StepWriter {
             let curve = self.add_curve(ends, edge.bulge);
             edges.push(self.add(&format!("EDGE_CURVE('',#{from},#{to},#{curve},.T.)")));
         }
-        let faces = solid
-            .faces
-            .iter()
-            .map(|face| self.add_face(solid, face, &edges));
-        let faces: Vec<_> = faces.collect();
+        let faces = solid.faces.iter();
+        let faces: Vec<_> = faces
+            .map(|face| self.add_face(solid, face, &edges))
+            .collect();
         let shell_id = self.add(&format!("CLOSED_SHELL('',{})", format_list(&faces)));
         self.add(&format!("MANIFOLD_SOLID_BREP('{name}',#{shell_id})"))
     }
@@ -196,19 +191,15 @@ impl StepWriter {
         for entity in PRODUCT.lines() {
             let mut entity = entity.replace("#NAME", name);
             for number in (0..12).rev() {
-                let (local_id, id) = (
-                    format!("#+{}", number + 1),
-                    format!("#{}", first_id + number),
-                );
-                entity = entity.replace(&local_id, &id);
+                let local_id = format!("#+{}", number + 1);
+                entity = entity.replace(&local_id, &format!("#{}", first_id + number));
             }
             self.add(&entity);
         }
         let (shape_id, context_id) = (first_id + PRODUCT_SHAPE_INDEX, self.last_id);
         let frame = self.add_frame([0.0; 3], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]);
-        let items = format!("(#{frame},#{solid_id})");
         let body_id = self.add(&format!(
-            "ADVANCED_BREP_SHAPE_REPRESENTATION('',{items},#{context_id})"
+            "ADVANCED_BREP_SHAPE_REPRESENTATION('',(#{frame},#{solid_id}),#{context_id})"
         ));
         self.add(&format!(
             "SHAPE_DEFINITION_REPRESENTATION(#{shape_id},#{body_id})"

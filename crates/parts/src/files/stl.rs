@@ -2,7 +2,7 @@
 
 use crate::files::mesh::Mesh;
 
-/// Encodes a mesh as an STL file.
+/// Encodes a mesh as a binary STL file.
 pub fn encode_stl(name: &str, mesh: &Mesh) -> Vec<u8> {
     let mut bytes = format!("lizard parts: {name}, mm").into_bytes();
     bytes.resize(80, b' ');

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lizard_kinematics::Vector;
 
-use crate::files::sheet::{Layer, Sheet, compute_extent};
+use crate::files::sheet::{Sheet, SheetLayer, compute_sheet_bounds};
 use crate::layers::outline::Loop;
 
 /// Margin around the sheet, mm.
@@ -14,37 +14,37 @@ const COLOURS: [&str; 4] = ["#d00000", "#0050c0", "#a000a0", "#008040"];
 
 /// Formats a sheet as SVG. `kerf` is the width of the cut, mm; the lines are the part's edge, not the cutter's path.
 pub fn format_svg(sheet: &Sheet, kerf: f64) -> String {
-    let [low, high] = compute_extent(sheet);
+    let [low, high] = compute_sheet_bounds(sheet);
     let (width, height) = (high.x - low.x + 2.0 * MARGIN, high.y - low.y + 2.0 * MARGIN);
     let to_page = |position: Vector| (position.x - low.x + MARGIN, high.y - position.y + MARGIN);
     let (name, thickness, half_kerf) = (&sheet.name, sheet.thickness, kerf / 2.0);
-    let mut text = format!(
+    let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.3}mm\" height=\"{height:.3}mm\" \
          viewBox=\"0 0 {width:.3} {height:.3}\">\n\
          <desc>{name}: 1:1 in mm, {thickness:.2} mm thick. Lines are the edge of the part; a cutter goes {half_kerf:.2} mm \
          outside of them (kerf {kerf} mm).</desc>\n"
     );
-    for (Layer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
+    for (SheetLayer { name, loops }, colour) in sheet.layers.iter().zip(COLOURS.iter().cycle()) {
         let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.1\"");
-        let _ = writeln!(text, "<g id=\"{name}\" {style}>");
+        let _ = writeln!(svg, "<g id=\"{name}\" {style}>");
         for outline_loop in loops {
             let _ = match outline_loop
                 .circle()
                 .map(|(centre, radius)| (to_page(centre), radius))
             {
                 Some(((x, y), r)) => {
-                    writeln!(text, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
+                    writeln!(svg, "<circle cx=\"{x:.6}\" cy=\"{y:.6}\" r=\"{r:.6}\"/>")
                 }
                 None => {
                     let data = format_path(outline_loop, to_page);
-                    writeln!(text, "<path d=\"{data}\"/>")
+                    writeln!(svg, "<path d=\"{data}\"/>")
                 }
             };
         }
-        text.push_str("</g>\n");
+        svg.push_str("</g>\n");
     }
-    text.push_str("</svg>\n");
-    text
+    svg.push_str("</svg>\n");
+    svg
 }
 
 /// Formats the path data of a loop.

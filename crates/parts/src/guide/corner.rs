@@ -5,7 +5,7 @@
 //! its link, whether the bearings turn without play, and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
-use crate::bodies::builder::Builder;
+use crate::bodies::builder::AssemblyBuilder;
 use crate::bodies::chassis;
 use crate::bodies::names::servo_and_leg_names;
 use crate::guide::CORNER_SERVO;
@@ -16,7 +16,7 @@ impl Assembly {
     /// Collects the printed parts of the corner of A1, each once.
     pub fn collect_corner_parts(&self) -> Vec<Part> {
         let (name, leg) = servo_and_leg_names(CORNER_SERVO);
-        let prisms = chassis::make_corner_prisms(&Builder::new(self.robot()), CORNER_SERVO);
+        let prisms = chassis::make_corner_prisms(&AssemblyBuilder::new(self.robot()), CORNER_SERVO);
         let mut parts = vec![Part::single(&format!("seat {name}"), prisms)];
         let is_in_corner = |body_name: &str| {
             self.body(body_name).is_some_and(|body| {

@@ -1,22 +1,23 @@
-//! The guide as a page for a browser.
+//! The guide as an HTML page.
 
 use std::fmt::Write;
 
-/// Replaces each pair of marks by an element around the text between them.
-fn replace_marks(text: &str, mark: &str, element: &str) -> String {
+/// Wraps the text between each pair of marks in an element, and drops the marks.
+fn wrap_marked_text(text: &str, mark: &str, tag: &str) -> String {
     let mut parts = text.split(mark);
     let mut result = parts.next().unwrap_or_default().to_owned();
     while let (Some(inside), Some(rest)) = (parts.next(), parts.next()) {
-        let _ = write!(result, "<{element}>{inside}</{element}>{rest}");
+        let _ = write!(result, "<{tag}>{inside}</{tag}>{rest}");
     }
     result
 }
 
-/// Converts the guide's Markdown to a page. Supports only headings, pictures, tables, code, bold text and paragraphs.
+/// Converts the guide's Markdown to an HTML page. Supports only headings, pictures, tables, code, bold text and
+/// paragraphs.
 pub fn markdown_to_html(markdown: &str) -> String {
-    let escape = |text: &str| {
+    let to_html = |text: &str| {
         let text = text.replace('&', "&amp;").replace('<', "&lt;");
-        replace_marks(&replace_marks(&text, "`", "code"), "**", "b")
+        wrap_marked_text(&wrap_marked_text(&text, "`", "code"), "**", "b")
     };
     let mut page = String::from(
         "<!DOCTYPE html>\n<html lang=\"en\"><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\">\n\
@@ -30,16 +31,16 @@ pub fn markdown_to_html(markdown: &str) -> String {
             page.push_str(if is_in_code { "</pre>\n" } else { "<pre>" });
             is_in_code = !is_in_code;
         } else if is_in_code {
-            let _ = writeln!(page, "{}", escape(line));
+            let _ = writeln!(page, "{}", to_html(line));
         } else if let Some(cells) = line.strip_prefix('|') {
             if cells.starts_with("---") {
                 continue;
             }
-            let cell = if is_in_table { "td" } else { "th" };
+            let cell_tag = if is_in_table { "td" } else { "th" };
             page.push_str(if is_in_table { "<tr>" } else { "<table>\n<tr>" });
             is_in_table = true;
             for text in cells.trim_end_matches('|').split('|') {
-                let _ = write!(page, "<{cell}>{}</{cell}>", escape(text.trim()));
+                let _ = write!(page, "<{cell_tag}>{}</{cell_tag}>", to_html(text.trim()));
             }
             page.push_str("</tr>\n");
         } else {
@@ -48,18 +49,18 @@ pub fn markdown_to_html(markdown: &str) -> String {
                 is_in_table = false;
             }
             if let Some(title) = line.strip_prefix("## ") {
-                let _ = writeln!(page, "<h2>{}</h2>", escape(title));
+                let _ = writeln!(page, "<h2>{}</h2>", to_html(title));
             } else if let Some(title) = line.strip_prefix("# ") {
-                let _ = writeln!(page, "<h1>{}</h1>", escape(title));
-            } else if let Some((alt_text, file)) = line
+                let _ = writeln!(page, "<h1>{}</h1>", to_html(title));
+            } else if let Some((alt_text, source)) = line
                 .strip_prefix("![")
                 .and_then(|rest| rest.strip_suffix(')'))
                 .and_then(|rest| rest.split_once("]("))
             {
-                let alt_text = escape(alt_text);
-                let _ = writeln!(page, "<p><img src=\"{file}\" alt=\"{alt_text}\"></p>");
+                let alt_text = to_html(alt_text);
+                let _ = writeln!(page, "<p><img src=\"{source}\" alt=\"{alt_text}\"></p>");
             } else if !line.is_empty() {
-                let _ = writeln!(page, "<p>{}</p>", escape(line));
+                let _ = writeln!(page, "<p>{}</p>", to_html(line));
             }
         }
     }

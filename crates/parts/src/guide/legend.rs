@@ -6,13 +6,13 @@ use lizard_kinematics::{Solution, Vector};
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::bodies::assembly::Assembly;
-use crate::guide::ink::Label;
+use crate::guide::drawing::Label;
 use crate::guide::picture::PictureBody;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::part::Part;
 
 /// Formats a body's name for the guide, such as `M3 x 12` for a screw, or noun and engraved mark for a printed part,
-/// such as `link, marked 13`. Returns `None` for a lead, and for a printed body without a part in `parts`.
+/// such as `link, marked 13`. Returns `None` for a lead, and for a printed body that is not in `parts`.
 pub fn format_name(body: &Body, parts: &[Part]) -> Option<String> {
     Some(match body.kind {
         Kind::Screw(length) => format!("M3 x {length}"),

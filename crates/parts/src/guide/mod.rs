@@ -1,11 +1,11 @@
 //! The guide to building the robot, step by step, with pictures of the model.
 //!
-//! In this order a screwdriver reaches every screw, and the electronics are tested before any part can jam.
+//! In this order, a screwdriver reaches every screw, and the electronics are tested before any part can jam.
 
 pub(crate) mod corner;
 pub(crate) mod documents;
+pub(crate) mod drawing;
 pub(crate) mod html;
-pub(crate) mod ink;
 pub(crate) mod legend;
 pub(crate) mod picture;
 pub(crate) mod placements;
@@ -18,9 +18,9 @@ use crate::bill::Bill;
 use crate::bodies::assembly::Assembly;
 use crate::bodies::names::servo_and_leg_names;
 use crate::build_error::BuildError;
-use crate::files::File;
+use crate::files::OutputFile;
+use crate::guide::drawing::Label;
 use crate::guide::html::markdown_to_html;
-use crate::guide::ink::Label;
 use crate::guide::picture::{PictureBody, View, draw_picture};
 use crate::layers::body::{Body, Mount};
 use crate::layers::roof::PRINT_LAYER_MM;
@@ -44,7 +44,7 @@ Print all parts in the given orientation, in layers of 0.2 mm, **without support
 of a sleeve's roof, but a bridge of 6.4 mm needs none.";
 
 /// Title of the step in which the pads are pressed onto their screws.
-const BENCH_TITLE: &str = "Legs, on the bench";
+const LEGS_TITLE: &str = "Legs, on the bench";
 /// Text for pads with a strip, added to the step in which the pads are pressed on.
 const STRIP_TEXT: &str = " Before you press the heads in, glue a strip along each dome, from its notch to the other side. The tips of its hairs or \
 bristles point away from the notch; its front end is folded up and glued into the notch, so that no edge of the floor catches it. \
@@ -61,16 +61,16 @@ const NOTCH_TEXT: &str =
 /// Makes the guide as Markdown and HTML, with pictures of the robot at `pose`, usually neutral.
 ///
 /// # Errors
-/// Returns [`BuildError::Blocked`] for a screw that cannot be reached.
+/// Returns [`BuildError::Blocked`] if a screw cannot be reached.
 pub fn make_guide(
     assembly: &Assembly,
     bill: &Bill,
     pose: &Solution,
-) -> Result<Vec<File>, BuildError> {
+) -> Result<Vec<OutputFile>, BuildError> {
     let mut steps = build_steps(assembly.robot().drive().strut().is_some());
     let has_strip = assembly.robot().parts().strip > 0.0;
     for (title, text, is_needed) in [
-        (BENCH_TITLE, STRIP_TEXT, has_strip),
+        (LEGS_TITLE, STRIP_TEXT, has_strip),
         (
             LEVEL_TITLE,
             GRAIN_TEXT,
@@ -93,7 +93,7 @@ pub fn make_guide(
         .collect();
     let labels = legend::make_servo_and_end_labels(assembly, pose);
     let robot_picture = draw_picture(assembly, &picture_bodies, pose, &View::default(), &labels);
-    files.push(File::text("guide/robot.svg".to_owned(), robot_picture));
+    files.push(OutputFile::from_text("guide/robot.svg", robot_picture));
     let mut text = format!(
         "# Building the robot\n\n![The robot](robot.svg)\n\n{INTRODUCTION}\n\n{}\n",
         format_drilling_text(&parts)
@@ -145,16 +145,14 @@ pub fn make_guide(
         for (view_name, caption, drawing) in scene.draw_pictures() {
             let name = format!("step-{number}-{view_name}.svg");
             let _ = writeln!(text, "![{}, {caption}]({name})", step.title);
-            files.push(File::text(format!("guide/{name}"), drawing));
+            files.push(OutputFile::from_text(format!("guide/{name}"), drawing));
         }
         text.push('\n');
         added_bodies.extend(new_bodies);
     }
-    files.push(File::text(
-        "guide/guide.html".to_owned(),
-        markdown_to_html(&text),
-    ));
-    files.push(File::text("guide/guide.md".to_owned(), text));
+    let page = markdown_to_html(&text);
+    files.push(OutputFile::from_text("guide/guide.html", page));
+    files.push(OutputFile::from_text("guide/guide.md", text));
     Ok(files)
 }
 

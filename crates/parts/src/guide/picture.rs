@@ -10,7 +10,7 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Kind, Mount};
 use crate::layers::outline::{Loop, Outline};
 
-use super::ink::{Drawing, Frame, Label, Ring};
+use super::drawing::{Drawing, Frame, Label, Ring};
 
 /// A body in a picture.
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +43,7 @@ pub struct View {
     pub elevation: f64,
     /// Width of the picture, pixels.
     pub width: f64,
-    /// True to show the robot from below, turned over about its long axis.
+    /// True to show the robot from below, flipped about its long axis.
     pub is_from_below: bool,
     /// True to frame only the bodies in colour, with a margin around them.
     pub is_close_up: bool,
@@ -65,7 +65,7 @@ impl Default for View {
 const EYE_DISTANCE: f64 = 900.0;
 /// Largest angle that a chord spans, rad.
 const MAX_CHORD_ANGLE: f64 = 0.55;
-/// Least height of a slice, mm.
+/// Smallest height of a slice, mm.
 const MIN_SLICE_HEIGHT: f64 = 0.45;
 /// Radius below which a hole is not drawn, mm, since a screw fills it. All holes of a lifted body in colour are drawn.
 const HIDDEN_HOLE_RADIUS: f64 = 1.75;
@@ -84,7 +84,7 @@ struct Eye {
     /// Unit vector to the right in the picture, in plan view.
     right: Vector,
     /// Unit vector from the robot's middle to the eye, in plan view.
-    away: Vector,
+    towards_eye: Vector,
     /// Sine of the eye's elevation.
     sin: f64,
     /// Cosine of the eye's elevation.
@@ -93,19 +93,19 @@ struct Eye {
 
 impl Eye {
     fn new(view: &View) -> Self {
-        let away = Vector::direction(view.azimuth);
+        let towards_eye = Vector::from_angle(view.azimuth);
         let (sin, cos) = sin_cos(view.elevation);
         Self {
-            right: away.rotated_left(),
-            away,
+            right: towards_eye.rotated_left(),
+            towards_eye,
             sin,
             cos,
         }
     }
 
-    /// Projects a point in space onto the page, mm before scaling, y down.
+    /// Projects a point in space onto the drawing, mm before scaling, y down.
     fn project(&self, point: Vector, z: f64) -> (f64, f64) {
-        let (x, floor_depth) = (point.dot(self.right), point.dot(self.away));
+        let (x, floor_depth) = (point.dot(self.right), point.dot(self.towards_eye));
         let eye_depth = floor_depth * self.cos + z * self.sin;
         let height = z * self.cos - floor_depth * self.sin;
         let scale = EYE_DISTANCE / (EYE_DISTANCE - eye_depth);
@@ -114,7 +114,7 @@ impl Eye {
 
     /// Position of the eye in plan view.
     fn position(&self) -> Vector {
-        self.away * (EYE_DISTANCE * self.cos)
+        self.towards_eye * (EYE_DISTANCE * self.cos)
     }
 }
 
@@ -144,7 +144,7 @@ pub fn draw_picture(
     let mut layers = collect_layers(assembly, picture_bodies, pose);
     if view.is_from_below {
         for layer in &mut layers {
-            layer.turn_over();
+            layer.flip();
         }
     }
     let heights = merge_heights(&mut layers);
@@ -160,8 +160,8 @@ pub fn draw_picture(
             }
         }
         walls.sort_by(|(a, ..), (b, ..)| b.total_cmp(a));
-        for (_, points, colour) in walls {
-            drawing.draw_polygon(&[points], colour, false);
+        for (_, ring, colour) in walls {
+            drawing.draw_polygon(vec![ring], colour, false);
         }
         for layer in slice_layers() {
             if layer.z[1] < high + 1e-6 && !layer.loops.is_empty() {
@@ -169,8 +169,8 @@ pub fn draw_picture(
                     let points = layer_loop.iter();
                     points.map(|point| eye.project(*point, high)).collect()
                 };
-                let loops: Vec<_> = layer.loops.iter().map(to_ring).collect();
-                drawing.draw_polygon(&loops, layer.colour, true);
+                let rings = layer.loops.iter().map(to_ring).collect();
+                drawing.draw_polygon(rings, layer.colour, true);
             }
         }
     }
@@ -182,11 +182,14 @@ pub fn draw_picture(
         let loop_points = layer.loops.iter().flatten();
         loop_points.flat_map(|point| layer.z.map(|z| eye.project(*point, z)))
     });
-    let to_page = |label: &Label| match view.is_from_below {
-        true => eye.project(turn_over_point(label.position), -label.z),
+    let project_label = |label: &Label| match view.is_from_below {
+        true => eye.project(flip_point(label.position), -label.z),
         false => eye.project(label.position, label.z),
     };
-    let placed_labels: Vec<_> = labels.iter().map(|label| (to_page(label), label)).collect();
+    let placed_labels: Vec<_> = labels
+        .iter()
+        .map(|label| (project_label(label), label))
+        .collect();
     drawing.into_svg(
         view.width,
         &Frame::around(points, view.is_close_up),
@@ -194,8 +197,8 @@ pub fn draw_picture(
     )
 }
 
-/// Turns a point over about the robot's long axis.
-fn turn_over_point(point: Vector) -> Vector {
+/// Flips a point about the robot's long axis.
+fn flip_point(point: Vector) -> Vector {
     Vector::new(-point.x, point.y)
 }
 
@@ -263,11 +266,11 @@ fn divide_loop(outline_loop: &Loop) -> Vec<Vector> {
 }
 
 impl Layer {
-    /// Turns the layer over about the robot's long axis; the loops keep the material on their left.
-    fn turn_over(&mut self) {
+    /// Flips the layer about the robot's long axis; the loops keep the material on their left.
+    fn flip(&mut self) {
         for layer_loop in &mut self.loops {
             for point in layer_loop.iter_mut() {
-                *point = turn_over_point(*point);
+                *point = flip_point(*point);
             }
             layer_loop.reverse();
         }
@@ -290,7 +293,7 @@ impl Layer {
             let is_visible = normal.dot(eye.position() - a) > 0.0;
             let length = normal.length();
             // The light comes from the eye's left.
-            let light = (eye.away + eye.right * -0.8).dot(normal) / (1.3 * length.max(1e-9));
+            let light = (eye.towards_eye + eye.right * -0.8).dot(normal) / (1.3 * length.max(1e-9));
             is_visible.then(|| (4.0 * light.clamp(0.0, 1.0)).round() as i32)
         };
         let mut i = 0;
@@ -306,12 +309,12 @@ impl Layer {
             }
             let distances = chain.iter().map(|point| (eye.position() - *point).length());
             let distance = distances.sum::<f64>() / chain.len() as f64;
-            let mut points: Vec<_> = chain.iter().map(|point| eye.project(*point, low)).collect();
-            points.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
+            let mut ring: Ring = chain.iter().map(|point| eye.project(*point, low)).collect();
+            ring.extend(chain.iter().rev().map(|point| eye.project(*point, high)));
             let brightness = 0.5 + 0.09 * f64::from(shade);
             walls.push((
                 distance,
-                points,
+                ring,
                 self.colour.map(|channel| channel * brightness),
             ));
         }

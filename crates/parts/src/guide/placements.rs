@@ -1,4 +1,4 @@
-//! The placements of all bodies as JSON, for programs.
+//! The placements of all bodies, as JSON for other programs.
 //!
 //! Lengths are in mm, in the chassis frame, with z up from the top of the plate. The file of a printed part contains
 //! the part as printed. To put the part in place, turn it over if `flipped` is true (x, y, z to x, -y, -z), lift it by
@@ -13,7 +13,7 @@ use crate::layers::body::{Body, Kind};
 use crate::layers::placement::Placement;
 use crate::layers::shape::Shape;
 use crate::order::steps::{Step, build_steps, find_step_and_stage};
-use crate::part::Part;
+use crate::part::{Part, PrintTransform};
 
 /// The placement of a body.
 #[derive(Serialize)]
@@ -22,21 +22,21 @@ struct PlacedBody<'a> {
     name: &'a str,
     /// Kind of the body as a word, such as "screw".
     kind: &'static str,
-    /// Step of the guide that adds the body, from 1.
+    /// Step of the guide that adds the body, from 1; 0 if no step does.
     step: usize,
-    /// Stage of the step that adds the body, from 1.
+    /// Stage of the step that adds the body, from 1; 0 if no step does.
     stage: usize,
-    /// Placement of the printed part's file; `None` for a bought body.
+    /// Placement of the printed part's file; `None` if the body is bought.
     #[serde(skip_serializing_if = "Option::is_none")]
     printed: Option<PrintPlacement>,
-    /// The placed screw; `None` for other bodies.
+    /// The placed screw; `None` if the body is no screw.
     #[serde(skip_serializing_if = "Option::is_none")]
-    screw: Option<Screw>,
+    screw: Option<PlacedScrew>,
     /// Shapes of a bought body; empty for a printed body.
-    solids: Vec<Prism>,
+    solids: Vec<PlacedPrism>,
 }
 
-/// The placement of a printed part's file.
+/// The file of a printed part, and how it is put in place.
 #[derive(Serialize)]
 struct PrintPlacement {
     /// Path of the file within the output folder.
@@ -44,38 +44,45 @@ struct PrintPlacement {
     /// Text engraved on the part; empty if there is none.
     mark: String,
     /// True if the part is turned over.
-    flipped: bool,
+    #[serde(rename = "flipped")]
+    is_flipped: bool,
     /// Upward shift.
     lift: f64,
-    /// Turn about the z axis, deg, counter-clockwise.
-    turn: f64,
+    /// Rotation about the z axis, deg, counter-clockwise.
+    #[serde(rename = "turn")]
+    rotation: f64,
     /// Shift along x and y.
-    at: [f64; 2],
+    #[serde(rename = "at")]
+    shift: [f64; 2],
     /// Middles of the holes to drill, chassis frame.
-    drill: Vec<[f64; 2]>,
+    #[serde(rename = "drill")]
+    holes_to_drill: Vec<[f64; 2]>,
 }
 
 /// A placed screw.
 #[derive(Serialize)]
-struct Screw {
+struct PlacedScrew {
     /// Position of the axis.
-    at: [f64; 2],
+    #[serde(rename = "at")]
+    position: [f64; 2],
     /// Height of the face under the head.
-    head: f64,
+    #[serde(rename = "head")]
+    seat_z: f64,
     /// Length below the head.
     length: f64,
     /// Diameter of the thread.
     diameter: f64,
     /// True if the head is above the shank.
-    head_above: bool,
+    #[serde(rename = "head_above")]
+    is_head_above: bool,
     /// Later steps of the guide that turn the screw again, from 1.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    turned: Vec<usize>,
+    #[serde(rename = "turned", skip_serializing_if = "Vec::is_empty")]
+    turning_steps: Vec<usize>,
 }
 
 /// A vertical prism with holes between two heights.
 #[derive(Serialize)]
-struct Prism {
+struct PlacedPrism {
     z: [f64; 2],
     #[serde(flatten)]
     shape: ConvexOutline,
@@ -110,7 +117,7 @@ pub fn format_placements(assembly: &Assembly, pose: &Solution) -> String {
             step,
             stage,
             printed: part.map(|part| compute_print_placement(&placement, body, part)),
-            screw: find_screw(assembly, &steps, &placement, body),
+            screw: place_screw(assembly, &steps, &placement, body),
             solids: match part {
                 Some(_) => Vec::new(),
                 None => place_solids(&placement, body),
@@ -128,35 +135,40 @@ fn to_pair(point: Vector) -> [f64; 2] {
 }
 
 fn compute_print_placement(placement: &Placement, body: &Body, part: &Part) -> PrintPlacement {
-    let motion = part.print_to_body(body);
-    let frame = motion.frame;
-    let origin = placement.map(frame.origin);
-    let turn = placement.x_axis * frame.x_axis.x + placement.x_axis.rotated_left() * frame.x_axis.y;
-    let drill = part.find_closed_holes().into_iter().map(|hole| {
-        let hole = if part.is_turned_over {
-            hole.mirrored()
-        } else {
-            hole
+    let PrintTransform {
+        is_flipped,
+        lift,
+        frame,
+    } = part.transform_to_body(body);
+    let print_frame = Placement {
+        origin: placement.map(frame.origin),
+        x_axis: placement.x_axis * frame.x_axis.x
+            + placement.x_axis.rotated_left() * frame.x_axis.y,
+    };
+    let holes_to_drill = part.find_bridged_holes().into_iter().map(|hole| {
+        let hole = match is_flipped {
+            true => hole.mirrored_in_x_axis(),
+            false => hole,
         };
-        to_pair(origin + turn * hole.x + turn.rotated_left() * hole.y)
+        to_pair(print_frame.map(hole))
     });
     PrintPlacement {
         file: format!("stl/{}.stl", part.file_stem()),
         mark: part.mark.clone(),
-        flipped: motion.is_flipped,
-        lift: motion.lift,
-        turn: turn.angle(),
-        at: to_pair(origin),
-        drill: drill.collect(),
+        is_flipped,
+        lift,
+        rotation: print_frame.x_axis.angle(),
+        shift: to_pair(print_frame.origin),
+        holes_to_drill: holes_to_drill.collect(),
     }
 }
 
-fn find_screw(
+fn place_screw(
     assembly: &Assembly,
     steps: &[Step],
     placement: &Placement,
     body: &Body,
-) -> Option<Screw> {
+) -> Option<PlacedScrew> {
     let (Kind::Screw(length) | Kind::HexScrew(length)) = body.kind else {
         return None;
     };
@@ -165,31 +177,32 @@ fn find_screw(
     };
     let is_turned_in = |step: &Step| step.stages.iter().any(|stage| (stage.turns_again)(body));
     let turning_steps = (1..).zip(steps).filter(|(_, step)| is_turned_in(step));
-    Some(Screw {
-        at: to_pair(placement.map(low.filled_shapes[0].middle())),
-        head: low.z[1],
+    Some(PlacedScrew {
+        position: to_pair(placement.map(low.filled_shapes[0].middle())),
+        seat_z: low.z[1],
         length,
         diameter: assembly.robot().parts().screw.diameter,
-        head_above: high.filled_shapes[0].diameter() > low.filled_shapes[0].diameter(),
-        turned: turning_steps.map(|(number, _)| number).collect(),
+        is_head_above: high.filled_shapes[0].diameter() > low.filled_shapes[0].diameter(),
+        turning_steps: turning_steps.map(|(number, _)| number).collect(),
     })
 }
 
-fn place_solids(placement: &Placement, body: &Body) -> Vec<Prism> {
+fn place_solids(placement: &Placement, body: &Body) -> Vec<PlacedPrism> {
     let to_outline = |shape: &Shape| ConvexOutline {
         radius: shape.radius,
         outline: shape
+            .placed(placement)
             .points
-            .iter()
-            .map(|point| to_pair(placement.map(*point)))
+            .into_iter()
+            .map(to_pair)
             .collect(),
     };
-    let layers = body.prisms.iter().flat_map(|prism| {
-        prism.filled_shapes.iter().map(move |shape| Prism {
+    let prisms = body.prisms.iter().flat_map(|prism| {
+        prism.filled_shapes.iter().map(move |shape| PlacedPrism {
             z: prism.z,
             shape: to_outline(shape),
             holes: prism.cut_shapes.iter().map(to_outline).collect(),
         })
     });
-    layers.collect()
+    prisms.collect()
 }

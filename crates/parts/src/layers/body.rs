@@ -10,8 +10,8 @@ use crate::layers::fitting::Fitting;
 use crate::layers::shape::Shape;
 use crate::layers::stack::Span;
 
-/// A layer of a body: a union of shapes minus some holes, between two heights. The walls are vertical, or slope by the
-/// difference of the insets.
+/// A layer of a body, which is a prism: a union of shapes minus some holes, between two heights. The walls are
+/// vertical, or slope by the difference of the insets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prism {
     /// Shapes whose union is filled, mount frame, mm.
@@ -125,7 +125,7 @@ impl Kind {
         matches!(self, Self::Printed | Self::Pad)
     }
 
-    /// Word for the kind in placements.json and on the page.
+    /// Word for the kind in placements.json and on the web page.
     pub fn word(self) -> &'static str {
         match self {
             Self::Printed => "printed",

@@ -1,4 +1,4 @@
-//! Parts that the robot carries in addition to its mechanism: supply, terminal strips, plugs.
+//! The fittings, which the robot carries in addition to its mechanism: supply, terminal strips, plugs.
 //!
 //! Shops sell such parts in many sizes, so the robot reserves a space for each, into which common products fit. Two
 //! products are named with their sizes; a test checks that they fit.
@@ -7,11 +7,11 @@ use std::fmt;
 
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
-use crate::price::Price;
+use crate::price::PriceClass;
 
 /// Width and thickness of the battery strap, mm.
 pub const STRAP_SECTION: [f64; 2] = [16.0, 1.5];
-/// Pitch of the ways of a terminal strip of the 3 A size, mm.
+/// Pitch of a terminal strip of the 3 A size: the distance between adjacent ways, mm.
 pub const STRIP_PITCH: f64 = 8.0;
 
 /// Batteries with two lithium cells that fit into the space `battery` of `[parts]`.
@@ -90,9 +90,9 @@ pub enum Fitting {
     RadioSpace,
 }
 
-/// Name, mass, space and examples of a fitting.
+/// The specification of a fitting: name, mass, space and examples.
 #[derive(Clone, Copy, Debug)]
-pub struct FittingFacts {
+pub struct FittingSpec {
     /// Name of the fitting's body; the bodies of several equal fittings are numbered.
     pub name: &'static str,
     /// Mass according to shops, g.
@@ -110,8 +110,8 @@ pub struct FittingFacts {
 }
 
 /// The two common makes of terminal strips with a pitch of 8 mm, cut to a number of ways.
-const fn strip_examples(ways: f64) -> [Example; 2] {
-    let length = ways * STRIP_PITCH;
+const fn strip_examples(way_count: f64) -> [Example; 2] {
+    let length = way_count * STRIP_PITCH;
     [
         Example::from_shops("3 A polythene strip, 2.5 mm2", [16.0, length - 2.0, 13.0]),
         Example::from_shops("Weidmueller MK 3", [17.0, length, 14.0]),
@@ -137,10 +137,10 @@ impl Fitting {
         Self::RadioSpace,
     ];
 
-    /// Returns name, mass, space and examples of this kind of fitting.
-    pub fn facts(self) -> FittingFacts {
+    /// Returns the specification of this kind of fitting.
+    pub fn spec(self) -> FittingSpec {
         match self {
-            Self::Converter => FittingFacts {
+            Self::Converter => FittingSpec {
                 name: "converter",
                 grams: 6.0,
                 size: [22.0, 28.0, 10.0],
@@ -152,7 +152,7 @@ impl Fitting {
                     Example::from_shops("MP1584EN board", [17.0, 22.0, 4.0]),
                 ],
             },
-            Self::Capacitor => FittingFacts {
+            Self::Capacitor => FittingSpec {
                 name: "capacitor",
                 grams: 2.0,
                 size: [10.5, 20.5, 10.5],
@@ -164,7 +164,7 @@ impl Fitting {
                     Example::from_drawing("Rubycon 16ZLH1000MEFC10X16, 16 V", [10.5, 18.0, 10.5]),
                 ],
             },
-            Self::Alarm => FittingFacts {
+            Self::Alarm => FittingSpec {
                 name: "alarm",
                 grams: 9.0,
                 size: [26.0, 42.0, 13.0],
@@ -176,7 +176,7 @@ impl Fitting {
                     Example::from_shops("HobbyKing alarm for 2 to 4 cells", [23.0, 37.0, 11.0]),
                 ],
             },
-            Self::GroundStrip => FittingFacts {
+            Self::GroundStrip => FittingSpec {
                 name: "ground strip",
                 grams: 18.0,
                 size: [17.5, 97.0, 14.5],
@@ -185,7 +185,7 @@ impl Fitting {
                 fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(12.0),
             },
-            Self::SupplyStrip => FittingFacts {
+            Self::SupplyStrip => FittingSpec {
                 name: "supply strip",
                 grams: 9.0,
                 size: [17.5, 49.0, 14.5],
@@ -194,7 +194,7 @@ impl Fitting {
                 fastening: "two cable ties through the plate's slots",
                 examples: strip_examples(6.0),
             },
-            Self::SignalStrip => FittingFacts {
+            Self::SignalStrip => FittingSpec {
                 name: "signal strip",
                 grams: 7.5,
                 size: [17.5, 41.0, 14.5],
@@ -203,7 +203,7 @@ impl Fitting {
                 fastening: "foam tape, and a cable tie through the wing's slots",
                 examples: strip_examples(5.0),
             },
-            Self::PlusTerminal => FittingFacts {
+            Self::PlusTerminal => FittingSpec {
                 name: "plus way",
                 grams: 1.5,
                 size: [17.5, 8.5, 14.5],
@@ -212,7 +212,7 @@ impl Fitting {
                 fastening: "foam tape",
                 examples: strip_examples(1.0),
             },
-            Self::Resistor => FittingFacts {
+            Self::Resistor => FittingSpec {
                 name: "resistor",
                 grams: 0.2,
                 size: [2.6, 6.8, 2.6],
@@ -224,7 +224,7 @@ impl Fitting {
                     Example::from_drawing("Yageo MFR-25FBF52-10K, metal film", [2.6, 6.8, 2.6]),
                 ],
             },
-            Self::Switch => FittingFacts {
+            Self::Switch => FittingSpec {
                 name: "switch",
                 grams: 5.0,
                 size: [27.0, 21.5, 15.5],
@@ -236,7 +236,7 @@ impl Fitting {
                     Example::from_shops("Marquardt 1801.1146", [26.0, 21.0, 15.0]),
                 ],
             },
-            Self::Fuse => FittingFacts {
+            Self::Fuse => FittingSpec {
                 name: "fuse",
                 grams: 6.0,
                 size: [14.0, 46.0, 14.0],
@@ -248,7 +248,7 @@ impl Fitting {
                     Example::from_shops("holder for glass fuses 5 x 20 mm", [13.0, 44.0, 13.0]),
                 ],
             },
-            Self::BatteryPlug => FittingFacts {
+            Self::BatteryPlug => FittingSpec {
                 name: "battery plug",
                 grams: 5.0,
                 size: [32.0, 6.6, 12.0],
@@ -260,7 +260,7 @@ impl Fitting {
                     Example::from_shops("JST RCY (BEC) pair", [26.0, 6.0, 8.0]),
                 ],
             },
-            Self::BarrelPlug => FittingFacts {
+            Self::BarrelPlug => FittingSpec {
                 name: "barrel plug",
                 grams: 4.0,
                 size: [15.0, 42.0, 15.0],
@@ -272,7 +272,7 @@ impl Fitting {
                     Example::from_shops("with screw terminals", [14.0, 38.0, 12.5]),
                 ],
             },
-            Self::Strap => FittingFacts {
+            Self::Strap => FittingSpec {
                 name: "battery strap",
                 grams: 3.0,
                 size: [STRAP_SECTION[0], 150.0, STRAP_SECTION[1]],
@@ -287,7 +287,7 @@ impl Fitting {
                     ),
                 ],
             },
-            Self::RadioSpace => FittingFacts {
+            Self::RadioSpace => FittingSpec {
                 name: "place for a radio module",
                 grams: 0.0,
                 size: [16.5, 37.5, 8.0],
@@ -304,12 +304,12 @@ impl Fitting {
 
     /// Name of the fitting's body.
     pub fn name(self) -> &'static str {
-        self.facts().name
+        self.spec().name
     }
 
     /// Formats the row of the bill of materials; empty for a piece of another strip and for an optional part.
     pub fn format_bill_row(self) -> String {
-        let FittingFacts { article, size, .. } = self.facts();
+        let FittingSpec { article, size, .. } = self.spec();
         let [x, y, z] = size;
         match self {
             Self::GroundStrip => {
@@ -335,11 +335,11 @@ impl Fitting {
     }
 
     /// Price class of the row in the bill of materials.
-    pub fn price(self) -> Price {
+    pub fn price_class(self) -> PriceClass {
         match self {
-            Self::Resistor => Price::A,
-            Self::Converter | Self::Alarm | Self::RadioSpace => Price::C,
-            _ => Price::B,
+            Self::Resistor => PriceClass::A,
+            Self::Converter | Self::Alarm | Self::RadioSpace => PriceClass::C,
+            _ => PriceClass::B,
         }
     }
 }

@@ -17,7 +17,7 @@ const DIGIT_PITCH: f64 = 3.5;
 const STROKE_HALF_WIDTH: f64 = 0.35;
 /// Depth of a stroke, mm: two printed layers.
 pub const MARK_DEPTH: f64 = 0.4;
-/// Least width of the face around a mark, mm.
+/// Smallest width of the face around a mark, mm.
 const MIN_BORDER: f64 = 0.7;
 /// Distance in x between the positions tried for a mark, mm; twice the distance in y.
 const POSITION_STEP: f64 = 0.8;
@@ -47,10 +47,10 @@ pub fn draw_strokes(text: &str, position: Vector) -> Vec<Shape> {
     for (index, digit) in text.chars().enumerate() {
         let corner = position + Vector::new(DIGIT_PITCH * index as f64, 0.0);
         let to_point = |(x, y): (f64, f64)| corner + Vector::new(x * width, y * height);
-        let bars = digit_strokes(digit).iter();
-        strokes.extend(
-            bars.map(|[from, to]| Shape::bar(to_point(*from), to_point(*to), STROKE_HALF_WIDTH)),
-        );
+        let to_bar = |[from, to]: &[(f64, f64); 2]| {
+            Shape::bar(to_point(*from), to_point(*to), STROKE_HALF_WIDTH)
+        };
+        strokes.extend(digit_strokes(digit).iter().map(to_bar));
     }
     strokes
 }
@@ -72,7 +72,7 @@ pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
         let upper_outline = outlines.get(layer + 1);
         let is_covered = |point| upper_outline.is_some_and(|outline| outline.contains(point));
         let is_free = |point: Vector| outlines[layer].contains(point) && !is_covered(point);
-        let Some(position) = find_position(&outlines[layer], text, is_free) else {
+        let Some(position) = find_free_corner(&outlines[layer], text, is_free) else {
             continue;
         };
         let mut layers = prisms.to_vec();
@@ -86,7 +86,7 @@ pub fn engrave_mark(prisms: &[Prism], text: &str) -> Option<Vec<Prism>> {
 }
 
 /// Finds the lower left corner of a free place for a mark in an outline; `None` if there is no room.
-fn find_position(
+fn find_free_corner(
     outline: &Outline,
     text: &str,
     is_free: impl Fn(Vector) -> bool,

@@ -43,55 +43,55 @@ pub struct Segment {
     pub bulge: f64,
 }
 
-/// The outline of a layer, as separate pieces.
+/// The outline of a layer: its islands, which are not connected to each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Outline {
-    /// Pieces, each as its outer loop and then the loops of its holes.
-    pub pieces: Vec<Vec<Loop>>,
+    /// Islands, each as its outer loop and then the loops of its holes.
+    pub islands: Vec<Vec<Loop>>,
 }
 
 impl Outline {
     /// Computes the outline of a layer.
     pub fn from_prism(prism: &Prism) -> Self {
-        let (mut pieces, gaps) = unite(prism.filled_shapes.iter().map(to_polyline));
+        let (mut islands, gaps) = unite(prism.filled_shapes.iter().map(to_polyline));
         let cut_lines = prism.cut_shapes.iter().map(to_polyline);
         let (mut cuts, _) = unite(gaps.into_iter().chain(cut_lines));
-        // Cuts that open a piece change its outer loop; the others are holes.
+        // Cuts that open an island change its outer loop; the others are holes.
         cuts.retain(|cut| {
-            let mut changes_piece = false;
-            let mut remaining_pieces = Vec::new();
-            for piece in pieces.drain(..) {
-                let difference = piece.boolean(cut, BooleanOp::Not);
+            let mut changes_island = false;
+            let mut remaining_islands = Vec::new();
+            for island in islands.drain(..) {
+                let difference = island.boolean(cut, BooleanOp::Not);
                 match difference.result_info {
                     BooleanResultInfo::Intersected | BooleanResultInfo::Overlapping => {
-                        changes_piece = true;
-                        remaining_pieces
+                        changes_island = true;
+                        remaining_islands
                             .extend(difference.pos_plines.into_iter().map(|result| result.pline));
                     }
-                    BooleanResultInfo::Pline1InsidePline2 => changes_piece = true,
-                    _ => remaining_pieces.push(piece),
+                    BooleanResultInfo::Pline1InsidePline2 => changes_island = true,
+                    _ => remaining_islands.push(island),
                 }
             }
-            pieces = remaining_pieces;
-            !changes_piece
+            islands = remaining_islands;
+            !changes_island
         });
-        let to_loops = |piece: Polyline<f64>| {
+        let to_loops = |island: Polyline<f64>| {
             let holes = cuts.iter().filter(|cut| {
-                let result_info = piece.boolean(*cut, BooleanOp::Not).result_info;
+                let result_info = island.boolean(*cut, BooleanOp::Not).result_info;
                 matches!(result_info, BooleanResultInfo::Pline2InsidePline1)
             });
             let holes = holes.map(|hole| Loop::from_polyline(hole, false));
-            std::iter::once(Loop::from_polyline(&piece, true))
+            std::iter::once(Loop::from_polyline(&island, true))
                 .chain(holes)
                 .collect()
         };
-        let pieces = pieces.into_iter().map(to_loops).collect();
-        Self { pieces }
+        let islands = islands.into_iter().map(to_loops).collect();
+        Self { islands }
     }
 
-    /// All loops of all pieces.
+    /// All loops of all islands.
     pub fn loops(&self) -> impl Iterator<Item = &Loop> {
-        self.pieces.iter().flatten()
+        self.islands.iter().flatten()
     }
 
     /// Computes the enclosed area, mm^2.
@@ -144,11 +144,10 @@ impl Loop {
         let mut arcs = self.sides_with_end_points().map(|(side, to)| side.arc(to));
         let (centre, radius) = arcs.next()??;
         let is_same_circle = |arc: Option<(Vector, f64)>| {
-            let is_near = |(other_centre, other_radius): (Vector, f64)| {
+            arc.is_some_and(|(other_centre, other_radius)| {
                 (other_centre - centre).length() < SAME_POINT_MM
                     && (other_radius - radius).abs() < SAME_POINT_MM
-            };
-            arc.is_some_and(is_near)
+            })
         };
         arcs.all(is_same_circle).then_some((centre, radius))
     }
@@ -243,16 +242,16 @@ type Polylines = Vec<Polyline<f64>>;
 
 /// Unites outlines. Returns the outer lines of the union, and the gaps that these lines enclose.
 fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines) {
-    let (mut pieces, mut gaps) = (Polylines::new(), Polylines::new());
+    let (mut islands, mut gaps) = (Polylines::new(), Polylines::new());
     for outline in outlines {
         let mut union_line = outline.clone();
-        let mut separate_pieces = Vec::new();
+        let mut separate_islands = Vec::new();
         let mut enclosed_gaps = Vec::new();
-        for piece in pieces {
-            let mut union = piece.boolean(&union_line, BooleanOp::Or);
+        for island in islands {
+            let mut union = island.boolean(&union_line, BooleanOp::Or);
             let is_disjoint = matches!(union.result_info, BooleanResultInfo::Disjoint);
             if is_disjoint || union.pos_plines.len() != 1 {
-                separate_pieces.push(piece);
+                separate_islands.push(island);
             } else {
                 union_line = union.pos_plines.remove(0).pline;
                 enclosed_gaps.extend(union.neg_plines.into_iter().map(|gap| gap.pline));
@@ -262,10 +261,10 @@ fn unite(outlines: impl Iterator<Item = Polyline<f64>>) -> (Polylines, Polylines
         let remaining_gaps = gaps.into_iter().flat_map(cut_gap);
         let remaining_gaps = remaining_gaps.map(|result| result.pline);
         gaps = remaining_gaps.chain(enclosed_gaps).collect();
-        separate_pieces.push(union_line);
-        pieces = separate_pieces;
+        separate_islands.push(union_line);
+        islands = separate_islands;
     }
-    (pieces, gaps)
+    (islands, gaps)
 }
 
 /// Converts a shape to its outline, counter-clockwise.
@@ -364,25 +363,25 @@ mod tests {
             .map(|i| Shape::bar(corners[i], corners[(i + 1) % 4], 2.0 + 0.01 * i as f64))
             .collect();
         let ring = build_outline(bars.clone(), Vec::new());
-        assert_eq!(ring.pieces.len(), 1);
-        assert_eq!(ring.pieces[0].len(), 2);
+        assert_eq!(ring.islands.len(), 1);
+        assert_eq!(ring.islands[0].len(), 2);
         assert!(!ring.contains(vector(10.0, 10.0)) && ring.contains(vector(10.0, 0.0)));
         let crossing_bar = Shape::bar(vector(10.0, 0.0), vector(10.0, 20.0), 1.0);
         let filled = build_outline([&bars[..], &[crossing_bar]].concat(), Vec::new());
-        assert_eq!(filled.pieces[0].len(), 3);
+        assert_eq!(filled.islands[0].len(), 3);
         assert!(filled.contains(vector(10.0, 10.0)) && !filled.contains(vector(5.0, 10.0)));
     }
 
     #[test]
-    fn a_slot_across_a_plate_leaves_two_pieces() {
+    fn a_slot_across_a_plate_leaves_two_islands() {
         let plate = Shape::rectangle(vector(0.0, 0.0), vector(20.0, 10.0), 1.0);
         let slot = Shape::rectangle(vector(0.0, 0.0), vector(30.0, 2.0), 0.0);
         let hole = Shape::disc(vector(3.0, 3.0), 1.0);
         let halves = build_outline(vec![plate], vec![slot, hole]);
-        assert_eq!(halves.pieces.len(), 2);
+        assert_eq!(halves.islands.len(), 2);
         let area = 200.0 - (4.0 - PI) - 40.0 - PI;
         assert!((halves.area() - area).abs() < 1e-9);
-        assert_eq!(halves.pieces.iter().map(Vec::len).sum::<usize>(), 3);
+        assert_eq!(halves.islands.iter().map(Vec::len).sum::<usize>(), 3);
     }
 
     #[test]

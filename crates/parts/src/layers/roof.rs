@@ -1,7 +1,7 @@
 //! Roofs that a printer can make without supports.
 //!
 //! A pocket on the underside of a part has a roof with a hole in the middle. A printer can span the pocket with
-//! straight lines from edge to edge, but cannot draw a ring in mid-air. One layer therefore closes the hole; it is
+//! straight lines from edge to edge, but cannot draw a ring in mid-air. One layer therefore bridges the hole, and is
 //! drilled through after printing.
 
 use lizard_kinematics::Vector;
@@ -10,15 +10,15 @@ use crate::layers::body::Prism;
 use crate::layers::outline::{Loop, Outline};
 use crate::layers::shape::Shape;
 
-/// Height of a printed layer, mm; one layer closes a hole.
+/// Height of a printed layer, mm; one layer bridges a hole.
 pub const PRINT_LAYER_MM: f64 = 0.2;
 /// Distance from a hole's edge at which the layer below must support it, mm.
 const SUPPORT_DISTANCE_MM: f64 = 0.3;
 /// Tolerance within which heights count as equal, mm.
 const SAME_HEIGHT_MM: f64 = 1e-6;
 
-/// Closes each hole that would begin in mid-air with one printed layer. Also returns the number of these holes.
-pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
+/// Bridges each hole that would begin in mid-air with one printed layer. Also returns the number of these holes.
+pub fn bridge_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
     let mut layers = prisms.to_vec();
     let mut count = 0;
     for (index, pair) in prisms.windows(2).enumerate() {
@@ -27,7 +27,7 @@ pub fn close_unsupported_holes(prisms: &[Prism]) -> (Vec<Prism>, usize) {
         let low = layer_above.z[0];
         let high = compute_layer_top(low);
         for hole in &layer_above.cut_shapes {
-            if !begins_in_air(hole, layer_above, &outline_below) {
+            if !begins_in_mid_air(hole, layer_above, &outline_below) {
                 continue;
             }
             count += 1;
@@ -68,14 +68,15 @@ pub fn find_unsupported_holes(prisms: &[Prism]) -> Vec<Vector> {
     for pair in prisms.windows(2) {
         let outline_below = Outline::from_prism(&pair[0]);
         let holes = pair[1].cut_shapes.iter();
-        let unsupported_holes = holes.filter(|hole| begins_in_air(hole, &pair[1], &outline_below));
+        let unsupported_holes =
+            holes.filter(|hole| begins_in_mid_air(hole, &pair[1], &outline_below));
         centres.extend(unsupported_holes.map(Shape::middle));
     }
     centres
 }
 
 /// True if material surrounds a hole, without material below it.
-fn begins_in_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
+fn begins_in_mid_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
     let outline = Outline::from_prism(prism);
     let widened_hole = Shape {
         points: hole.points.clone(),
@@ -83,8 +84,8 @@ fn begins_in_air(hole: &Shape, prism: &Prism, outline_below: &Outline) -> bool {
     };
     let hole_surround = Outline::from_prism(&Prism::solid([widened_hole], prism.z));
     let mut points = hole_surround.loops().flat_map(Loop::sides_with_end_points);
-    let is_in_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
-    points.all(|(side, to)| is_in_air(side.from) && is_in_air(side.midpoint(to)))
+    let is_in_mid_air = |point: Vector| outline.contains(point) && !outline_below.contains(point);
+    points.all(|(side, to)| is_in_mid_air(side.from) && is_in_mid_air(side.midpoint(to)))
 }
 
 #[cfg(test)]
@@ -92,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_closing_layer_contains_exactly_one_sampled_height() {
+    fn a_bridging_layer_contains_exactly_one_sampled_height() {
         for low in [2.0, 4.1, 1.33, 3.0, 0.85] {
             let high = compute_layer_top(low);
             // Slicers sample a part at 0.1, 0.3, 0.5 mm and so on.

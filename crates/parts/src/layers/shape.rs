@@ -48,7 +48,7 @@ impl Shape {
     pub fn hexagon(centre: Vector, across_flats: f64) -> Self {
         let circumradius = across_flats / f64::sqrt(3.0);
         let angles = [0.0, 60.0, 120.0, 180.0, 240.0, 300.0];
-        let corners = angles.map(|angle| centre + Vector::direction(angle) * circumradius);
+        let corners = angles.map(|angle| centre + Vector::from_angle(angle) * circumradius);
         Self::hull(&corners, 0.0)
     }
 
@@ -112,8 +112,9 @@ impl Shape {
 
     /// Returns the mirror image about the x axis.
     pub fn mirrored(&self) -> Self {
+        let points = self.points.iter().rev();
         Self {
-            points: self.points.iter().rev().map(|p| p.mirrored()).collect(),
+            points: points.map(|point| point.mirrored_in_x_axis()).collect(),
             radius: self.radius,
         }
     }
@@ -125,8 +126,8 @@ impl Shape {
         if self.contains(other.points[0]) || other.contains(self.points[0]) {
             distance = 0.0;
         } else {
-            for (a, b) in self.edges() {
-                for (c, d) in other.edges() {
+            for (a, b) in self.sides() {
+                for (c, d) in other.sides() {
                     distance = distance.min(segment_distance(a, b, c, d));
                 }
             }
@@ -189,7 +190,8 @@ impl Shape {
     }
 
     /// Computes the largest separation along this polygon's side normals (separating-axis test). A side's separation is
-    /// the other polygon's least distance in front of the side's line. Minus infinity for a disc, which has no sides.
+    /// the other polygon's smallest distance in front of the side's line. Minus infinity for a disc, which has no
+    /// sides.
     fn max_side_separation(&self, other: &Self) -> f64 {
         let separations = self.side_lines().map(|(from, normal)| {
             let distances = other.points.iter().map(|&point| normal.dot(point - from));
@@ -200,11 +202,11 @@ impl Shape {
 
     /// True if a point is inside the polygon or on its edge; always false for discs and bars.
     fn contains(&self, point: Vector) -> bool {
-        self.points.len() > 2 && self.edges().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
+        self.points.len() > 2 && self.sides().all(|(a, b)| (b - a).cross(point - a) >= 0.0)
     }
 
     /// Returns the sides of the polygon; a bar has one, a disc has one of length 0.
-    fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> {
+    fn sides(&self) -> impl Iterator<Item = (Vector, Vector)> {
         let n = self.points.len();
         let side_count = if n == 2 { 1 } else { n };
         (0..side_count).map(move |i| (self.points[i], self.points[(i + 1) % n]))
@@ -213,8 +215,11 @@ impl Shape {
 
 /// Computes the distance between two line segments, mm.
 fn segment_distance(a: Vector, b: Vector, c: Vector, d: Vector) -> f64 {
-    let turn = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
-    if turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0 {
+    let orientation = |p: Vector, q: Vector, r: Vector| (q - p).cross(r - p);
+    let are_on_both_sides = |p: Vector, q: Vector, from: Vector, to: Vector| {
+        orientation(from, to, p) * orientation(from, to, q) < 0.0
+    };
+    if are_on_both_sides(c, d, a, b) && are_on_both_sides(a, b, c, d) {
         return 0.0;
     }
     let end_distance = segment_point_distance(a, c, d).min(segment_point_distance(b, c, d));
@@ -270,27 +275,27 @@ mod tests {
     }
 
     #[test]
-    fn the_depth_in_a_hole_is_the_least_clearance_to_its_edge() {
+    fn the_depth_in_a_hole_is_the_smallest_clearance_to_its_edge() {
         let assert_near = |value: f64, expected: f64| {
             assert!(
                 (value - expected).abs() < 1e-12,
                 "expected {expected}, got {value}"
             )
         };
-        let no_shift = vector(0.0, 0.0);
+        let no_displacement = vector(0.0, 0.0);
         let slot = Shape::bar(vector(0.0, 0.0), vector(5.0, 0.0), 1.6);
         let pin_depth_at =
-            |x: f64, y: f64| Shape::disc(vector(x, y), 1.5).depth_in(&slot, no_shift);
+            |x: f64, y: f64| Shape::disc(vector(x, y), 1.5).depth_in(&slot, no_displacement);
         assert_near(pin_depth_at(5.0, 0.0), 0.1);
         assert_near(pin_depth_at(2.0, 0.05), 0.05);
         assert_near(pin_depth_at(6.0, 0.0), -0.9);
         let bore = Shape::rectangle(vector(0.0, 0.0), vector(50.0, 6.4), 0.0);
         let rod = Shape::rectangle(vector(1.0, 0.0), vector(40.0, 6.0), 1.0);
-        assert_near(rod.depth_in(&bore, no_shift), 0.2);
-        // A shift along the bore keeps the clearance until the rod nears the bore's end; a shift across it does not.
+        assert_near(rod.depth_in(&bore, no_displacement), 0.2);
+        // A displacement along the bore keeps the clearance until the rod nears the bore's end; one across it does not.
         assert_near(rod.depth_in(&bore, vector(3.0, 0.1)), 0.1);
         assert_near(rod.depth_in(&bore, vector(3.9, 0.0)), 0.1);
-        assert!(bore.depth_in(&rod, no_shift) < 0.0);
+        assert!(bore.depth_in(&rod, no_displacement) < 0.0);
     }
 
     #[test]

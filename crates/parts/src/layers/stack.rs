@@ -17,7 +17,7 @@ pub const SCREW_LENGTHS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 const STANDOFF_LENGTHS: [f64; 9] = [10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0];
 
 /// Gap between a screw's head or nut and the part that turns under it, mm.
-pub const HEAD_PLAY: f64 = 0.2;
+pub const HEAD_CLEARANCE: f64 = 0.2;
 /// Height of a hexagonal head, mm (ISO 4017).
 pub const HEX_HEAD_HEIGHT: f64 = 2.0;
 /// Height of the seat under a servo's flange, mm; the seat lifts the horn above the strut.
@@ -27,7 +27,7 @@ const SEAT_HEIGHT: f64 = 2.6;
 const BEARING_HEIGHT: f64 = 8.5;
 /// Distance from the underside of a leg's crank up to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;
-/// Least thickness above a nut that is sunk into a part, mm.
+/// Smallest thickness above a nut that is sunk into a part, mm.
 const MIN_NUT_COVER: f64 = 1.2;
 /// Thickness of a strut's floor under its spring, mm.
 const STRUT_FLOOR_THICKNESS: f64 = 1.6;
@@ -92,8 +92,8 @@ pub struct Stack {
     pub hex_head_face: f64,
     /// The pocket in the links' tops for the horns.
     pub horn_pocket: Span,
-    /// The recess in the links' tops for the heads of the anchors' screws.
-    pub head_recess: Span,
+    /// The counterbore in the links' tops for the heads of the anchors' screws.
+    pub counterbore: Span,
     /// The lower couplers of head and tail.
     pub lower_coupler: Span,
     /// The upper couplers of head and tail.
@@ -140,10 +140,10 @@ impl Stack {
         let bore_low = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
         let bore = [bore_low, bore_low + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
-        let slider_top =
-            find_screw_length(rod[1] + HEAD_PLAY + screw.nut_height - link[0] - HEX_HEAD_HEIGHT)
-                + link[0]
-                + HEX_HEAD_HEIGHT;
+        let slider_top = find_screw_length(
+            rod[1] + HEAD_CLEARANCE + screw.nut_height - link[0] - HEX_HEAD_HEIGHT,
+        ) + link[0]
+            + HEX_HEAD_HEIGHT;
         let deck = STANDOFF_LENGTHS
             .into_iter()
             .find(|length| *length >= slider_top + gap)
@@ -165,7 +165,7 @@ impl Stack {
             servo_bottom: seat[1] - parts.servo.flange_height,
             crank,
             bearing,
-            anchor: [crank[1], strut[0] - HEAD_PLAY],
+            anchor: [crank[1], strut[0] - HEAD_CLEARANCE],
             strut_floor: strut,
             strut_wall: [strut[1], wall_top],
             coil_middle: coil,
@@ -174,7 +174,7 @@ impl Stack {
             rigid_strut: [strut[0], wall_top],
             link,
             horn_pocket: [arm_z, link[1]],
-            head_recess: [link[1] - screw.head_height - HEAD_PLAY, link[1]],
+            counterbore: [link[1] - screw.head_height - HEAD_CLEARANCE, link[1]],
             lower_coupler,
             upper_coupler,
             sleeve: [lower_coupler[0], bore[1] + SLEEVE_WALL_THICKNESS],
@@ -213,7 +213,7 @@ pub fn find_screw_length(min: f64) -> f64 {
 }
 
 /// True if this is a common screw length, mm.
-pub fn is_screw_sold(length: f64) -> bool {
+pub fn is_common_screw_length(length: f64) -> bool {
     SCREW_LENGTHS
         .iter()
         .any(|stock_length| (stock_length - length).abs() < 1e-9)

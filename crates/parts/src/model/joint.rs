@@ -5,7 +5,7 @@ use lizard_robot::SLOT_LENGTH;
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::loops::LoopJoint;
+use crate::model::cut_joints::CutJoint;
 use crate::model::node::Node;
 use crate::model::text::{MILLI, round};
 use crate::model::writer::Writer;
@@ -17,7 +17,7 @@ impl Node {
     }
 }
 
-impl LoopJoint {
+impl CutJoint {
     /// Name of the joint without spaces.
     pub(super) fn identifier(&self) -> String {
         self.name.replace(' ', "_")
@@ -70,7 +70,7 @@ impl Writer<'_> {
             ]
             .map(|value| value * MILLI),
             (None, Node::OnMount(Mount::Rod(_))) => [0.0, motors.joint_friction.slider_force],
-            (None, Node::Pad(_)) => [self.leaf_spring()[1], 0.0],
+            (None, Node::Pad(_)) => [self.leaf_damping(), 0.0],
             // Grease damps a link that moves freely within its play.
             (None, Node::OnMount(Mount::Link(_))) => [1e-5, 0.0],
             (None, Node::SlotPin(_)) => [0.1, 0.0],

@@ -1,6 +1,6 @@
 //! Mesh files for URDF and SDF, one for each body and material.
 
-use crate::files::File;
+use crate::files::OutputFile;
 use crate::files::mesh::Mesh;
 use crate::files::stl::encode_stl;
 use crate::model::material::Material;
@@ -22,7 +22,7 @@ pub(super) fn format_mesh_name(node: Node, material: Material) -> String {
 }
 
 /// Makes the mesh files of all bodies, mm, each in the frame of its body.
-pub(super) fn make_mesh_files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
+pub(super) fn make_mesh_files(pieces: &[Piece], nodes: &[Node]) -> Vec<OutputFile> {
     let mut mesh_files = Vec::new();
     for &node in nodes {
         for material in list_materials(pieces, node) {
@@ -36,7 +36,7 @@ pub(super) fn make_mesh_files(pieces: &[Piece], nodes: &[Node]) -> Vec<File> {
                 mesh.triangles
                     .extend(triangles.map(|triangle| triangle.map(|corner| first_corner + corner)));
             }
-            mesh_files.push(File {
+            mesh_files.push(OutputFile {
                 bytes: encode_stl(&node.name(), &mesh),
                 path: format_mesh_name(node, material),
             });

@@ -2,8 +2,8 @@
 //!
 //! Every part of the assembly becomes part of a rigid body, with the mass and inertia of its own volume and its
 //! placement in the assembly. Hinges and slides join the bodies as pins and sleeves do. MJCF and URDF require a tree,
-//! so each closed loop is cut at one of its joints (`loops.rs`); MJCF and SDF close the loop again. The files contain
-//! no gait logic. MJCF, with which an independent engine makes the robot walk, also has motors and a floor.
+//! so each closed loop is cut at one of its joints (`cut_joints.rs`); MJCF and SDF close the loop again. The files
+//! contain no gait logic. MJCF, with which an independent engine makes the robot walk, also has motors and a floor.
 //!
 //! # Simplifications
 //! - Only pads and floor have contact. A separate proof shows that no two parts collide ([`crate::Proof`]).
@@ -14,10 +14,10 @@
 //! - The pads' friction is equal in all directions, as in MuJoCo. The file has the pads' ratio of backward to forward
 //!   friction, and `tools/physics/grain.py` applies this ratio.
 
+mod cut_joints;
 mod floor;
 mod inertia;
 mod joint;
-mod loops;
 mod material;
 mod meshes;
 mod mjcf;
@@ -33,18 +33,18 @@ use lizard_kinematics::Solution;
 
 use crate::bodies::assembly::Assembly;
 use crate::build_error::BuildError;
-use crate::files::File;
+use crate::files::OutputFile;
 pub use floor::{Block, Floor};
 use node::Node;
 use pieces::{Piece, compute_pieces};
-pub use scene::{Course, Pads, Scene, StrutSpring};
-use text::Xml;
+pub use scene::{Pads, Scene, StrutSpring, Trajectory};
+use text::XmlWriter;
 use writer::Writer;
 
 /// Formats a scene as an MJCF file for MuJoCo.
 ///
 /// # Errors
-/// Returns [`BuildError::OpenSurface`] for a part whose layers do not form a closed surface.
+/// Returns [`BuildError::OpenSurface`] if the layers of a part do not form a closed surface.
 pub fn format_mjcf(
     assembly: &Assembly,
     neutral: &Solution,
@@ -63,7 +63,7 @@ impl<'a> Pieces<'a> {
     /// Computes the shapes and masses for a scene.
     ///
     /// # Errors
-    /// Returns [`BuildError::OpenSurface`] for a part whose layers do not form a closed surface.
+    /// Returns [`BuildError::OpenSurface`] if the layers of a part do not form a closed surface.
     pub fn compute(assembly: &'a Assembly, scene: &Scene) -> Result<Self, BuildError> {
         let pieces = compute_pieces(assembly, scene)?;
         Ok(Self { assembly, pieces })
@@ -90,7 +90,7 @@ impl<'a> Pieces<'a> {
 
     /// Makes the meshes for URDF and SDF, each with its file name in the mesh folder.
     #[must_use]
-    pub fn make_meshes(&self, scene: &Scene) -> Vec<File> {
+    pub fn make_meshes(&self, scene: &Scene) -> Vec<OutputFile> {
         let nodes = Node::all(scene.strut_spring.is_some(), scene.play > 0.0);
         meshes::make_mesh_files(&self.pieces, &nodes)
     }
@@ -106,7 +106,7 @@ impl<'a> Pieces<'a> {
             neutral,
             scene,
             pieces: &self.pieces,
-            xml: Xml::default(),
+            xml: XmlWriter::default(),
         };
         write(&mut writer);
         writer.xml.finish()

@@ -1,6 +1,6 @@
-//! Rigid bodies of the model, each with its parent and its motion on the parent.
+//! Rigid bodies of the model, each with its parent and its freedom on the parent.
 //!
-//! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`loops.rs`).
+//! The bodies form a tree: each closed loop of the robot is cut at one of its joints (`cut_joints.rs`).
 
 use lizard_kinematics::Side;
 use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
@@ -80,7 +80,7 @@ impl Node {
         })
     }
 
-    /// Motion of the node on its parent.
+    /// Freedom of the node on its parent.
     pub fn freedom(self) -> Freedom {
         match self {
             Self::OnMount(Mount::Chassis) => Freedom::Free,

@@ -16,7 +16,7 @@ use crate::layers::outline::Outline;
 use crate::layers::shape::Shape;
 use crate::part::compute_volume;
 
-/// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to leaf and column.
+/// Radius of a foot's post about its middle, mm. Layers of the foot that are farther away belong to leaf or column.
 const POST_RADIUS: f64 = 8.0;
 
 /// The layers of a part that move with one body of the model.
@@ -43,8 +43,8 @@ pub(super) fn compute_pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<P
     let all_bodies = assembly.bodies().iter();
     let kept_bodies = all_bodies.filter(|body| !(swaps_struts && is_strut(body)));
     let replacement_bodies = assembly.alternatives().iter().filter(|_| swaps_struts);
-    let springs = (0..4).filter(|_| swaps_struts && has_slotted_struts);
-    let mut pieces: Vec<Piece> = springs
+    let missing_springs = (0..4).filter(|_| swaps_struts && has_slotted_struts);
+    let mut pieces: Vec<Piece> = missing_springs
         .map(|servo| make_spring_piece(assembly, servo))
         .collect();
     for body in kept_bodies.chain(replacement_bodies) {
@@ -73,7 +73,8 @@ pub(super) fn compute_pieces(assembly: &Assembly, scene: &Scene) -> Result<Vec<P
     Ok(pieces)
 }
 
-/// Makes the spring of a slotted strut that is missing in the assembly: a bar as wide as the coil, from screw to screw.
+/// Makes the spring of a slotted strut if the assembly has rigid struts: a bar as wide as the coil, from screw to
+/// screw.
 fn make_spring_piece(assembly: &Assembly, servo: usize) -> Piece {
     let spring = assembly.robot().parts().spring;
     let length = assembly.layout().legs[servo].strut_length;
@@ -99,7 +100,7 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
     match body.mount {
         Mount::Foot(servo) => {
             let foot = assembly.layout().legs[servo].foot;
-            let is_post = |prism: &Prism| (compute_centroid(prism) - foot).length() < POST_RADIUS;
+            let is_post = |prism: &Prism| (layer_centroid(prism) - foot).length() < POST_RADIUS;
             let (post_prisms, other_prisms): (Vec<_>, Vec<_>) =
                 body.prisms.iter().cloned().partition(is_post);
             let mut groups = vec![
@@ -117,8 +118,8 @@ fn split_by_node(assembly: &Assembly, scene: &Scene, body: &Body) -> Vec<(Node, 
     }
 }
 
-/// Computes the centroid of a layer, mm.
-fn compute_centroid(prism: &Prism) -> Vector {
+/// Centroid of a layer, mm.
+fn layer_centroid(prism: &Prism) -> Vector {
     let outline = Outline::from_prism(prism);
     outline.first_moment() * (1.0 / outline.area())
 }

@@ -32,9 +32,9 @@ pub struct Scene {
     pub limb_mass_factor: f64,
     /// True if the servos drive in bursts, as analog ones do.
     pub drives_in_bursts: bool,
-    /// Target angles of the servos; `None` for a standing robot.
-    pub course: Option<Course>,
-    /// True to include the parts' shapes; without them the file is a fiftieth as long.
+    /// Target angles of the servos; `None` if the robot stands still.
+    pub trajectory: Option<Trajectory>,
+    /// True to include the shapes of the parts; without them, the file is one fiftieth as long.
     pub has_shapes: bool,
 }
 
@@ -60,7 +60,7 @@ impl Scene {
             pads: Pads::Domes(assembly.robot().parts().pad.radius),
             limb_mass_factor: 1.0,
             drives_in_bursts: false,
-            course: None,
+            trajectory: None,
             has_shapes: true,
         }
     }
@@ -88,9 +88,9 @@ pub struct StrutSpring {
 
 /// The servos' target angles, frame by frame.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Course {
+pub struct Trajectory {
     /// Name of the gait.
-    pub gait: String,
+    pub gait_name: String,
     /// Servo targets in each frame of 20 ms: sweeps from neutral, deg, counter-clockwise positive, servo order.
     pub frames: Vec<[f64; 4]>,
     /// Start of the cycles to measure, s from the first frame.
@@ -98,7 +98,7 @@ pub struct Course {
     /// Period of a cycle, s.
     pub period: f64,
     /// Number of cycles to measure.
-    pub measured_cycles: u32,
+    pub measured_cycle_count: u32,
 }
 
 /// Duration of the motion from neutral to the gait's first pose, s.
@@ -106,11 +106,16 @@ const APPROACH_DURATION_S: f64 = 0.4;
 /// Duration of the pause in the gait's first pose, until the body is at rest, s.
 const SETTLE_DURATION_S: f64 = 0.3;
 
-impl Course {
-    /// Creates the course of `cycles` cycles of a gait at its own pace, after a slow approach from neutral, with the
-    /// angles of the firmware's tables. The last `measured_cycles` cycles are measured.
+impl Trajectory {
+    /// Creates the trajectory of `cycle_count` cycles of a gait at its own pace, after a slow approach from neutral,
+    /// with the angles of the firmware's tables. The last `measured_cycle_count` cycles are measured.
     #[must_use]
-    pub fn for_gait(robot: &Robot, gait: &CheckedGait, cycles: u32, measured_cycles: u32) -> Self {
+    pub fn for_gait(
+        robot: &Robot,
+        gait: &CheckedGait,
+        cycle_count: u32,
+        measured_cycle_count: u32,
+    ) -> Self {
         let angles_at = |seconds: f64| {
             let phase = (gait.phase_at(seconds) * 65536.0).round() as i64;
             gait.table_angles(phase.rem_euclid(65536) as u16)
@@ -121,7 +126,7 @@ impl Course {
         let start_sweeps = to_sweeps(angles_at(0.0));
         let start_s = APPROACH_DURATION_S + SETTLE_DURATION_S;
         let period = gait.period();
-        let end_s = start_s + f64::from(cycles) * period;
+        let end_s = start_s + f64::from(cycle_count) * period;
         let targets_at = |frame: usize| {
             let time_s = frame as f64 / FRAMES_PER_SECOND;
             match time_s < start_s {
@@ -131,11 +136,11 @@ impl Course {
         };
         let last_frame = (end_s * FRAMES_PER_SECOND).ceil() as usize;
         Self {
-            gait: gait.name().to_owned(),
+            gait_name: gait.name().to_owned(),
             frames: (0..=last_frame).map(targets_at).collect(),
-            measure_start: start_s + f64::from(cycles - measured_cycles) * period,
+            measure_start: start_s + f64::from(cycle_count - measured_cycle_count) * period,
             period,
-            measured_cycles,
+            measured_cycle_count,
         }
     }
 }

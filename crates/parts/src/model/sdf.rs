@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::model::loops;
+use crate::model::cut_joints::list_cut_joints;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
 use crate::model::scene::StrutSpring;
@@ -25,11 +25,11 @@ impl Writer<'_> {
         for node in self.nodes() {
             self.write_sdf_joint(node);
         }
-        for loop_joint in loops::list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
-            let [first, second] = loop_joint.bodies.map(Node::identifier);
+        for cut_joint in list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+            let [first, second] = cut_joint.bodies.map(Node::identifier);
             // A ball joint is enough: all axes are vertical, and a hinge would constrain their direction twice.
-            self.write_sdf_connection(&loop_joint.identifier(), "ball", &first, &second);
-            let position = format_metres([loop_joint.point.x, loop_joint.point.y, 0.0]);
+            self.write_sdf_connection(&cut_joint.identifier(), "ball", &first, &second);
+            let position = format_metres([cut_joint.point.x, cut_joint.point.y, 0.0]);
             let pose = format!(r#"pose relative_to="{first}""#);
             self.xml.write_value(pose, format_args!("{position} 0 0 0"));
             self.xml.close();
@@ -40,14 +40,14 @@ impl Writer<'_> {
         self.xml
             .open(format!(r#"link name="{}""#, node.identifier()));
         let placement = self.placement_on_parent(node);
-        let turn = placement.x_axis.angle().to_radians();
+        let yaw = placement.x_axis.angle().to_radians();
         match self.parent(node) {
             Some(parent) => {
                 let pose = format!(r#"pose relative_to="{}""#, parent.identifier());
-                self.write_pose(&pose, [placement.origin.x, placement.origin.y, 0.0], turn);
+                self.write_pose(&pose, [placement.origin.x, placement.origin.y, 0.0], yaw);
             }
             // The model's x axis points forward, its y axis to the left.
-            None => self.write_pose("pose", [0.0, 0.0, self.chassis_height()], turn - FRAC_PI_2),
+            None => self.write_pose("pose", [0.0, 0.0, self.chassis_height()], yaw - FRAC_PI_2),
         }
         let inertia = self.compute_inertia(node);
         self.xml.open("inertial");
@@ -141,10 +141,10 @@ impl Writer<'_> {
         self.xml.close();
     }
 
-    /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` for a joint without a spring.
+    /// Relaxed position (m) and stiffness (N/m) of the spring in a body's joint; `None` if the joint has no spring.
     fn spring_values(&self, node: Node) -> Option<[f64; 2]> {
         match (node, self.scene.strut_spring) {
-            (Node::Pad(_), _) => Some([0.0, self.leaf_spring()[0]]),
+            (Node::Pad(_), _) => Some([0.0, self.leaf_stiffness()]),
             (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
                 Some([-preload / rate * MILLI, rate / MILLI].map(round))
             }
@@ -160,9 +160,9 @@ impl Writer<'_> {
         self.xml.write_value("child", child);
     }
 
-    fn write_pose(&mut self, element: &str, position: [f64; 3], turn: f64) {
-        let (position, turn) = (format_metres(position), round(turn));
+    fn write_pose(&mut self, element: &str, position: [f64; 3], yaw: f64) {
+        let (position, yaw) = (format_metres(position), round(yaw));
         self.xml
-            .write_value(element, format_args!("{position} 0 0 {turn}"));
+            .write_value(element, format_args!("{position} 0 0 {yaw}"));
     }
 }

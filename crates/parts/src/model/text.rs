@@ -1,4 +1,4 @@
-//! XML elements, numbers and names as the model files write them.
+//! The formats of XML elements, numbers and names in the model files.
 
 use std::fmt::{Display, Write};
 
@@ -34,13 +34,13 @@ pub(super) fn escape_attribute(value: &str) -> String {
 
 /// A writer of XML text, one element per line. An element is passed as its name and attributes.
 #[derive(Default)]
-pub(super) struct Xml {
+pub(super) struct XmlWriter {
     text: String,
     /// Names of the open elements, outermost first.
     open_elements: Vec<String>,
 }
 
-impl Xml {
+impl XmlWriter {
     fn write_line(&mut self, text: impl Display) {
         let indent = self.open_elements.len();
         let _ = writeln!(self.text, "{:indent$}{text}", "");
@@ -52,7 +52,7 @@ impl Xml {
     }
 
     /// Writes an element without children.
-    pub fn write_empty_element(&mut self, element: impl Display) {
+    pub fn write_empty(&mut self, element: impl Display) {
         self.write_line(format_args!("<{element}/>"));
     }
 

@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 use lizard_robot::servo::SERVO_NAMES;
 
 use crate::layers::body::Mount;
-use crate::model::loops::{self, LoopJoint};
+use crate::model::cut_joints::{CutJoint, list_cut_joints};
 use crate::model::material::Material;
 use crate::model::meshes;
 use crate::model::node::{Freedom, Node};
@@ -27,18 +27,16 @@ impl Writer<'_> {
         self.xml.open(format!(r#"robot name="{name}""#));
         for Material { name, colour } in Material::ALL {
             self.xml.open(format!(r#"material name="{name}""#));
-            self.xml
-                .write_empty_element(format!(r#"color rgba="{colour}""#));
+            self.xml.write_empty(format!(r#"color rgba="{colour}""#));
             self.xml.close();
         }
-        self.xml
-            .write_empty_element(format!(r#"link name="{BASE_LINK}""#));
+        self.xml.write_empty(format!(r#"link name="{BASE_LINK}""#));
         for node in self.nodes() {
             self.write_urdf_link(node, folder);
             self.write_urdf_joint(node);
         }
-        for loop_joint in loops::list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
-            self.write_coinciding_frames(&loop_joint);
+        for cut_joint in list_cut_joints(self.assembly, self.scene.strut_spring.is_some()) {
+            self.write_coinciding_frames(&cut_joint);
         }
     }
 
@@ -50,8 +48,8 @@ impl Writer<'_> {
         self.xml.open("inertial");
         self.write_origin(inertia.centre_of_mass(), 0.0);
         self.xml
-            .write_empty_element(format!(r#"mass value="{}""#, round(inertia.mass * MILLI)));
-        self.xml.write_empty_element(format!(
+            .write_empty(format!(r#"mass value="{}""#, round(inertia.mass * MILLI)));
+        self.xml.write_empty(format!(
             r#"inertia ixx="{xx}" iyy="{yy}" izz="{zz}" ixy="{xy}" ixz="{xz}" iyz="{yz}""#
         ));
         self.xml.close();
@@ -62,12 +60,12 @@ impl Writer<'_> {
                 "{folder}{}",
                 meshes::format_mesh_name(node, material)
             ));
-            self.xml.write_empty_element(format!(
+            self.xml.write_empty(format!(
                 r#"mesh filename="{file}" scale="0.001 0.001 0.001""#
             ));
             self.xml.close();
             self.xml
-                .write_empty_element(format!(r#"material name="{}""#, material.name));
+                .write_empty(format!(r#"material name="{}""#, material.name));
             self.xml.close();
         }
         if let Node::Pad(servo) = node {
@@ -75,8 +73,7 @@ impl Writer<'_> {
             self.write_origin(self.dome_centre(servo), 0.0);
             self.xml.open("geometry");
             let radius = round(self.assembly.robot().parts().pad.radius * MILLI);
-            self.xml
-                .write_empty_element(format!(r#"sphere radius="{radius}""#));
+            self.xml.write_empty(format!(r#"sphere radius="{radius}""#));
             self.xml.close();
             self.xml.close();
         }
@@ -93,23 +90,22 @@ impl Writer<'_> {
             (Freedom::SlidesAlongX, _) => "prismatic",
         };
         let placement = self.placement_on_parent(node);
-        let (parent, height, base_turn) = match self.parent(node) {
+        let (parent, height, base_yaw) = match self.parent(node) {
             Some(parent) => (parent.identifier(), 0.0, 0.0),
             None => (BASE_LINK.to_owned(), self.chassis_height(), -FRAC_PI_2),
         };
-        let turn = placement.x_axis.angle().to_radians() + base_turn;
+        let yaw = placement.x_axis.angle().to_radians() + base_yaw;
         let name = self.joint_name(node);
         self.write_urdf_connection(&name, kind, &parent, &node.identifier());
-        self.write_origin([placement.origin.x, placement.origin.y, height], turn);
+        self.write_origin([placement.origin.x, placement.origin.y, height], yaw);
         if kind != "fixed" {
             let axis = match node.freedom() {
                 Freedom::SlidesAlongX => "1 0 0",
                 _ => "0 0 1",
             };
-            self.xml
-                .write_empty_element(format!(r#"axis xyz="{axis}""#));
+            self.xml.write_empty(format!(r#"axis xyz="{axis}""#));
             if let Some([min, max]) = range {
-                let (effort, rate) = match self.driving_servo(node) {
+                let (effort, velocity) = match self.driving_servo(node) {
                     Some(servo) => {
                         let motor = &self.scene.motors.per_servo[servo];
                         (motor.stall_torque * MILLI, motor.no_load_speed.to_radians())
@@ -117,20 +113,20 @@ impl Writer<'_> {
                     // No motor drives this joint.
                     None => (0.0, 0.0),
                 };
-                let (effort, rate) = (round(effort), round(rate));
-                self.xml.write_empty_element(format!(
-                    r#"limit lower="{min}" upper="{max}" effort="{effort}" velocity="{rate}""#
+                let (effort, velocity) = (round(effort), round(velocity));
+                self.xml.write_empty(format!(
+                    r#"limit lower="{min}" upper="{max}" effort="{effort}" velocity="{velocity}""#
                 ));
             }
             let [damping, friction] = self.damping_and_friction(node);
-            self.xml.write_empty_element(format!(
+            self.xml.write_empty(format!(
                 r#"dynamics damping="{damping}" friction="{friction}""#
             ));
         }
         if let Some((servo, factor)) = mimicked_servo(node) {
             let servo = SERVO_NAMES[servo];
             self.xml
-                .write_empty_element(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
+                .write_empty(format!(r#"mimic joint="{servo}" multiplier="{factor}""#));
         }
         self.xml.close();
     }
@@ -139,30 +135,27 @@ impl Writer<'_> {
     fn write_urdf_connection(&mut self, name: &str, kind: &str, parent: &str, child: &str) {
         self.xml
             .open(format!(r#"joint name="{name}" type="{kind}""#));
-        self.xml
-            .write_empty_element(format!(r#"parent link="{parent}""#));
-        self.xml
-            .write_empty_element(format!(r#"child link="{child}""#));
+        self.xml.write_empty(format!(r#"parent link="{parent}""#));
+        self.xml.write_empty(format!(r#"child link="{child}""#));
     }
 
-    fn write_origin(&mut self, position: [f64; 3], turn: f64) {
-        let (position, turn) = (format_metres(position), round(turn));
+    fn write_origin(&mut self, position: [f64; 3], yaw: f64) {
+        let (position, yaw) = (format_metres(position), round(yaw));
         self.xml
-            .write_empty_element(format!(r#"origin xyz="{position}" rpy="0 0 {turn}""#));
+            .write_empty(format!(r#"origin xyz="{position}" rpy="0 0 {yaw}""#));
     }
 
-    /// Writes the two frames of a loop's cut joint, one on each body.
-    fn write_coinciding_frames(&mut self, loop_joint: &LoopJoint) {
-        let [first, second] = loop_joint.bodies;
-        let point = self.placement(first).map(loop_joint.point);
+    /// Writes the two frames of a cut joint, one on each body.
+    fn write_coinciding_frames(&mut self, cut_joint: &CutJoint) {
+        let [first, second] = cut_joint.bodies;
+        let point = self.placement(first).map(cut_joint.point);
         let point_on_second = self.placement(second).unmap(point);
-        for (number, (node, position)) in [(first, loop_joint.point), (second, point_on_second)]
+        for (number, (node, position)) in [(first, cut_joint.point), (second, point_on_second)]
             .iter()
             .enumerate()
         {
-            let frame = format!("closing_{}_{}", loop_joint.identifier(), number + 1);
-            self.xml
-                .write_empty_element(format!(r#"link name="{frame}""#));
+            let frame = format!("closing_{}_{}", cut_joint.identifier(), number + 1);
+            self.xml.write_empty(format!(r#"link name="{frame}""#));
             let joint = format!("{frame}_joint");
             self.write_urdf_connection(&joint, "fixed", &node.identifier(), &frame);
             self.write_origin([position.x, position.y, 0.0], 0.0);
@@ -171,7 +164,7 @@ impl Writer<'_> {
     }
 }
 
-/// The servo that a body's joint mimics, and the factor of the angle; `None` for a joint without such a servo.
+/// The servo that a body's joint mimics, and the factor of the angle; `None` if the joint mimics no servo.
 fn mimicked_servo(node: Node) -> Option<(usize, i8)> {
     match node {
         Node::OnMount(Mount::Crank(servo) | Mount::Follower(servo)) => Some((servo, 1)),

@@ -1,4 +1,4 @@
-//! The common writer of all formats: the robot at neutral, as a tree of bodies.
+//! The writer that all formats share: the robot at neutral, as a tree of bodies.
 
 use lizard_kinematics::Solution;
 
@@ -6,7 +6,7 @@ use super::inertia::Inertia;
 use super::node::Node;
 use super::pieces::Piece;
 use super::scene::Scene;
-use super::text::{MILLI, Xml, round};
+use super::text::{MILLI, XmlWriter, round};
 use crate::bill::{self, Bill};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::Mount;
@@ -21,7 +21,7 @@ pub(super) struct Writer<'a> {
     pub neutral: &'a Solution,
     pub scene: &'a Scene,
     pub pieces: &'a [Piece],
-    pub xml: Xml,
+    pub xml: XmlWriter,
 }
 
 impl<'a> Writer<'a> {
@@ -102,12 +102,16 @@ impl<'a> Writer<'a> {
         chassis.translated([-left_moment, forward_moment, 0.0].map(|moment| moment / chassis.mass))
     }
 
-    /// Stiffness of a foot's leaf, N/m, and its damping, N s/m.
-    pub(super) fn leaf_spring(&self) -> [f64; 2] {
+    /// Stiffness of a foot's leaf, N/m.
+    pub(super) fn leaf_stiffness(&self) -> f64 {
+        round(self.scene.leaf_stiffness / MILLI)
+    }
+
+    /// Damping of a foot on its leaf, N s/m.
+    pub(super) fn leaf_damping(&self) -> f64 {
         let stiffness = self.scene.leaf_stiffness / MILLI;
         let quarter_mass = self.assembly.robot().ground().body.mass * MILLI / 4.0;
-        let damping = LEAF_DAMPING_RATIO * 2.0 * (stiffness * quarter_mass).sqrt();
-        [stiffness, damping].map(round)
+        round(LEAF_DAMPING_RATIO * 2.0 * (stiffness * quarter_mass).sqrt())
     }
 
     /// Centre of a pad's dome in the foot's frame, mm. A full sphere models the dome, since no point above the dome's
@@ -119,7 +123,7 @@ impl<'a> Writer<'a> {
         [foot.x, foot.y, z]
     }
 
-    /// Servo whose motor turns a body, if any.
+    /// Servo whose motor turns a body; `None` if no motor does.
     pub(super) fn driving_servo(&self, node: Node) -> Option<usize> {
         match node {
             Node::Horn(servo) => Some(servo),

@@ -1,9 +1,9 @@
 //! A check that every screw can be put in and turned in the order of the guide.
 //!
 //! A screw is pushed in along its axis, head last, so a space as long as the screw and as wide as the head must be free
-//! above the head. A hex key of [`KEY_SIZE`], which holds the head while the nut is turned, must also fit there. A
-//! socket of [`SOCKET_SIZE`] must fit around the nut. A nut that is sunk into a part is pushed in with a finger; the
-//! part then keeps the nut from turning, as a pocket does for a hexagonal head.
+//! above the head. A screwdriver or hex key, which holds the head while the nut is turned, must also fit there. A
+//! socket must fit around the nut. A nut that is sunk into a part is pushed in with a finger; the part then keeps the
+//! nut from turning, as a pocket does for a hexagonal head.
 //!
 //! When a screw is turned, all bodies of the earlier stages are in place, and all bodies of the screw's own stage
 //! except the screw and its nut, so the order within a stage does not matter. On the bench, only the bodies count that
@@ -18,16 +18,20 @@ use std::fmt;
 use lizard_kinematics::{Pose, Solution, Vector};
 
 use crate::bodies::assembly::Assembly;
-use crate::layers::body::{Body, Kind};
+use crate::layers::body::{Body, Kind, Prism};
 use crate::layers::shape::Shape;
 use crate::order::steps::{Step, TurningPlace};
 
-/// Radius of a screwdriver or hex key, and its length above the head, mm.
-pub const KEY_SIZE: [f64; 2] = [2.0, 30.0];
+/// Radius of a screwdriver or hex key, mm.
+const TOOL_RADIUS: f64 = 2.0;
+/// Length of a screwdriver or hex key above the screw's head, mm.
+const TOOL_LENGTH: f64 = 30.0;
 /// Radius of the hex key for an M3 button head (2 mm across flats) in a pad's hole, mm.
 const HEX_KEY_RADIUS: f64 = 1.2;
-/// Wall thickness of a socket around a nut, and the socket's length beyond the nut, mm.
-pub const SOCKET_SIZE: [f64; 2] = [1.0, 10.0];
+/// Wall thickness of a socket around a nut, mm.
+const SOCKET_WALL: f64 = 1.0;
+/// Length of a socket beyond its nut, mm.
+const SOCKET_LENGTH: f64 = 10.0;
 /// Angles by which the search for a pose turns one servo, deg.
 const SEARCH_ANGLES: [f64; 12] = [
     5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 35.0, 40.0, 45.0, 50.0, 55.0, 60.0,
@@ -54,7 +58,7 @@ pub struct BlockedScrew {
     pub step: usize,
     /// Name of the screw.
     pub screw: String,
-    /// Impossible operation.
+    /// Operation that the obstacle prevents.
     pub operation: ScrewOperation,
     /// Name of the body in the way.
     pub obstacle: String,
@@ -99,7 +103,7 @@ struct ScrewAxis {
     length: f64,
     /// Height of the head's outer face, mm above the chassis plate's top.
     head_face_z: f64,
-    /// 1 if the head is at the top, otherwise -1.
+    /// Direction from the tip to the head: 1 if the head is at the top, otherwise -1.
     direction: f64,
 }
 
@@ -121,7 +125,7 @@ struct PosedAssembly<'a> {
 }
 
 impl PosedAssembly<'_> {
-    /// Finds the axis of a screw; `None` for other bodies.
+    /// Finds the axis of a screw; `None` if the body is no screw.
     fn find_screw_axis(&self, body: &Body) -> Option<ScrewAxis> {
         /// Length of a servo's own screws, mm.
         const SERVO_SCREW_LENGTH: f64 = 8.0;
@@ -152,14 +156,16 @@ impl PosedAssembly<'_> {
         const TOUCH_TOLERANCE: f64 = 1e-6;
         let placement = self.assembly.placement(body.mount, self.pose);
         let [low, high] = space.z;
-        let is_beside = |z: [f64; 2]| z[0] > high - TOUCH_TOLERANCE || z[1] < low + TOUCH_TOLERANCE;
-        let no_motion = Vector::default();
+        let is_at_height = |prism: &&Prism| {
+            prism.z[0] <= high - TOUCH_TOLERANCE && prism.z[1] >= low + TOUCH_TOLERANCE
+        };
         let overlaps =
             |shape: &Shape| space.shape.distance(&shape.placed(&placement)) < -TOUCH_TOLERANCE;
         let encloses = |hole: &Shape| {
-            space.shape.depth_in(&hole.placed(&placement), no_motion) > -TOUCH_TOLERANCE
+            let placed_hole = hole.placed(&placement);
+            space.shape.depth_in(&placed_hole, Vector::default()) > -TOUCH_TOLERANCE
         };
-        let mut prisms = body.prisms.iter().filter(|prism| !is_beside(prism.z));
+        let mut prisms = body.prisms.iter().filter(is_at_height);
         prisms.any(|prism| {
             prism.filled_shapes.iter().any(overlaps) && !prism.cut_shapes.iter().any(encloses)
         })
@@ -189,21 +195,22 @@ impl PosedAssembly<'_> {
         let mount_bodies = bodies.filter(|body| body.mount == nut.mount);
         let mut prisms = mount_bodies.flat_map(|body| &body.prisms);
         let is_sunk = prisms.any(|prism| prism.cut_shapes.iter().any(encloses));
-        let length = -axis.direction * SOCKET_SIZE[1];
+        let length = -axis.direction * SOCKET_LENGTH;
         match is_sunk {
             true => FreeSpace {
                 shape: nut_outline,
                 ..axis.cylinder(0.0, outer_z, length)
             },
             false => axis.cylinder(
-                corner_radius + SOCKET_SIZE[0],
+                corner_radius + SOCKET_WALL,
                 bearing_z,
                 outer_z - bearing_z + length,
             ),
         }
     }
 
-    /// Finds the impossible operations on a screw once `new_bodies` are added, each with the name of the obstacle.
+    /// Finds the operations on a screw that are impossible once `new_bodies` are added, each with the name of the
+    /// obstacle.
     fn find_blocked_operations(
         &self,
         screw: &Body,
@@ -245,12 +252,12 @@ impl PosedAssembly<'_> {
         // The pad of a height screw if the hex key does not fit through the pad's hole.
         let mut blocking_pad = None;
         if needs_turning && is_complete && (is_new || new_nut.is_some() || is_turned_later) {
-            let make_key_space =
-                |radius| axis.cylinder(radius, axis.head_face_z, axis.direction * KEY_SIZE[1]);
-            spaces.push((ScrewOperation::Turn, make_key_space(KEY_SIZE[0])));
+            let make_tool_space =
+                |radius| axis.cylinder(radius, axis.head_face_z, axis.direction * TOOL_LENGTH);
+            spaces.push((ScrewOperation::Turn, make_tool_space(TOOL_RADIUS)));
             blocking_pad = pad.filter(|pad| {
                 is_in(surrounding_bodies, pad)
-                    && self.extends_into(pad, &make_key_space(HEX_KEY_RADIUS))
+                    && self.extends_into(pad, &make_tool_space(HEX_KEY_RADIUS))
             });
         }
         if let Some(nut) = new_nut {
@@ -300,22 +307,20 @@ impl Assembly {
                             .collect(),
                     };
                     let is_turned_later = (stage.turns_again)(screw);
-                    let blocked_operations = posed_assembly
-                        .find_blocked_operations(
-                            screw,
-                            &new_bodies,
-                            &surrounding_bodies,
-                            is_turned_later,
-                        )
-                        .into_iter();
-                    blocked_screws.extend(blocked_operations.map(|(operation, obstacle)| {
-                        BlockedScrew {
+                    let blocked_operations = posed_assembly.find_blocked_operations(
+                        screw,
+                        &new_bodies,
+                        &surrounding_bodies,
+                        is_turned_later,
+                    );
+                    for (operation, obstacle) in blocked_operations {
+                        blocked_screws.push(BlockedScrew {
                             step: step_number,
                             screw: screw.name.clone(),
                             operation,
                             obstacle,
-                        }
-                    }));
+                        });
+                    }
                 }
             }
         }
@@ -373,17 +378,17 @@ impl Assembly {
     fn list_poses_near(&self, neutral: Pose) -> Vec<Solution> {
         let neutral_angles: [f64; 4] = neutral.into();
         let mut poses = Vec::new();
-        for turn in SEARCH_ANGLES {
-            for (servo, turn) in (0..4).flat_map(|servo| [(servo, turn), (servo, -turn)]) {
+        for angle in SEARCH_ANGLES {
+            for (servo, change) in (0..4).flat_map(|servo| [(servo, angle), (servo, -angle)]) {
                 let mut angles = neutral_angles;
-                angles[servo] += turn;
+                angles[servo] += change;
                 poses.extend(self.robot().solve_if_allowed(angles));
             }
         }
         let distance_from_neutral = |solution: &Solution| {
             let angles: [f64; 4] = solution.pose.into();
-            let turns = angles.iter().zip(neutral_angles);
-            turns.fold(0.0, |max, (a, b)| (a - b).abs().max(max))
+            let pairs = angles.iter().zip(neutral_angles);
+            pairs.fold(0.0, |max, (a, b)| (a - b).abs().max(max))
         };
         let mut grid_poses: Vec<_> = self.grid_poses(GRID_ANGLES_PER_SERVO).collect();
         grid_poses.sort_by(|a, b| distance_from_neutral(a).total_cmp(&distance_from_neutral(b)));

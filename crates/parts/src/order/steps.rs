@@ -133,7 +133,7 @@ pub fn build_steps(has_slotted_struts: bool) -> Vec<Step> {
         board_step(),
         console_step("Flash the board"),
         links_step(),
-        console_step("Prove the signs"),
+        console_step("Check the signs"),
         legs_step(),
         legs_on_plate_step(),
         struts_step(has_slotted_struts),
@@ -203,17 +203,12 @@ fn board_step() -> Step {
             "plus way",
             "fuse",
         ];
-        has_name_prefix(body, &names_on_deck)
-            || has_name_prefix(body, &names_on_wings)
-            || is_upper_screw
+        let names = [&names_on_deck[..], &names_on_wings].concat();
+        has_name_prefix(body, &names) || is_upper_screw
     });
     let board_stage = robot_stage(|body| has_name_prefix(body, &["board", "screw board"]));
-    build_step(
-        "Deck, board and wires",
-        lift,
-        ExtraView::None,
-        vec![deck_stage, board_stage],
-    )
+    let stages = vec![deck_stage, board_stage];
+    build_step("Deck, board and wires", lift, ExtraView::None, stages)
 }
 
 fn links_step() -> Step {
@@ -245,12 +240,8 @@ fn legs_step() -> Step {
     });
     let foot_stage = bench_stage(|body| matches!(body.mount, Mount::Foot(_)) && !sets_height(body));
     let height_stage = bench_stage(sets_height);
-    build_step(
-        "Legs, on the bench",
-        lift,
-        ExtraView::Corner,
-        vec![joints_stage, foot_stage, height_stage],
-    )
+    let stages = vec![joints_stage, foot_stage, height_stage];
+    build_step("Legs, on the bench", lift, ExtraView::Corner, stages)
 }
 
 /// True for a pad and for its screw, which sets the foot's height.
@@ -271,13 +262,8 @@ fn legs_on_plate_step() -> Step {
         Kind::Nut => -0.7,
         _ => 1.0,
     };
-    let stage = robot_stage(|body| body.name.contains("pivot"));
-    build_step(
-        "Legs on the plate",
-        lift,
-        ExtraView::CornerBelow,
-        vec![stage],
-    )
+    let stages = vec![robot_stage(|body| body.name.contains("pivot"))];
+    build_step("Legs on the plate", lift, ExtraView::CornerBelow, stages)
 }
 
 fn struts_step(has_slotted_struts: bool) -> Step {
@@ -320,17 +306,19 @@ fn ends_step() -> Step {
         _ => 0.9,
     };
     let couplers_stage = bench_stage(|body| {
-        let carried_names = ["head plate", "tail ", "screw head plate", "screw tail "];
-        has_name_prefix(body, &["coupler"]) || has_name_prefix(body, &carried_names)
+        let names = [
+            "coupler",
+            "head plate",
+            "tail ",
+            "screw head plate",
+            "screw tail ",
+        ];
+        has_name_prefix(body, &names)
     });
     let joints_stage = robot_stage(|body| {
         matches!(body.mount, Mount::Coupler(_)) || has_name_prefix(body, &["tip spacer", "nut tip"])
     });
     let plug_stage = robot_stage(|body| has_name_prefix(body, &["barrel plug"]));
-    build_step(
-        "Head and tail",
-        lift,
-        ExtraView::None,
-        vec![couplers_stage, joints_stage, plug_stage],
-    )
+    let stages = vec![couplers_stage, joints_stage, plug_stage];
+    build_step("Head and tail", lift, ExtraView::None, stages)
 }

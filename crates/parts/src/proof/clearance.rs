@@ -14,14 +14,14 @@ use crate::bodies::assembly::Assembly;
 use crate::layers::body::Prism;
 use crate::layers::shape::Shape;
 
-/// The least distance found between two bodies.
+/// The smallest distance found between two bodies.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Clearance {
     /// Name of one body.
     pub first: String,
     /// Name of the other body.
     pub second: String,
-    /// Servo angles at the least distance, deg, servo order.
+    /// Servo angles at the smallest distance, deg, servo order.
     pub pose: [f64; 4],
     /// Distance between the bodies, mm; negative if they overlap.
     pub mm: f64,
@@ -50,34 +50,29 @@ impl Assembly {
         limit_mm: f64,
     ) -> Vec<Clearance> {
         // Pairs of shapes, each with the indices of its bodies and an enclosing disc around each shape.
-        let enclosing_disc =
-            |shape: &Shape| (shape.middle(), shape.max_distance_from(shape.middle()));
-        let bodies = self.bodies();
         let mut pairs = Vec::new();
+        let enclose = |shape: &Shape| (shape.middle(), shape.max_distance_from(shape.middle()));
+        let overlap_in_height = |p: &Prism, q: &Prism| p.z[0] < q.z[1] && q.z[0] < p.z[1];
+        let bodies = self.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
                 let layers = a
                     .prisms
                     .iter()
                     .flat_map(|p| b.prisms.iter().map(move |q| (p, q)));
-                let overlap_in_height =
-                    |(p, q): &(&Prism, &Prism)| p.z[0] < q.z[1] && q.z[0] < p.z[1];
-                for (p, q) in
-                    layers.filter(|layers| !self.may_touch(a, b) && overlap_in_height(layers))
-                {
-                    let shapes = p
-                        .filled_shapes
-                        .iter()
-                        .flat_map(|a| q.filled_shapes.iter().map(move |b| (a, b)));
-                    pairs.extend(
-                        shapes.map(|(a, b)| {
-                            ([i, j], [(a, enclosing_disc(a)), (b, enclosing_disc(b))])
-                        }),
-                    );
+                let layers =
+                    layers.filter(|(p, q)| !self.may_touch(a, b) && overlap_in_height(p, q));
+                for (p, q) in layers {
+                    for first in &p.filled_shapes {
+                        let seconds = q.filled_shapes.iter();
+                        pairs.extend(seconds.map(|second| {
+                            ([i, j], [(first, enclose(first)), (second, enclose(second))])
+                        }));
+                    }
                 }
             }
         }
-        let mut least_by_pair: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
+        let mut min_by_pair: BTreeMap<[usize; 2], ([f64; 4], f64)> = BTreeMap::new();
         for pose in poses {
             let placements = bodies.iter().map(|body| self.placement(body.mount, &pose));
             let placements: Vec<_> = placements.collect();
@@ -85,13 +80,13 @@ impl Assembly {
                 let [first, second] = body_indices.map(|body| &placements[body]);
                 let disc_gap =
                     (second.map(*b_middle) - first.map(*a_middle)).length() - a_radius - b_radius;
-                let least_so_far = least_by_pair
+                let min_so_far = min_by_pair
                     .get(body_indices)
                     .map_or(limit_mm, |(_, mm)| *mm);
-                if disc_gap < least_so_far {
+                if disc_gap < min_so_far {
                     let mm = a.placed(first).distance(&b.placed(second));
-                    if mm < least_so_far {
-                        least_by_pair.insert(*body_indices, (pose.pose.into(), mm));
+                    if mm < min_so_far {
+                        min_by_pair.insert(*body_indices, (pose.pose.into(), mm));
                     }
                 }
             }
@@ -102,7 +97,7 @@ impl Assembly {
             pose,
             mm,
         };
-        let mut clearances: Vec<_> = least_by_pair.into_iter().map(to_clearance).collect();
+        let mut clearances: Vec<_> = min_by_pair.into_iter().map(to_clearance).collect();
         clearances.sort_by(|a, b| a.mm.total_cmp(&b.mm));
         clearances
     }

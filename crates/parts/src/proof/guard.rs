@@ -116,11 +116,8 @@ impl<'a> Guard<'a> {
         };
         // Two passes, because the range of one pair depends on the neighbouring pairs.
         for _ in 0..2 {
-            let end_pairs = End::ALL.map(|end| end.servos());
-            for pair in end_pairs
-                .into_iter()
-                .chain(Side::ALL.map(|side| side.servos()))
-            {
+            let end_pairs = End::ALL.map(|end| end.servos()).into_iter();
+            for pair in end_pairs.chain(Side::ALL.map(|side| side.servos())) {
                 for index in 0..2 {
                     let [low, high] =
                         [false, true].map(|is_high| guard.find_range_end(pair, index, is_high));
@@ -152,13 +149,8 @@ impl<'a> Guard<'a> {
             }
             for half_region in region.halves(usize::from(b > a)) {
                 insertion_index += 1;
-                regions.insert(
-                    (
-                        total_order_key(sign * region_end(&half_region)),
-                        insertion_index,
-                    ),
-                    half_region,
-                );
+                let order_key = total_order_key(sign * region_end(&half_region));
+                regions.insert((order_key, insertion_index), half_region);
             }
         }
         // The guard refuses every pose, which is impossible if the neutral pose is safe.
@@ -213,7 +205,7 @@ impl<'a> Guard<'a> {
         (!is_refused).then_some((bounds, middle))
     }
 
-    /// Returns the relaxed limit that a value violates, if any.
+    /// Returns the relaxed limit that a value violates; `None` if it violates none.
     fn violated_limit(&self, check: Check, value: f64) -> Option<f64> {
         // The limit of crossed tips is 0 and is no field of `Limits`, so the value is shifted instead of the limit.
         let shift = match check {
@@ -221,7 +213,7 @@ impl<'a> Guard<'a> {
             _ => 0.0,
         };
         self.limits
-            .find_violation(check, value + shift)
+            .violation(check, value + shift)
             .map(|violation| violation.limit)
     }
 

@@ -1,7 +1,7 @@
 //! Forward-mode automatic differentiation with bounds: dual numbers whose value and derivatives are intervals.
 //!
-//! The closed-form equations of the mechanism accept any number type ([`Real`]), hence this type, too. Each result
-//! includes its derivatives with respect to the servos' angles. No derivative is derived by hand.
+//! The closed-form equations of the mechanism accept any number type ([`Real`]), and therefore also this one. Each
+//! result includes its derivatives with respect to the servos' angles. No derivative is derived by hand.
 
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -28,7 +28,7 @@ impl<const N: usize> IntervalDual<N> {
     }
 
     /// Largest change of the number if each servo is within its half width (deg) of its middle angle.
-    pub fn largest_change(&self, half_widths: &[f64; N]) -> f64 {
+    pub fn max_change(&self, half_widths: &[f64; N]) -> f64 {
         let slopes = self.derivatives.iter().zip(half_widths);
         slopes.fold(0.0, |sum, (slope, half_width)| {
             sum + slope.max_abs() * half_width
@@ -40,7 +40,7 @@ impl<const N: usize> IntervalDual<N> {
     pub fn tighten(self, middle: f64, half_widths: &[f64; N]) -> Self {
         /// Upper bound of the rounding error of `middle`.
         const ROUNDING: f64 = 1e-9;
-        let change = self.largest_change(half_widths) + ROUNDING;
+        let change = self.max_change(half_widths) + ROUNDING;
         let (low, high) = (middle - change, middle + change);
         if low.is_nan() || high.is_nan() {
             return self;
@@ -60,7 +60,7 @@ impl<const N: usize> IntervalDual<N> {
     }
 
     /// Returns a function of two numbers from the function's value and the chain rule for each pair of derivatives.
-    fn zip(
+    fn zip_chain_rule(
         self,
         other: Self,
         value: Interval,
@@ -72,7 +72,7 @@ impl<const N: usize> IntervalDual<N> {
     }
 }
 
-/// Implements operators. `map_chain_rule` and `zip` apply the derivative rule.
+/// Implements operators. `map_chain_rule` and `zip_chain_rule` apply the derivative rule.
 macro_rules! operators {
     ($($operator:ident $method:ident($self:ident, $other:ident: $type:ty) $result:block)*) => {$(
         // The derivatives of a product or a quotient also need other operations.
@@ -85,16 +85,16 @@ macro_rules! operators {
 }
 
 operators! {
-    Add add(self, other: Self) { self.zip(other, self.value + other.value, |a, b| a + b) }
-    Sub sub(self, other: Self) { self.zip(other, self.value - other.value, |a, b| a - b) }
+    Add add(self, other: Self) { self.zip_chain_rule(other, self.value + other.value, |a, b| a + b) }
+    Sub sub(self, other: Self) { self.zip_chain_rule(other, self.value - other.value, |a, b| a - b) }
     Mul mul(self, other: Self) {
         let (product, own_value) = (self.value * other.value, self.value);
-        self.zip(other, product, |a, b| a * other.value + b * own_value)
+        self.zip_chain_rule(other, product, |a, b| a * other.value + b * own_value)
     }
     Mul mul(self, factor: f64) { self.map_chain_rule(self.value * factor, |slope| slope * factor) }
     Div div(self, other: Self) {
         let quotient = self.value / other.value;
-        self.zip(other, quotient, |a, b| (a - quotient * b) / other.value)
+        self.zip_chain_rule(other, quotient, |a, b| (a - quotient * b) / other.value)
     }
 }
 
@@ -141,7 +141,7 @@ mod tests {
     const HEAD: FiveBar = FiveBar::new([20.0, 30.0, 50.0, 45.0, 28.0]);
 
     /// Computes the coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
-    fn compute_numbers<T: Real>([left, right]: [T; 2]) -> [T; 3] {
+    fn compute_point_and_margin<T: Real>([left, right]: [T; 2]) -> [T; 3] {
         let (sin, cos) = T::sin_cos_each([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
         let pose = HEAD.pose_unchecked(AssemblyMode::Ahead, left, right);
@@ -155,22 +155,26 @@ mod tests {
                 let bounds_around =
                     |middle: f64| Interval::new(middle - half_width, middle + half_width);
                 let angles = [(0, left), (1, right)];
-                let duals = compute_numbers(
+                let duals = compute_point_and_margin(
                     angles.map(|(i, angle)| IntervalDual::<2>::angle(i, bounds_around(angle))),
                 );
-                let middle = compute_numbers([left, right]);
+                let middle = compute_point_and_margin([left, right]);
                 for (x, y) in [(-1.0, 1.0), (0.5, 0.5), (1.0, -1.0), (-0.2, -1.0)] {
                     let crank_angles = [left + x * half_width, right + y * half_width];
                     let step_deg = 1e-5;
-                    for (i, value) in compute_numbers(crank_angles).into_iter().enumerate() {
+                    for (i, value) in compute_point_and_margin(crank_angles)
+                        .into_iter()
+                        .enumerate()
+                    {
                         let IntervalDual { value: bounds, .. } = duals[i];
                         assert!(bounds.low <= value && value <= bounds.high);
-                        let change = duals[i].largest_change(&[half_width; 2]);
+                        let change = duals[i].max_change(&[half_width; 2]);
                         assert!((value - middle[i]).abs() <= change + 1e-12);
                         for servo in 0..2 {
                             let mut next_angles = crank_angles;
                             next_angles[servo] += step_deg;
-                            let rate = (compute_numbers(next_angles)[i] - value) / step_deg;
+                            let rate =
+                                (compute_point_and_margin(next_angles)[i] - value) / step_deg;
                             let Interval { low, high } = duals[i].derivatives[servo];
                             assert!(low - 1e-4 <= rate && rate <= high + 1e-4);
                             // The bounds of the derivatives are not much wider than needed.

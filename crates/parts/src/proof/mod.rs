@@ -9,9 +9,10 @@
 //!
 //! The relative position of two parts depends only on the servos of their mounts
 //! ([`Mount::servos`](crate::Mount::servos)): one or two, rarely three. The whole proof therefore takes only seconds.
-//! `shape_pairs.rs` lists the pairs of shapes that must stay clear, `sweep.rs` omits pairs that are never close, and
-//! `guard.rs` finds the regions that the guard certainly refuses.
+//! `shape_pairs.rs` lists the pairs of shapes that must stay clear, `bounding_rectangles.rs` excludes pairs that are
+//! never close, and `guard.rs` finds the regions that the guard certainly refuses.
 
+mod bounding_rectangles;
 pub(crate) mod clearance;
 mod guard;
 mod interval;
@@ -19,7 +20,6 @@ mod interval_dual;
 mod quick_check;
 mod search;
 mod shape_pairs;
-mod sweep;
 
 use std::fmt;
 
@@ -31,10 +31,10 @@ use crate::layers::body::Body;
 use crate::proof::clearance::Clearance;
 use guard::Guard;
 pub use search::FAR_MM;
-use search::{Nearest, SearchResult};
+use search::{NearestPose, SearchResult};
 use shape_pairs::Task;
 
-/// Least allowed distance between parts that are not designed to touch, mm: more than a printer's error.
+/// Smallest allowed distance between parts that are not designed to touch, mm: more than a printer's error.
 pub const MIN_GAP_MM: f64 = 0.2;
 /// Largest overlap of parts designed to touch that still counts as touching, mm.
 const TOUCH_OVERLAP: f64 = 0.02;
@@ -42,7 +42,7 @@ const TOUCH_OVERLAP: f64 = 0.02;
 /// Number of angles per servo in the grid of poses that shows which pairs are pinned to each other.
 const JOINT_GRID_ANGLES: u32 = 6;
 
-/// Two bodies and their least distance.
+/// Two bodies and their smallest distance.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NearestPair {
     /// Name of one body.
@@ -123,7 +123,7 @@ impl NearestPair {
     }
 
     /// Distance in `witness`, mm; the proved bound if `witness` is `None`.
-    fn least_distance(&self) -> f64 {
+    fn min_distance(&self) -> f64 {
         self.witness
             .as_ref()
             .map_or(self.lower_bound, |clearance| clearance.mm)
@@ -141,21 +141,19 @@ impl Proof {
     /// # Errors
     /// Returns the worst pair: parts that overlap, come closer than [`MIN_GAP_MM`], or have no proof of this distance.
     pub fn judge(&self) -> Result<(), Clash> {
+        let find_clash =
+            |pair: &NearestPair, min_mm: f64| Some((pair.clash(min_mm)?, pair.min_distance()));
         let separate_pairs = self.separate_pairs.iter();
-        let separate_clashes =
-            separate_pairs.map(|pair| (pair.clash(MIN_GAP_MM), pair.least_distance()));
+        let separate_clashes = separate_pairs.filter_map(|pair| find_clash(pair, MIN_GAP_MM));
         let touching_pairs = self.touching_pairs.iter();
-        let touching_clashes =
-            touching_pairs.map(|pair| (pair.clash(-TOUCH_OVERLAP), pair.least_distance()));
-        let clashes = separate_clashes
-            .chain(touching_clashes)
-            .filter(|(clash, _)| clash.is_some());
-        let (worst_clash, _) = clashes.min_by(|(_, a), (_, b)| a.total_cmp(b)).unzip();
-        worst_clash.flatten().map_or(Ok(()), Err)
+        let touching_clashes = touching_pairs.filter_map(|pair| find_clash(pair, -TOUCH_OVERLAP));
+        let clashes = separate_clashes.chain(touching_clashes);
+        let worst_clash = clashes.min_by(|(_, a), (_, b)| a.total_cmp(b));
+        worst_clash.map_or(Ok(()), |(clash, _)| Err(clash))
     }
 }
 
-/// The tasks of a proof. Each task finds the least distance between the bodies of two mounts. The tasks are
+/// The tasks of a proof. Each task finds the smallest distance between the bodies of two mounts. The tasks are
 /// independent, so other machines can complete them.
 pub struct ProofTasks<'a> {
     assembly: &'a Assembly,
@@ -180,7 +178,7 @@ impl<'a> ProofTasks<'a> {
     /// Collects the tasks for the pairs of bodies that `is_chosen` accepts.
     pub fn new(assembly: &'a Assembly, is_chosen: impl Fn(&Body, &Body) -> bool) -> Self {
         let guard = Guard::new(assembly.robot());
-        let tasks = Task::all(assembly, &guard, FAR_MM, is_chosen);
+        let tasks = Task::collect(assembly, &guard, FAR_MM, is_chosen);
         let clashing_tasks = quick_check::find_worst_tasks(assembly, &tasks);
         Self {
             has_clash: clashing_tasks.is_some(),
@@ -211,10 +209,9 @@ impl<'a> ProofTasks<'a> {
             false => None,
         };
         let nearest = (!task.shape_pairs.is_empty()).then(|| {
-            let nearest =
-                search::find_least_distance(self.assembly, &self.guard, &task, max_regions);
-            let regions = nearest.region_count;
-            (self.assembly.to_nearest_pair(nearest), regions)
+            let nearest = search::find_min_distance(self.assembly, &self.guard, &task, max_regions);
+            let region_count = nearest.region_count;
+            (self.assembly.to_nearest_pair(nearest), region_count)
         });
         TaskResult { pinned, nearest }
     }
@@ -246,10 +243,10 @@ impl<'a> ProofTasks<'a> {
                 fewer_regions => self.complete_within(index, fewer_regions),
             };
             proof.touching_pairs.extend(result.pinned);
-            let Some((nearest_pair, regions)) = result.nearest else {
+            let Some((nearest_pair, region_count)) = result.nearest else {
                 continue;
             };
-            proof.region_count += regions;
+            proof.region_count += region_count;
             let clash = nearest_pair.clash(task.min_distance());
             if task.may_touch {
                 proof.touching_pairs.push(nearest_pair);
@@ -289,8 +286,8 @@ impl Assembly {
         ProofTasks::new(self, is_chosen).complete_all(|_| None, progress)
     }
 
-    /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` without pinned pairs or
-    /// without poses. A pin and its round hole have the same centre at every pose, so their gap is constant.
+    /// Removes the pinned pairs from a task and returns the pair with the smallest gap; `None` if there are no pinned
+    /// pairs or no poses. A pin and its round hole have the same centre at every pose, so their gap is constant.
     fn remove_pinned_pairs(&self, task: &mut Task, poses: &[Solution]) -> Option<NearestPair> {
         let relative_placement = |pose| {
             let [a, b] = task.mounts.map(|mount| self.placement(mount, pose));
@@ -309,7 +306,7 @@ impl Assembly {
                 nearest = Some(self.to_nearest_pair(SearchResult {
                     lower_bound: mm,
                     bodies: pair.bodies,
-                    nearest: Some(Nearest { pose: *pose, mm }),
+                    nearest: Some(NearestPose { pose: *pose, mm }),
                     unproved_angles: None,
                     region_count: 0,
                 }));
@@ -327,7 +324,7 @@ impl Assembly {
             std::array::from_fn(|i| optional_angles[i].unwrap_or(neutral[i]))
         };
         NearestPair {
-            witness: result.nearest.map(|Nearest { pose, mm }| Clearance {
+            witness: result.nearest.map(|NearestPose { pose, mm }| Clearance {
                 first: first.clone(),
                 second: second.clone(),
                 pose: pose.pose.into(),

@@ -1,6 +1,6 @@
 //! A quick check at a few poses before the proof.
 //!
-//! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding all distances takes minutes. But
+//! In a robot that does not fit, hundreds of pairs of parts may collide, and bounding all distances takes minutes. Yet
 //! one pose at which two parts collide is enough to refuse the robot. The parts are therefore first checked at poses
 //! where collisions are likely: at neutral, on a coarse grid, and at the guard's limits in every direction from
 //! neutral. If some pairs are too close at these poses, the proof bounds only the worst of them.
@@ -28,13 +28,13 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
         .collect();
     poses.extend((0..81).filter_map(|direction| find_last_accepted_pose(robot, direction)));
     poses.extend(assembly.grid_poses(GRID_ANGLES_PER_SERVO));
-    let find_least_distance = |task: &Task| {
+    let find_min_distance = |task: &Task| {
         let distances = poses
             .iter()
-            .map(|pose| compute_distance(assembly, task, pose));
+            .map(|pose| compute_min_distance(assembly, task, pose));
         distances.fold(f64::INFINITY, f64::min)
     };
-    let measured_tasks = tasks.iter().map(|task| (find_least_distance(task), task));
+    let measured_tasks = tasks.iter().map(|task| (find_min_distance(task), task));
     let mut worst_tasks: Vec<_> = measured_tasks
         .filter(|(mm, task)| *mm < task.min_distance())
         .collect();
@@ -44,14 +44,15 @@ pub fn find_worst_tasks(assembly: &Assembly, tasks: &[Task]) -> Option<Vec<Task>
     (!worst_tasks.is_empty()).then_some(worst_tasks)
 }
 
-/// Computes the least distance between a task's parts at a pose, mm; infinite if they are certainly far enough apart.
-fn compute_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
+/// Computes the smallest distance between a task's parts at a pose, mm; infinite if they are certainly far enough
+/// apart.
+fn compute_min_distance(assembly: &Assembly, task: &Task, pose: &Solution) -> f64 {
     let [a, b] = task.mounts.map(|mount| assembly.placement(mount, pose));
     let placement = b.relative_to(&a);
     let shape_pairs = task.shape_pairs.iter();
-    let near_pairs =
+    let close_pairs =
         shape_pairs.filter(|pair| !pair.is_far(&placement, [0.0; 2], task.min_distance()));
-    let distances = near_pairs.map(|pair| pair.distance(&placement));
+    let distances = close_pairs.map(|pair| pair.distance(&placement));
     distances.fold(f64::INFINITY, f64::min)
 }
 

@@ -1,8 +1,8 @@
-//! Branch and bound: the least distance in a region, with a proven lower bound.
+//! Branch and bound: the smallest distance in a region, with a proven lower bound.
 //!
 //! The search is best-first: it repeatedly halves the region with the smallest lower bound. The distance at a region's
 //! middle minus the largest displacement of any point is a lower bound of all distances in the region. The distance at
-//! any accepted pose is an upper bound of the least distance. The search ends when the two bounds are close.
+//! any accepted pose is an upper bound of the smallest distance. The search ends when the two bounds are close.
 
 use std::collections::BTreeMap;
 
@@ -31,15 +31,15 @@ pub const MAX_REGIONS: u64 = 100_000;
 /// Largest number of regions to check once an overlap is found, whose exact depth does not matter.
 const MAX_REGIONS_OVERLAPPING: u64 = 1_000;
 
-/// The result of a search for the least distance.
+/// The result of a search for the smallest distance.
 #[derive(Clone, Debug)]
 pub struct SearchResult {
     /// Lower bound of the distance, mm; at most [`FAR_MM`].
     pub lower_bound: f64,
     /// The two nearest bodies, as indices in [`Assembly::bodies`].
     pub bodies: [usize; 2],
-    /// Accepted pose with the least found distance; `None` if no distance below [`FAR_MM`] is found.
-    pub nearest: Option<Nearest>,
+    /// Accepted pose with the smallest distance found; `None` if no distance below [`FAR_MM`] is found.
+    pub nearest: Option<NearestPose>,
     /// Angles of some servos near which no larger distance could be proved, deg; `None` if the bound is close to the
     /// distance in `nearest`.
     pub unproved_angles: Option<[Option<f64>; 4]>,
@@ -49,7 +49,7 @@ pub struct SearchResult {
 
 /// A pose, and the distance between the nearest two shapes at this pose.
 #[derive(Clone, Debug)]
-pub struct Nearest {
+pub struct NearestPose {
     /// Accepted pose.
     pub pose: Solution,
     /// Distance, mm.
@@ -65,13 +65,13 @@ struct BoundedRegion<const N: usize> {
     bounding_pair: u32,
     /// Servo across whose angle the region will be halved.
     split_servo: usize,
-    /// Indices of the pairs of shapes that may come closer than the least found distance.
+    /// Indices of the pairs of shapes that may come closer than the smallest distance found.
     candidate_pairs: Vec<u32>,
 }
 
-/// Finds the least distance between a task's pairs of shapes over all poses that the guard accepts. Stops after
+/// Finds the smallest distance between a task's pairs of shapes over all poses that the guard accepts. Stops after
 /// `max_regions` regions.
-pub fn find_least_distance(
+pub fn find_min_distance(
     assembly: &Assembly,
     guard: &Guard,
     task: &Task,
@@ -111,8 +111,8 @@ struct Search<'a, const N: usize> {
     guard: &'a Guard<'a>,
     task: &'a Task,
     servos: [usize; N],
-    /// Accepted pose with the least found distance.
-    nearest: Option<Nearest>,
+    /// Accepted pose with the smallest distance found.
+    nearest: Option<NearestPose>,
     /// Index of the pair of shapes with the distance in `nearest`.
     nearest_pair_index: u32,
     /// Number of regions checked so far.
@@ -120,7 +120,7 @@ struct Search<'a, const N: usize> {
 }
 
 impl<const N: usize> Search<'_, N> {
-    /// Upper bound of the least distance, mm.
+    /// Upper bound of the smallest distance, mm.
     fn upper_bound(&self) -> f64 {
         self.nearest
             .as_ref()
@@ -135,8 +135,8 @@ impl<const N: usize> Search<'_, N> {
         } else {
             RELATIVE_TOLERANCE
         };
-        // The region with the least bound comes first. Regions with equal bounds are ordered by their middles, so the
-        // order is deterministic.
+        // The region with the smallest bound comes first. Regions with equal bounds are ordered by their middles, so
+        // the order is deterministic.
         let order_key = |bounded_region: &BoundedRegion<N>| {
             (
                 total_order_key(bounded_region.lower_bound),
@@ -202,8 +202,8 @@ impl<const N: usize> Search<'_, N> {
         angles
     }
 
-    /// Bounds a region's distances. Returns `None` if no pair of shapes can be closer than the least distance found so
-    /// far, or if the guard accepts no pose of the region.
+    /// Bounds a region's distances. Returns `None` if no pair of shapes can be closer than the smallest distance found
+    /// so far, or if the guard accepts no pose of the region.
     fn bound_region(
         &mut self,
         region: Region<N>,
@@ -220,8 +220,8 @@ impl<const N: usize> Search<'_, N> {
         let placement = b.relative_to(&a);
         let bounds = tighten(&bounds_b.relative_to(&bounds_a), &placement, &region);
         let deviations = [bounds.origin, bounds.x_axis].map(|vector| {
-            let [x, y] = [vector.x, vector.y]
-                .map(|coordinate| coordinate.largest_change(&region.half_widths));
+            let [x, y] =
+                [vector.x, vector.y].map(|coordinate| coordinate.max_change(&region.half_widths));
             x.hypot(y)
         });
         let mut bounded_region = BoundedRegion {
@@ -262,7 +262,7 @@ impl<const N: usize> Search<'_, N> {
         if min_distance < self.upper_bound() - TOLERANCE_MM / 4.0
             && let Some(pose) = self.guard.find_pose(self.angles(&region))
         {
-            self.nearest = Some(Nearest {
+            self.nearest = Some(NearestPose {
                 pose,
                 mm: min_distance,
             });
@@ -301,7 +301,7 @@ fn find_most_influential_servo<const N: usize>(
         let half_width = region.half_widths[servo];
         coordinates.iter().fold(0.0, |sum, coordinate| {
             let change = coordinate.derivatives[servo].max_abs() * half_width;
-            // Without a finite bound, the widest angle is halved.
+            // If there is no finite bound, the widest angle is halved.
             sum + match change.is_finite() {
                 true => change,
                 false => half_width * 1e6,

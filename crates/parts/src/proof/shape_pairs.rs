@@ -5,9 +5,10 @@
 
 use lizard_kinematics::Vector;
 
+use super::bounding_rectangles::{are_apart, compute_bounding_rectangles};
 use super::guard::{Guard, Region};
 use super::interval_dual::IntervalDual;
-use super::{MIN_GAP_MM, TOUCH_OVERLAP, sweep};
+use super::{MIN_GAP_MM, TOUCH_OVERLAP};
 use crate::bodies::assembly::Assembly;
 use crate::layers::body::{Body, Mount, Prism};
 use crate::layers::placement::Placement;
@@ -49,7 +50,7 @@ pub struct Task {
 }
 
 impl Task {
-    /// Least allowed distance between the task's pairs, mm.
+    /// Smallest allowed distance between the task's pairs, mm.
     pub fn min_distance(&self) -> f64 {
         if self.may_touch {
             -TOUCH_OVERLAP
@@ -68,18 +69,18 @@ impl Task {
 
     /// Collects the tasks of a robot: all pairs of bodies that are less than `max_gap_mm` apart both in height and
     /// between the rectangles that they never leave. Bodies designed to touch are paired only if their heights overlap.
-    pub fn all(
+    pub fn collect(
         assembly: &Assembly,
         guard: &Guard,
         max_gap_mm: f64,
         is_chosen: impl Fn(&Body, &Body) -> bool,
     ) -> Vec<Self> {
         let mut tasks: Vec<Self> = Vec::new();
-        let rectangles = sweep::find_body_rectangles(assembly, guard);
+        let rectangles = compute_bounding_rectangles(assembly, guard);
         let bodies = assembly.bodies();
         for (i, a) in bodies.iter().enumerate() {
             for (j, b) in bodies.iter().enumerate().skip(i + 1) {
-                let is_apart = || sweep::are_apart(&rectangles[i], &rectangles[j], max_gap_mm);
+                let is_apart = || are_apart(&rectangles[i], &rectangles[j], max_gap_mm);
                 if a.mount == b.mount || !is_chosen(a, b) || is_apart() {
                     continue;
                 }
@@ -149,13 +150,15 @@ fn select_holes(prism: &Prism, shape: &Shape) -> Vec<Shape> {
 }
 
 impl ShapePair {
-    /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame moves by up to
-    /// `shift_mm` and the tips of its unit axes by up to `turn`. This test is quick: false does not mean close.
-    pub fn is_far(&self, placement: &Placement, [shift_mm, turn]: [f64; 2], min_mm: f64) -> bool {
+    /// True if the shapes are certainly at least `min_mm` apart while the second shape's frame deviates: its origin by
+    /// up to the first of `max_deviations`, mm, and the tips of its unit axes by up to the second. This test is quick:
+    /// false does not mean close.
+    pub fn is_far(&self, placement: &Placement, max_deviations: [f64; 2], min_mm: f64) -> bool {
         let [(a, a_radius), (b, b_radius)] = self.discs;
+        let [origin_deviation, axis_deviation] = max_deviations;
         let gap = (placement.map(b) - a).length() - a_radius - b_radius;
         // When the frame turns, a point moves along both axes.
-        gap - shift_mm - 2.0 * turn * self.lever_arm >= min_mm
+        gap - origin_deviation - 2.0 * axis_deviation * self.lever_arm >= min_mm
     }
 
     /// Computes the constant gap of a pinned pair, mm: a pin in the centre of a round hole, or a disc whose centre is
@@ -238,8 +241,8 @@ impl ShapePair {
             let changes = shape.points.iter().map(|&point| {
                 let position = bounds.map(point);
                 Vector::new(
-                    position.x.largest_change(&region.half_widths),
-                    position.y.largest_change(&region.half_widths),
+                    position.x.max_change(&region.half_widths),
+                    position.y.max_change(&region.half_widths),
                 )
             });
             changes.fold(Vector::default(), |max, change| match change.is_finite() {

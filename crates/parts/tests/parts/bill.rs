@@ -55,7 +55,7 @@ fn a_symmetric_robot_has_its_centre_of_mass_in_the_middle() {
 }
 
 #[test]
-fn the_mass_in_each_robot_file_equals_its_bills_mass_in_whole_grams() {
+fn the_mass_in_each_robot_file_is_that_of_its_bill_in_whole_grams() {
     let dir = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
     let files = std::fs::read_dir(dir).expect("the folder robots/ is readable");
     let paths = files.map(|file| file.expect("the folder's entry is readable").path());
@@ -86,20 +86,20 @@ fn every_row_to_buy_has_a_price_and_the_prices_add_up() {
         .bought
         .iter()
         .map(|item| item.price.expect("each bought item has a price class"));
-    assert_eq!(bill.euros, lizard_parts::Price::sum(price_classes));
+    assert_eq!(bill.euros, lizard_parts::PriceClass::sum(price_classes));
     assert!(bill.radio.iter().all(|item| item.price.is_some()));
     assert!(bill.printed.iter().all(|item| item.price.is_none()));
     let [min, max] = bill.euros;
     assert!(min > 50 && max < 300, "{min} to {max} euros");
     let text = bill.to_string();
-    let sum_sentence = format!("is {min} to {max} euros");
-    assert!(text.contains(&sum_sentence), "{text}");
+    let sum_phrase = format!("is {min} to {max} euros");
+    assert!(text.contains(&sum_phrase), "{text}");
     assert_eq!(bill.count_bought("resistor 10 kOhm"), 4);
     assert_eq!(bill.count_bought("terminal strip, 12 ways"), 2);
 }
 
 #[test]
-fn inputs_are_options_that_change_neither_the_bills_sum_nor_its_mass() {
+fn inputs_are_options_that_change_neither_the_sum_nor_the_mass_of_a_bill() {
     let (_, plain_bill) = build_assembly_and_bill("paper", "");
     assert!(plain_bill.inputs.is_empty() && !plain_bill.to_string().contains("inputs"));
     let inputs_toml = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";

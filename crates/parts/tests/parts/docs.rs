@@ -1,6 +1,6 @@
 //! Tests that the pages about parts agree with the code: values, shopping list, steps.
 
-use lizard_parts::{Bill, build_steps, format_buying_table, format_places_table};
+use lizard_parts::{Bill, build_steps, format_buying_table, format_mounting_table};
 use lizard_robot::{Parts, Robot};
 
 use crate::{build_assembly, solve_at_neutral};
@@ -83,7 +83,7 @@ fn check_or_write_quote(path: &str, start: &str, expected: &str) {
 }
 
 #[test]
-fn the_pages_quote_the_bills_lists() {
+fn the_pages_quote_the_lists_of_the_bill() {
     let assembly = build_assembly("paper", "[leg.drive]\nkind = \"rigid\"");
     let bill = Bill::compute(
         &assembly,
@@ -109,10 +109,10 @@ fn the_pages_quote_the_bills_lists() {
         (
             "docs/build.md",
             "the places on the robot",
-            &format_places_table(assembly.robot().parts().battery),
+            &format_mounting_table(assembly.robot().parts().battery),
         ),
     ] {
-        let start = format!("<!-- {mark}; a test holds it -->\n");
+        let start = format!("<!-- {mark}; checked by a test -->\n");
         check_or_write_quote(path, &start, list);
         // The guide also contains the list.
         assert!(bill.to_string().contains(list), "{mark}");
@@ -138,7 +138,7 @@ fn the_pages_have_the_mass_of_robot_toml() {
 }
 
 #[test]
-fn the_quickstart_lists_the_guides_steps_in_order() {
+fn the_quickstart_lists_the_steps_of_the_guide_in_order() {
     let page = read_file("docs/quickstart.md");
     let lines = page.lines().filter_map(|line| line.strip_prefix("Guide: "));
     let entries = lines.flat_map(|line| line.trim_end_matches('.').split("; "));

@@ -1,4 +1,5 @@
-//! Tests of the files' content: distances between holes, and identical bytes on every run.
+//! Tests of the geometry in the files: distances between holes, positions of feet, cuts; and of identical bytes on
+//! every run.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{Assembly, Body, Loop, Mount, Outline, draw_sheets, make_part_files};
@@ -104,7 +105,7 @@ fn a_rigid_strut_has_the_length_of_a_slotted_strut_and_lies_within_it() {
 }
 
 #[test]
-fn the_plates_pivots_match_the_kinematics() {
+fn the_pivots_of_the_plate_match_the_kinematics() {
     let assembly = build_assembly("unequal");
     let holes = find_clearance_holes(find_body(&assembly, "plate"));
     for leg in &assembly.layout().legs {

@@ -1,11 +1,11 @@
-//! Tests that parts collide at a grid of poses only if their dimensions are wrong or they are designed to touch.
+//! Tests on a grid of poses: no parts collide unless they are designed to touch, and wrong dimensions are detected.
 
 use lizard_parts::Clearance;
 
 use crate::{ROBOTS, build_assembly, build_slotted_assembly, find_body};
 
-/// Finds the nearest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
-fn find_nearest_pair(toml: &str) -> Option<Clearance> {
+/// Finds the closest pair of parts of the paper's robot with changed dimensions; `None` if no parts are within 1 mm.
+fn find_closest_pair(toml: &str) -> Option<Clearance> {
     let assembly = build_slotted_assembly("paper", toml);
     assembly
         .find_close_pairs(assembly.grid_poses(9), 1.0)
@@ -18,8 +18,8 @@ fn every_robot_has_gaps_between_its_parts() {
     for name in ROBOTS {
         let assembly = build_slotted_assembly(name, "");
         assert!(assembly.grid_poses(10).count() > 100, "{name}");
-        let near_pairs = assembly.find_close_pairs(assembly.grid_poses(10), 0.2);
-        assert!(near_pairs.is_empty(), "{name}: {}", near_pairs[0]);
+        let close_pairs = assembly.find_close_pairs(assembly.grid_poses(10), 0.2);
+        assert!(close_pairs.is_empty(), "{name}: {}", close_pairs[0]);
     }
 }
 
@@ -37,7 +37,7 @@ fn a_wrong_dimension_makes_parts_overlap() {
             "screw",
         ),
     ] {
-        let pair = find_nearest_pair(toml).unwrap_or_else(|| panic!("{toml}: no parts are close"));
+        let pair = find_closest_pair(toml).unwrap_or_else(|| panic!("{toml}: no parts are close"));
         assert!(pair.mm < 0.0, "{toml}: {pair}");
         let is_expected_pair = pair.first.contains(first) && pair.second.contains(second);
         assert!(is_expected_pair, "{toml}: {pair}");
@@ -45,7 +45,7 @@ fn a_wrong_dimension_makes_parts_overlap() {
 }
 
 #[test]
-fn a_body_is_found_by_its_unique_name_and_has_layers_from_bottom_to_top() {
+fn bodies_have_unique_names_adjoining_layers_and_known_contacts() {
     let assembly = build_assembly("unequal", "");
     let mut names: Vec<_> = assembly.bodies().iter().map(|body| &body.name).collect();
     names.sort();
@@ -67,7 +67,7 @@ fn a_body_is_found_by_its_unique_name_and_has_layers_from_bottom_to_top() {
 }
 
 #[test]
-fn pins_are_centred_in_the_holes_of_their_parts() {
+fn screws_are_centred_in_the_holes_of_the_parts_that_they_hold() {
     for name in ROBOTS {
         let assembly = build_assembly(name, "");
         let mut hole_count = 0;
@@ -99,15 +99,15 @@ fn pins_are_centred_in_the_holes_of_their_parts() {
 }
 
 #[test]
-fn a_robot_that_does_not_fit_is_refused_with_one_message() {
+fn a_robot_that_does_not_fit_is_refused_with_its_reason() {
     let bar_message =
         "parts.bar must be at least 7.3 mm for a screw's head and a wall on each side, but is 6 mm";
     let spring_message = "leg strut LF is 30.2 mm from screw to screw, but must be long enough to stretch its spring, which is 40.0 mm";
-    // The pivot in the paper's figures is below the servo's link.
-    let naive_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
+    // As drawn in the paper, the pivot lies under the servo's link.
+    let drawn_pivot = "[parts]\npivot = [6.25, -4.0]\n[parts.spring]\nlength = 8.0";
     let near_pivot = "[parts]\npivot = [22.0, 6.0]\n[parts.spring]\nlength = 20.0";
     for (toml, phrases) in [
-        (naive_pivot, [" and ", "overlap by"]),
+        (drawn_pivot, [" and ", "overlap by"]),
         (near_pivot, ["overlap by", "at pose"]),
         ("[parts]\nbar = 6.0", [bar_message, ""]),
         (

@@ -1,8 +1,9 @@
-//! Tests that each fitting (supply, strips, plugs) has a space on the robot, into which its products fit.
+//! Tests that each fitting (supply, strips, plugs) has a space on the robot that its example products fit into, and
+//! tests of the sizes, ratings and price classes of bought parts.
 
 use lizard_kinematics::Vector;
 use lizard_parts::{
-    Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, Price, Shape, format_places_table,
+    Assembly, BATTERY_EXAMPLES, Body, Fitting, Kind, PriceClass, Shape, format_mounting_table,
 };
 use lizard_robot::{FUSE_RATING_A, MIN_SWITCH_RATING_A};
 
@@ -36,10 +37,10 @@ fn both_example_products_fit_into_the_space_of_their_fitting() {
     for name in ROBOTS {
         let assembly = build_assembly(name, "");
         for fitting in Fitting::ALL {
-            let facts = fitting.facts();
+            let spec = fitting.spec();
             let bodies = find_bodies(&assembly, fitting);
             let expected_count = if fitting == Fitting::Resistor { 4 } else { 1 };
-            assert_eq!(bodies.len(), expected_count, "{name}: {}", facts.name);
+            assert_eq!(bodies.len(), expected_count, "{name}: {}", spec.name);
             // A strap goes around other parts, so it has no box.
             if fitting == Fitting::Strap {
                 continue;
@@ -50,7 +51,7 @@ fn both_example_products_fit_into_the_space_of_their_fitting() {
                 let [width, length] = compute_extents(&points);
                 let [low, high] = body.z();
                 let space = sort_lengths([width, length, high - low]);
-                for product in facts.examples {
+                for product in spec.examples {
                     let size = sort_lengths(product.size);
                     let fits = size
                         .iter()
@@ -75,10 +76,10 @@ fn both_example_batteries_fit_into_every_robots_battery_space() {
                 .zip(space)
                 .all(|(length, limit)| *length <= limit);
             assert!(fits, "{name}: {product} in {space:?}");
-            assert!(format_places_table(space).contains(product.name));
+            assert!(format_mounting_table(space).contains(product.name));
         }
         // The table lists no battery for a space into which none fits.
-        assert!(!format_places_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
+        assert!(!format_mounting_table([20.0, 30.0, 10.0]).contains(BATTERY_EXAMPLES[0].name));
     }
 }
 
@@ -93,7 +94,7 @@ fn drawn_screws_and_nuts_have_the_sizes_of_their_standards() {
 
 #[test]
 fn a_product_size_without_a_drawing_is_marked_as_approximate() {
-    let [exact, approximate] = Fitting::RadioSpace.facts().examples;
+    let [exact, approximate] = Fitting::RadioSpace.spec().examples;
     assert_eq!(exact.to_string(), "HM-10, bare board: 13 x 27 x 2.2");
     assert!(
         approximate.to_string().ends_with(": ~16 x 37 x 7"),
@@ -102,7 +103,7 @@ fn a_product_size_without_a_drawing_is_marked_as_approximate() {
 }
 
 #[test]
-fn a_radio_module_of_either_common_size_has_a_place() {
+fn the_space_for_a_radio_module_fits_either_common_size() {
     let assembly = build_assembly("paper", "");
     let [body] = find_bodies(&assembly, Fitting::RadioSpace)[..] else {
         panic!("there is exactly one place for a radio module")
@@ -156,16 +157,16 @@ fn the_fuse_carries_the_converters_current_and_the_bill_lists_both_ratings() {
 }
 
 #[test]
-fn price_classes_adjoin_and_their_sum_adds_up_their_bounds() {
-    for pair in Price::ALL.windows(2) {
+fn price_classes_are_contiguous_and_a_sum_adds_their_bounds() {
+    for pair in PriceClass::ALL.windows(2) {
         assert_eq!(pair[0].euro_range()[1], pair[1].euro_range()[0]);
     }
-    let classes = [Price::A, Price::C, Price::C, Price::E];
+    let classes = [PriceClass::A, PriceClass::C, PriceClass::C, PriceClass::E];
     assert_eq!(
-        Price::sum(classes.into_iter()),
+        PriceClass::sum(classes.into_iter()),
         [3 + 3 + 15, 1 + 7 + 7 + 30]
     );
-    let text = Price::explanation();
+    let text = PriceClass::explanation();
     for phrase in ["A up to 1", "E 15 to 30", "2026", "vary"] {
         assert!(text.contains(phrase), "{text}");
     }

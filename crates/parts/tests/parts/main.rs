@@ -5,7 +5,7 @@ use lizard_parts::{Assembly, Body};
 use lizard_robot::Robot;
 
 mod bill;
-mod builder;
+mod details;
 mod docs;
 mod files;
 mod fit;
@@ -28,7 +28,7 @@ const GRAIN_ROBOT: &str = "grain";
 /// The lines of robot.toml for slotted struts.
 const SLOTTED_STRUTS_TOML: &str = "[leg.drive]\nkind = \"strut\"";
 
-/// Reads a robot file with more lines of TOML appended.
+/// Parses a robot file with more lines of TOML appended.
 fn read_robot_with(name: &str, more_toml: &str) -> Robot {
     let path = format!("{}/../../robots/{name}.toml", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect(&path);

@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use lizard_kinematics::{End, Side, Vector};
-use lizard_parts::{Assembly, Block, Course, Mesh, Pads, Solid, StrutSpring};
+use lizard_parts::{Assembly, Block, Mesh, Pads, Solid, StrutSpring, Trajectory};
 use lizard_robot::Robot;
 use lizard_robot::servo::{LEG_NAMES, SERVO_NAMES};
 use roxmltree::{Document, Node};
 
 use crate::mjcf_masses::compute_mass_and_centre;
 use crate::mjcf_reader::{
-    STRUT_SPRING, first_child, make_mjcf, read_bodies, read_numbers, section_elements,
+    STRUT_SPRING, find_named, first_child, make_mjcf, read_bodies, read_numbers, section_elements,
     solve_at_neutral,
 };
 use crate::{GRAIN_ROBOT, ROBOTS, read_robot_with};
@@ -169,13 +169,10 @@ fn the_file_has_the_blocks_slope_and_friction_of_the_floor() {
         "forward: {forward}"
     );
     assert!((up + 0.866 * 9.81).abs() < 0.01, "up: {up}");
-    let geoms = || {
-        document
-            .descendants()
-            .filter(|node| node.has_tag_name("geom"))
-    };
-    let block = geoms().find(|geom| geom.attribute("type") == Some("box"));
-    let block = block.expect("the floor has a block");
+    let mut nodes = document.descendants();
+    let block = nodes
+        .find(|node| node.has_tag_name("geom") && node.attribute("type") == Some("box"))
+        .expect("the floor has a block");
     let [position, half_size] = ["pos", "size"].map(|attribute| read_numbers(block, attribute));
     assert_eq!((position[0], position[1]), (0.02, 0.3));
     let euler = read_numbers(block, "euler");
@@ -185,9 +182,7 @@ fn the_file_has_the_blocks_slope_and_friction_of_the_floor() {
         (0.005, 0.02, 0.002)
     );
     for (leg, friction) in LEG_NAMES.into_iter().zip([0.1, 0.2, 0.3, 0.4]) {
-        let name = format!("pad {leg}");
-        let pad = geoms().find(|geom| geom.attribute("name") == Some(&name));
-        let pad = pad.expect("each leg has a pad");
+        let pad = find_named(&document, "geom", &format!("pad {leg}"));
         // Without a priority, MuJoCo would use the larger friction coefficient of pad and floor.
         assert_eq!(pad.attribute("priority"), Some("1"));
         assert_eq!(read_numbers(pad, "friction")[0], friction);
@@ -200,18 +195,15 @@ fn the_contact_sphere_of_a_pad_matches_its_dome() {
     let pad = assembly.body("pad LF").expect("the leg has a pad");
     let text = make_mjcf(&read_robot("paper"), |_| ());
     let document = Document::parse(&text).expect("the file is well-formed XML");
-    let mut nodes = document
-        .descendants()
-        .filter(|node| node.has_tag_name("geom"));
-    let sphere = nodes.find(|node| node.attribute("name") == Some("pad LF"));
-    let radius = 1000.0 * read_numbers(sphere.expect("the file has the pad's sphere"), "size")[0];
+    let sphere = find_named(&document, "geom", "pad LF");
+    let radius = 1000.0 * read_numbers(sphere, "size")[0];
     let parts = assembly.collect_parts();
     let part = parts.iter().find(|part| part.body_names[0] == pad.name);
     let (layers, _) = part.expect("the pad is printed").build_printed_layers();
     let mesh = Mesh::from_solid(&Solid::from_prisms(&layers));
     // The printed pad lies on its back, centred on the origin. The hole for the screw is in the middle.
     let top = mesh.corners.iter().fold(0.0, |top, [.., z]| z.max(top));
-    let (mut lowest, mut triangle_count) = (top, 0);
+    let (mut lowest_z, mut triangle_count) = (top, 0);
     for triangle in &mesh.triangles {
         let corners = triangle.map(|corner| mesh.corners[corner]);
         let axis_distances = corners.map(|[x, y, _]| x.hypot(y));
@@ -226,7 +218,7 @@ fn the_contact_sphere_of_a_pad_matches_its_dome() {
                 (z - sphere_z).abs() < 0.002,
                 "dome at {z} mm, sphere at {sphere_z} mm"
             );
-            lowest = lowest.min(z);
+            lowest_z = lowest_z.min(z);
         }
         let [a, b, c] = corners;
         let ([ux, uy, _], [vx, vy, _]) = (
@@ -236,9 +228,9 @@ fn the_contact_sphere_of_a_pad_matches_its_dome() {
         assert!(ux * vy - uy * vx > 1e-6, "a vertical triangle: {corners:?}");
     }
     assert!(
-        triangle_count > 1000 && top - lowest > 1.9,
+        triangle_count > 1000 && top - lowest_z > 1.9,
         "{triangle_count} triangles, {} mm high",
-        top - lowest
+        top - lowest_z
     );
 }
 
@@ -283,11 +275,7 @@ fn servos_have_the_stall_torque_no_load_rate_and_travel_of_robot_toml() {
         for (servo, motor) in motors.iter().enumerate() {
             assert_eq!(motor.attribute("name"), Some(SERVO_NAMES[servo]));
             let joint_name = motor.attribute("joint").expect("the motor has a joint");
-            let mut nodes = document.descendants();
-            let is_joint = |node: &Node| {
-                node.has_tag_name("joint") && node.attribute("name") == Some(joint_name)
-            };
-            let joint = nodes.find(is_joint).expect(joint_name);
+            let joint = find_named(&document, "joint", joint_name);
             let [min_torque, max_torque] = read_numbers(*motor, "forcerange")[..] else {
                 panic!("forcerange has two values")
             };
@@ -308,7 +296,7 @@ fn servos_have_the_stall_torque_no_load_rate_and_travel_of_robot_toml() {
 }
 
 #[test]
-fn the_motors_and_the_friction_of_joints_match_robot_toml() {
+fn the_motors_and_the_joint_friction_match_robot_toml() {
     let text = include_str!("../../../../robots/paper.toml").replace(
         "[servo.A1]",
         "[joints]\ndrag = 17.0\nslider = 0.5\n[servo]\nmodel = \"copy\"\nvolts = 4.2\nspin_up_ms = 10.0\n[servo.A1]",
@@ -334,13 +322,10 @@ fn the_motors_and_the_friction_of_joints_match_robot_toml() {
     assert_eq!(joint_friction("rod"), [0.5; 2]);
     // The servo "copy" has 1.2 kg cm and 400 deg/s at 4.8 V. Both are proportional to the supply voltage, so the
     // damping and the reflected inertia are the same at 4.2 V.
-    let link = joints
-        .iter()
-        .find(|node| node.attribute("name") == Some("link A1"))
-        .expect("the link of A1 has a joint");
+    let link = find_named(&document, "joint", "link A1");
     let damping = 0.012 * 9.80665 / 400f64.to_radians();
-    assert!((read_numbers(*link, "damping")[0] - damping).abs() < 1e-8);
-    assert!((read_numbers(*link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
+    assert!((read_numbers(link, "damping")[0] - damping).abs() < 1e-8);
+    assert!((read_numbers(link, "armature")[0] - 0.01 * damping).abs() < 1e-8);
     let motor = section_elements(&document, "actuator")[0];
     let max_torque = read_numbers(motor, "forcerange")[1];
     assert!(
@@ -350,25 +335,23 @@ fn the_motors_and_the_friction_of_joints_match_robot_toml() {
 }
 
 #[test]
-fn the_file_has_the_servo_targets_and_the_measured_cycles_of_a_course() {
+fn the_file_has_the_servo_targets_and_the_measured_cycles_of_a_trajectory() {
     let robot = read_robot("own-gaits");
     let gait = robot.gait("stride").expect("the robot has the gait stride");
-    let course = Course::for_gait(&robot, gait, 2, 1);
-    let (start, period) = (course.measure_start, course.period);
-    let text = make_mjcf(&robot, |scene| scene.course = Some(course));
+    let trajectory = Trajectory::for_gait(&robot, gait, 2, 1);
+    let (start, period) = (trajectory.measure_start, trajectory.period);
+    let text = make_mjcf(&robot, |scene| scene.trajectory = Some(trajectory));
     let document = Document::parse(&text).expect("the file is well-formed XML");
-    let mut nodes = document.descendants();
-    let numeric = nodes.find(|node| node.attribute("name") == Some("cycle"));
-    let numeric = numeric.expect("the file has the measured cycles");
-    let [cycle_start, cycle_length, cycle_count] = read_numbers(numeric, "data")[..] else {
+    let numeric = find_named(&document, "numeric", "cycle");
+    let [measure_start, cycle_period, cycle_count] = read_numbers(numeric, "data")[..] else {
         panic!("cycle has three values")
     };
-    assert!((cycle_start - start).abs() < 1e-9 && cycle_length == period && period == 0.91);
+    assert!((measure_start - start).abs() < 1e-9 && cycle_period == period && period == 0.91);
     assert_eq!(cycle_count, 1.0);
     let mut keys = section_elements(&document, "keyframe");
     let home = keys.pop().and_then(|key| key.attribute("name"));
     assert_eq!(home, Some("home"));
-    let last_time = read_numbers(*keys.last().expect("the course has frames"), "time")[0];
+    let last_time = read_numbers(*keys.last().expect("the trajectory has frames"), "time")[0];
     assert!(last_time >= start + period && last_time < start + period + 0.02 + 1e-9);
     for key in keys {
         let time = read_numbers(key, "time")[0];
@@ -391,9 +374,7 @@ fn the_file_has_the_friction_ratio() {
     for (name, ratio) in [("paper", 1.0), ("unequal", 1.15), (GRAIN_ROBOT, 1.5)] {
         let text = make_mjcf(&read_robot(name), |_| {});
         let document = Document::parse(&text).expect("the file is well-formed XML");
-        let mut nodes = document.descendants();
-        let numeric = nodes.find(|node| node.attribute("name") == Some("back over forward"));
-        let numeric = numeric.expect("the file has the friction ratio");
+        let numeric = find_named(&document, "numeric", "back over forward");
         assert_eq!(read_numbers(numeric, "data"), [ratio], "{name}");
     }
 }

@@ -5,7 +5,9 @@ use lizard_robot::Robot;
 use lizard_robot::servo::LEG_NAMES;
 use roxmltree::Document;
 
-use crate::mjcf_reader::{first_child, make_mjcf, read_bodies, read_numbers, solve_at_neutral};
+use crate::mjcf_reader::{
+    find_named, first_child, make_mjcf, read_bodies, read_numbers, solve_at_neutral,
+};
 use crate::{ROBOTS, read_robot_with};
 
 /// Computes the mass (g) and the centre of mass (mm: forward, left, up from the plate) of all bodies in a MuJoCo file.
@@ -77,12 +79,8 @@ fn the_leg_mass_of_the_contact_model_matches_the_parts() {
         let ground = robot.ground();
         for leg in LEG_NAMES {
             let read_mass_and_lever_arm = |part: &str| {
-                let name = format!("{part} {leg}");
-                let mut nodes = document.descendants();
-                let body = nodes.find(|node| {
-                    node.has_tag_name("body") && node.attribute("name") == Some(&*name)
-                });
-                let inertial = first_child(body.expect("the leg has this part"), "inertial");
+                let body = find_named(&document, "body", &format!("{part} {leg}"));
+                let inertial = first_child(body, "inertial");
                 let centre = read_numbers(inertial, "pos");
                 (
                     read_numbers(inertial, "mass")[0],

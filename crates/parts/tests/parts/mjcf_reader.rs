@@ -1,4 +1,4 @@
-//! Reads a MuJoCo file and computes each body's placement from the file alone.
+//! Helpers that make and read a MuJoCo file, and compute each body's placement from the file alone.
 
 use std::collections::BTreeMap;
 
@@ -105,6 +105,13 @@ fn section<'a>(document: &'a Document, tag: &str) -> Node<'a, 'a> {
 pub fn section_elements<'a>(document: &'a Document, tag: &str) -> Vec<Node<'a, 'a>> {
     let children = section(document, tag).children();
     children.filter(Node::is_element).collect()
+}
+
+/// Returns the element with a tag and a name.
+pub fn find_named<'a>(document: &'a Document, tag: &str, name: &str) -> Node<'a, 'a> {
+    let mut nodes = document.descendants();
+    let is_named = |node: &Node| node.has_tag_name(tag) && node.attribute("name") == Some(name);
+    nodes.find(is_named).expect(name)
 }
 
 /// Returns the first child element with a tag.

@@ -56,7 +56,7 @@ fn elements_by_name<'a>(parent: Node<'a, 'a>, tag: &str) -> BTreeMap<String, Nod
 }
 
 /// A body: placement, mass, centre of mass, and inertia in the order of [`INERTIA_KEYS`].
-type ReadBody = (Placement, f64, Vec<f64>, Vec<f64>);
+type ParsedBody = (Placement, f64, Vec<f64>, Vec<f64>);
 
 /// Places a frame at a pose on another frame. The pose has six numbers: x, y, z, roll, pitch, yaw.
 fn place_on(frame: Placement, pose: &[f64]) -> Placement {
@@ -70,7 +70,7 @@ fn place_on(frame: Placement, pose: &[f64]) -> Placement {
 const INERTIA_KEYS: [&str; 6] = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
 
 /// Reads the bodies of a URDF file. The joints between the root and a link determine the link's placement.
-fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
+fn read_urdf(document: &Document) -> BTreeMap<String, ParsedBody> {
     let root = document.root_element();
     let (links, joints) = (
         elements_by_name(root, "link"),
@@ -118,7 +118,7 @@ fn read_urdf(document: &Document) -> BTreeMap<String, ReadBody> {
 }
 
 /// Reads the bodies of an SDF file. A link's pose is relative to another link.
-fn read_sdf(document: &Document) -> BTreeMap<String, ReadBody> {
+fn read_sdf(document: &Document) -> BTreeMap<String, ParsedBody> {
     let model = first_child(document.root_element(), "model");
     let links = elements_by_name(model, "link");
     fn compute_placement<'a>(links: &BTreeMap<String, Node<'a, 'a>>, name: &str) -> Placement {

@@ -38,7 +38,7 @@ fn every_screw_of_every_robot_can_be_reached() {
 }
 
 /// Finds the blocked screws of the paper's robot with changed steps, each with the body in its way. The screws of the
-/// feet, which are blocked at neutral in any order, are left out.
+/// feet, which are blocked at neutral in any order, are omitted.
 fn find_blocked_screws(
     change: impl FnOnce(&mut Vec<Step>),
 ) -> Vec<(String, ScrewOperation, String)> {
@@ -105,7 +105,7 @@ fn a_pad_without_a_hole_for_the_key_is_detected() {
 }
 
 #[test]
-fn a_strut_below_the_head_of_a_screw_is_detected() {
+fn a_strut_under_the_head_of_a_screw_is_detected() {
     // Heads that a key must hold from below replace the hexagonal heads, which pockets hold.
     let altered_assembly = build_slotted_assembly("unequal", "").with_changed_bodies(|bodies| {
         for body in bodies {
@@ -124,7 +124,7 @@ fn a_strut_below_the_head_of_a_screw_is_detected() {
 }
 
 #[test]
-fn a_screw_that_is_covered_at_every_pose_is_an_error() {
+fn a_screw_that_is_covered_at_every_pose_is_reported() {
     let covered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         // The lid is as large as the plate and above the legs.
         let plate = bodies.iter().find(|body| body.name == "plate").cloned();
@@ -182,10 +182,10 @@ fn no_body_is_above_a_screw_head_that_can_be_reached() {
         let steps = build_guide_steps(&assembly);
         let blocked_screws = assembly.find_blocked_screws(&steps, &pose);
         let find_step = |body: &Body| steps.iter().position(|step| step.adds(body));
-        let trace_layers = |body: &Body| body.prisms.iter().map(Outline::from_prism).collect();
+        let compute_outlines = |body: &Body| body.prisms.iter().map(Outline::from_prism).collect();
         let bodies = assembly.bodies().iter();
         let outlines: Vec<(&Body, Vec<_>)> =
-            bodies.map(|body| (body, trace_layers(body))).collect();
+            bodies.map(|body| (body, compute_outlines(body))).collect();
         let mut checked_count = 0;
         for screw in assembly.bodies() {
             let screw_step = find_step(screw);
@@ -208,8 +208,8 @@ fn no_body_is_above_a_screw_head_that_can_be_reached() {
             let head = assembly
                 .placement(screw.mount, &pose)
                 .map(high.filled_shapes[0].middle());
-            for turn in 0..12 {
-                let rim = head + Vector::direction(30.0 * f64::from(turn)) * 1.99;
+            for direction in 0..12 {
+                let rim = head + Vector::from_angle(30.0 * f64::from(direction)) * 1.99;
                 for height_step in 1..60 {
                     let z = high.z[1] + 0.5 * f64::from(height_step);
                     let is_later = |body: &Body| find_step(body) > screw_step;

@@ -1,7 +1,7 @@
 //! Tests of pads for a strip with a grain: the notch for the strip's end, and the notch's direction.
 
 use lizard_kinematics::Vector;
-use lizard_parts::{Bill, Outline, Part, Prism, Shape, make_documents};
+use lizard_parts::{Bill, Outline, Part, PrintTransform, Prism, Shape, make_documents};
 use lizard_robot::servo::LEG_NAMES;
 
 use crate::{GRAIN_ROBOT, build_assembly, find_body, solve_at_neutral};
@@ -22,10 +22,10 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
         panic!("there is exactly one kind of pad");
     };
     assert_eq!(pad.count(), 4);
-    let (layers, closed_count) = pad.build_printed_layers();
+    let (layers, bridged_count) = pad.build_printed_layers();
     assert_eq!(
-        closed_count, 1,
-        "the hole for the key is closed, as in a plain pad"
+        bridged_count, 1,
+        "the hole for the key is bridged, as in a plain pad"
     );
     let notch = find_notch(&layers).expect("the printed pad has a notch");
     // A foot never turns, so the second pose must give the same result.
@@ -45,18 +45,20 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
             find_body(&assembly, &format!("pad {leg}")),
             find_body(&assembly, &format!("screw height {leg}")),
         );
-        let motion = pad.print_to_body(pad_body);
+        let PrintTransform {
+            is_flipped, frame, ..
+        } = pad.transform_to_body(pad_body);
         let placement = assembly.placement(pad_body.mount, pose);
         let to_robot = |point: &Vector| {
-            let y = if motion.is_flipped { -point.y } else { point.y };
-            placement.map(motion.frame.map(Vector::new(point.x, y)))
+            let y = if is_flipped { -point.y } else { point.y };
+            placement.map(frame.map(Vector::new(point.x, y)))
         };
         let axis = placement.map(screw.prisms[0].filled_shapes[0].middle());
         for corner in &notch.points {
             let from_axis = to_robot(corner) - axis;
-            // The head is in the direction of y.
-            let error = from_axis.x.abs() - 4.2;
-            assert!(error.abs() < 1e-9, "{leg}: {from_axis:?}");
+            // The head lies in the +y direction. The strip is 8 mm wide, with a fit of 0.2 mm on each side.
+            let x_error = from_axis.x.abs() - 4.2;
+            assert!(x_error.abs() < 1e-9, "{leg}: {from_axis:?}");
             assert!(from_axis.y > half_width - 1.51, "{leg}: {from_axis:?}");
         }
     }
@@ -64,23 +66,25 @@ fn the_notches_of_all_four_printed_pads_point_to_the_head_when_mounted() {
 
 #[test]
 fn a_pad_with_a_notch_is_as_high_as_a_plain_pad_and_no_wider() {
-    let [plain, notched] = ["paper", GRAIN_ROBOT].map(|name| build_assembly(name, ""));
+    let assemblies = ["paper", GRAIN_ROBOT].map(|name| build_assembly(name, ""));
     for leg in LEG_NAMES {
-        let [plain, notched] =
-            [&plain, &notched].map(|assembly| find_body(assembly, &format!("pad {leg}")));
-        assert_eq!(plain.z(), notched.z());
-        assert!(find_notch(&plain.prisms).is_none());
-        assert_eq!(plain.prisms.len(), notched.prisms.len());
+        let [plain_body, notched_body] = assemblies
+            .each_ref()
+            .map(|assembly| find_body(assembly, &format!("pad {leg}")));
+        assert_eq!(plain_body.z(), notched_body.z());
+        assert!(find_notch(&plain_body.prisms).is_none());
+        assert_eq!(plain_body.prisms.len(), notched_body.prisms.len());
         let mut notched_count = 0;
-        for (plain, notched) in plain.prisms.iter().zip(&notched.prisms) {
+        for (plain, notched) in plain_body.prisms.iter().zip(&notched_body.prisms) {
             assert_eq!(plain.z, notched.z);
             let end_radii = |prism: &Prism| {
                 prism
                     .insets
                     .map(|inset| prism.filled_shapes[0].radius - inset)
             };
-            for (notched, plain) in end_radii(notched).into_iter().zip(end_radii(plain)) {
-                let excess = notched - plain;
+            let [plain_radii, notched_radii] = [plain, notched].map(end_radii);
+            for (notched_radius, plain_radius) in notched_radii.into_iter().zip(plain_radii) {
+                let excess = notched_radius - plain_radius;
                 assert!((-0.3..1e-9).contains(&excess), "{leg}: {excess} mm wider");
             }
             if notched.cut_shapes.len() > plain.cut_shapes.len() {

@@ -1,5 +1,5 @@
 //! Tests of the proof that parts do not collide: its bounds never exceed the distance at any pose, it detects
-//! deliberate mistakes, and every robot file passes it.
+//! deliberate errors, and every robot file passes it.
 
 use std::collections::BTreeSet;
 
@@ -88,7 +88,7 @@ fn assert_bounds_hold(name: &str) {
         let accepted = assembly.robot().solve_if_allowed(clearance.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
         assert!(pair.lower_bound <= clearance.mm, "{name}: {pair}");
-        // The bound is not much less than the least distance found, except near poses that the guard barely accepts.
+        // The bound is not much less than the smallest distance found, except near poses that the guard barely accepts.
         let is_close = clearance.mm < pair.lower_bound.max(0.0) * 2.1 + 0.02;
         assert!(is_close || pair.unproved_angles.is_some(), "{name}: {pair}");
     }
@@ -214,7 +214,7 @@ fn a_large_overlap_is_detected_after_a_few_regions() {
 }
 
 /// Builds the paper's robot with one screw that is longer by `extra_mm`.
-fn with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly {
+fn build_assembly_with_longer_screw(name: &str, extra_mm: f64, extends_down: bool) -> Assembly {
     build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let mut bodies = bodies.iter_mut();
         let screw = bodies.find(|body| body.name == name).expect(name);
@@ -238,7 +238,7 @@ fn a_screw_that_is_too_long_is_detected() {
         ("screw height LF", 26.0, false, "crank LF"),
         ("screw leg anchor LF", 5.0, false, "link A1"),
     ] {
-        let altered_assembly = with_longer_screw(name, extra_mm, extends_down);
+        let altered_assembly = build_assembly_with_longer_screw(name, extra_mm, extends_down);
         assert_overlap(
             find_clash(&altered_assembly, |body| body.name == name),
             name,
@@ -249,7 +249,7 @@ fn a_screw_that_is_too_long_is_detected() {
 
 #[test]
 fn swapped_layers_are_detected() {
-    // The head's upper and lower couplers exchange their heights.
+    // The upper and the lower coupler of the head swap their heights.
     let altered_assembly = build_slotted_assembly("paper", "").with_changed_bodies(|bodies| {
         let find_index = |name: &str| {
             bodies
@@ -295,8 +295,8 @@ fn the_message_about_parts_that_come_too_near_has_their_pose() {
     assert!(message.contains(" pose "), "{message}");
 }
 
-/// Computes the least and greatest x of a shape that is shifted by `shift_mm` along x, mm.
-fn extent_along_x(shape: &Shape, shift_mm: f64) -> [f64; 2] {
+/// Computes the smallest and the largest x of a shape that is shifted by `shift_mm` along x, mm.
+fn compute_x_range(shape: &Shape, shift_mm: f64) -> [f64; 2] {
     let xs = shape.points.iter().map(|point| point.x + shift_mm);
     let low = xs.clone().fold(f64::INFINITY, f64::min) - shape.radius;
     [low, xs.fold(f64::NEG_INFINITY, f64::max) + shape.radius]
@@ -314,17 +314,17 @@ fn a_rod_stays_in_its_sleeve_throughout_the_stroke() {
                 let mut shapes = body.prisms.iter().flat_map(|prism| &prism.filled_shapes);
                 shapes.find(|shape| shape.points.len() > 2).expect(part)
             });
-            let [start, end] = extent_along_x(sleeve, 0.0);
-            let mut least_overlap = f64::INFINITY;
+            let [start, end] = compute_x_range(sleeve, 0.0);
+            let mut min_overlap = f64::INFINITY;
             for step in 0..=100 {
                 let fraction = f64::from(step) / 100.0;
                 let stroke = limits.stroke_min + fraction * (limits.stroke_max - limits.stroke_min);
-                let [rear, front] = extent_along_x(rod, slider.nominal_length + stroke);
-                least_overlap = least_overlap.min(front.min(end) - rear.max(start));
+                let [rear, front] = compute_x_range(rod, slider.nominal_length + stroke);
+                min_overlap = min_overlap.min(front.min(end) - rear.max(start));
             }
             // At the longest stroke, the rod overlaps the sleeve by exactly the required length.
-            let error = least_overlap - 20.0;
-            assert!(error.abs() < 1e-9, "{name} {side}: {least_overlap} mm");
+            let error = min_overlap - 20.0;
+            assert!(error.abs() < 1e-9, "{name} {side}: {min_overlap} mm");
         }
         let is_sleeve_and_rod =
             |a: &Body, b: &Body| a.name.starts_with("sleeve") && b.name.starts_with("rod");
@@ -356,15 +356,15 @@ fn the_screw_of_a_strut_has_clearance_along_its_whole_slot() {
     let slot = slots.find(is_at_screw).expect("the strut has a slot");
     for step in 0..=10 {
         let travel = 5.0 * f64::from(step) / 10.0;
-        let pin = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
-        let gap = pin.depth_in(slot, Vector::default());
+        let shank = Shape::disc(Vector::new(leg.strut_length + travel, 0.0), screw_radius);
+        let gap = shank.depth_in(slot, Vector::default());
         assert!((gap - 0.1).abs() < 1e-9, "{gap} mm after {travel} mm");
     }
-    let pin_beyond = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw_radius);
-    assert!(pin_beyond.depth_in(slot, Vector::default()) < 0.0);
+    let shank_beyond_slot = Shape::disc(Vector::new(leg.strut_length + 5.2, 0.0), screw_radius);
+    assert!(shank_beyond_slot.depth_in(slot, Vector::default()) < 0.0);
 }
 
 #[test]
-fn the_least_allowed_distance_is_at_least_the_error_of_a_printer() {
+fn the_smallest_allowed_distance_is_at_least_the_error_of_a_printer() {
     assert!(MIN_GAP_MM >= build_slotted_assembly("paper", "").robot().parts().fit);
 }

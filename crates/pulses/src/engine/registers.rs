@@ -41,14 +41,14 @@ unsafe fn write_register<T>(register: usize, value: T) {
     unsafe { with_exposed_provenance_mut::<T>(register).write_volatile(value) }
 }
 
-impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
+impl<const SERVO_COUNT: usize, const SIZE: usize> Engine<'_, SERVO_COUNT, SIZE> {
     /// Sets the pins, in the order of the widths, drives them low and makes them outputs. Call this function once,
     /// before the first [`Engine::submit`], and with interrupts off if any handler changes other pins of these ports.
     #[inline(always)]
-    pub fn connect(&self, pins: [Pin; SERVOS]) {
-        for (slot, pin) in self.pins.iter().zip(&pins) {
-            slot[0].set(pin.port);
-            slot[1].set(pin.mask);
+    pub fn connect(&self, pins: [Pin; SERVO_COUNT]) {
+        for ([port, mask], pin) in self.pins.iter().zip(&pins) {
+            port.set(pin.port);
+            mask.set(pin.mask);
         }
         self.drive_pins_low();
     }
@@ -69,7 +69,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     /// Drives the pins low and makes them outputs.
     #[inline(always)]
     fn drive_pins_low(&self) {
-        for [address, mask] in &self.pins[..SERVOS] {
+        for [address, mask] in &self.pins[..SERVO_COUNT] {
             let port = port_register(address.get());
             let mask = mask.get();
             // SAFETY: a `Pin` has only addresses of PORT registers, and DDR is the register just below PORT. No handler
@@ -89,7 +89,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
     #[inline(always)]
     pub unsafe fn start(&self) {
         self.slot.set(Self::TICK_SLOT);
-        self.fall_count.set(Self::NO_PULSE);
+        self.fall_count.set(Self::NO_PULSE_COUNT);
         self.allowed_pins.set(u8::MAX);
         // SAFETY: these registers belong to Timer1, which only this engine uses.
         unsafe {
@@ -97,7 +97,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
             write_register(TCCR1B, 0u8);
             write_register(TCCR1A, 0u8);
             write_register(TCNT1, 0u16);
-            write_register(OCR1A, const { slot_cycles(SERVOS) - 1 });
+            write_register(OCR1A, const { slot_cycles(SERVO_COUNT) - 1 });
             write_register(OCR1B, NEVER);
             write_register(TIFR1, MATCH_A | MATCH_B);
             write_register(TIMSK1, MATCH_A | MATCH_B);
@@ -132,7 +132,7 @@ impl<const SERVOS: usize, const SIZE: usize> Engine<'_, SERVOS, SIZE> {
                 if on_time_mask & set_mask == 0 {
                     self.late_edges.count();
                     self.mask.set(0);
-                    self.fall_count.set(Self::NO_PULSE);
+                    self.fall_count.set(Self::NO_PULSE_COUNT);
                 }
             }
         } else if self.slot.get() == Self::TICK_SLOT {

@@ -27,7 +27,7 @@ fn a_calibration_written_as_a_file_is_read_back_unchanged() {
 }
 
 #[test]
-fn the_file_has_one_readable_line_for_each_setting() {
+fn a_file_has_one_line_for_each_setting() {
     let text = example_calibration().to_toml();
     for lines in [
         "boot = \"arc left\"\ndeadman = 1500\n",
@@ -40,7 +40,7 @@ fn the_file_has_one_readable_line_for_each_setting() {
 #[test]
 fn an_error_in_a_file_is_reported_with_its_line_and_key() {
     let valid_text = example_calibration().to_toml();
-    let error_text = |old: &str, new: &str| {
+    let error_message = |old: &str, new: &str| {
         assert!(valid_text.contains(old), "{old}");
         let invalid_text = valid_text.replacen(old, new, 1);
         let error =
@@ -49,11 +49,11 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
     };
     let robot_file_error = Calibration::parse("[links]\nl0 = 20.0\n", "a.toml")
         .expect_err("a robot file is not a calibration");
-    let sentence =
+    let format_problem =
         "must be \"lizard calibration 1\": this is not a calibration file of a supported version";
     assert_eq!(
         robot_file_error.to_string(),
-        format!("a.toml: format {sentence}")
+        format!("a.toml: format {format_problem}")
     );
     let line = 1 + valid_text
         .lines()
@@ -64,7 +64,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         (
             "calibration 1",
             "calibration 2",
-            format!("a.toml:4: format {sentence}"),
+            format!("a.toml:4: format {format_problem}"),
         ),
         (
             "trim = -3.25\n",
@@ -100,7 +100,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
             "a.toml:6: deadman must be a whole number of ms".to_owned(),
         ),
     ] {
-        assert_eq!(error_text(old, new), message);
+        assert_eq!(error_message(old, new), message);
     }
     for (old, new, phrase) in [
         (
@@ -135,7 +135,7 @@ fn an_error_in_a_file_is_reported_with_its_line_and_key() {
         ),
         ("format = \"", "format = \"x\n", "is missing the = between"),
     ] {
-        let message = error_text(old, new);
+        let message = error_message(old, new);
         assert!(message.contains(phrase), "{message} / {phrase}");
     }
 }

@@ -6,7 +6,7 @@ use crate::gaits::Gait;
 use crate::tables::Tables;
 
 /// The error of a gait's tables over a cycle, relative to the gait in floating point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TableError {
     /// Largest error over all servos, deg.
     pub max: f64,
@@ -29,12 +29,7 @@ pub(crate) fn compute_table_error(
     tables: &Tables,
     phase_count: usize,
 ) -> TableError {
-    let mut error = TableError {
-        max: 0.0,
-        rms: 0.0,
-        servo: 0,
-        phase: 0.0,
-    };
+    let mut error = TableError::default();
     let mut sum_of_squares = 0.0;
     for i in 0..phase_count {
         let table_phase = (i * (PHASE_COUNT / phase_count)) as u16;

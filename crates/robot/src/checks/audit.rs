@@ -25,7 +25,7 @@ const MAX_TABLE_ERROR_DEG: f64 = 0.50;
 
 /// The smallest margin of one kind (type-2, type-1 or leg) over a cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LeastMargin {
+pub struct MinMargin {
     /// The condition that has this margin.
     pub check: Check,
     /// The smallest value of the margin, as a sine.
@@ -49,11 +49,11 @@ pub struct PeakSpeed {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Audit {
     /// Smallest type-2 margin, head and tail.
-    pub type2: LeastMargin,
+    pub type2: MinMargin,
     /// Smallest type-1 margin of the four arms.
-    pub type1: LeastMargin,
+    pub type1: MinMargin,
     /// Smallest margin of the four legs.
-    pub leg: LeastMargin,
+    pub leg: MinMargin,
     /// Smallest and largest slider travel over both sides, mm from nominal.
     pub stroke_range: (f64, f64),
     /// Highest speed of a servo over one frame.
@@ -63,9 +63,9 @@ pub struct Audit {
 impl Audit {
     /// The audit before the first sample is added.
     pub(crate) const EMPTY: Self = Self {
-        type2: LeastMargin::unset(Check::TYPE2[0]),
-        type1: LeastMargin::unset(Check::TYPE1[0]),
-        leg: LeastMargin::unset(Check::LEG[0]),
+        type2: MinMargin::unset(Check::TYPE2[0]),
+        type1: MinMargin::unset(Check::TYPE1[0]),
+        leg: MinMargin::unset(Check::LEG[0]),
         stroke_range: (f64::INFINITY, f64::NEG_INFINITY),
         peak_speed: PeakSpeed {
             servo: 0,
@@ -73,9 +73,35 @@ impl Audit {
             phase: 0.0,
         },
     };
+
+    /// Adds the margins and slider travels of the pose at a phase.
+    fn add(&mut self, solution: &Solution, phase: f64) {
+        for (check, value) in solution.margins.iter() {
+            let kinds = [
+                (&mut self.type2, &Check::TYPE2[..]),
+                (&mut self.type1, &Check::TYPE1),
+                (&mut self.leg, &Check::LEG),
+            ];
+            for (min_margin, checks) in kinds {
+                if checks.contains(&check) && value < min_margin.value {
+                    *min_margin = MinMargin {
+                        check,
+                        value,
+                        phase,
+                    };
+                }
+            }
+        }
+        for slider_travel in [solution.left.s, solution.right.s] {
+            self.stroke_range = (
+                self.stroke_range.0.min(slider_travel),
+                self.stroke_range.1.max(slider_travel),
+            );
+        }
+    }
 }
 
-impl LeastMargin {
+impl MinMargin {
     /// The margin before the first sample is added.
     const fn unset(check: Check) -> Self {
         Self {
@@ -153,18 +179,16 @@ pub(crate) fn check_gait(
             ),
         });
     }
-    let PeakSpeed {
-        servo,
-        speed,
-        phase,
-    } = audit.peak_speed;
+    let peak = audit.peak_speed;
     let limit = config.speed_limits.gait_slew;
-    if speed > limit {
+    if peak.speed > limit {
+        let name = SERVO_NAMES[peak.servo];
         return Err(LimitViolation {
-            consequence: format!("servo {} would have to turn too fast", SERVO_NAMES[servo]),
+            consequence: format!("servo {name} would have to turn too fast"),
             problem: format!(
-                "{speed:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
-                at_phase(phase)
+                "{:.1} deg/s {}; limits.gait_slew is {limit:.1} deg/s",
+                peak.speed,
+                at_phase(peak.phase)
             ),
         });
     }
@@ -204,7 +228,7 @@ fn is_worse_violation(violation: Violation, earlier: Violation) -> bool {
     violation.check == earlier.check && excess(violation) > excess(earlier)
 }
 
-/// Lists the phases to check, in 1/65536 cycle: evenly spaced phases, and every sample of every servo.
+/// Lists the phases to check, in 1/65536 cycle: evenly spaced phases, and the phase of every sample of every servo.
 fn list_phases(table: &TableGait) -> Vec<u16> {
     let evenly_spaced = |count: usize| (0..count).map(move |i| (i * (PHASE_COUNT / count)) as u16);
     let mut phases: Vec<u16> = evenly_spaced(CHECKED_PHASE_COUNT).collect();
@@ -257,34 +281,6 @@ fn find_peak_speed(gait: &Gait) -> PeakSpeed {
         }
     }
     peak
-}
-
-impl Audit {
-    /// Adds the margins and slider travels of the pose at a phase.
-    fn add(&mut self, solution: &Solution, phase: f64) {
-        for (check, value) in solution.margins.iter() {
-            let kinds = [
-                (&mut self.type2, &Check::TYPE2[..]),
-                (&mut self.type1, &Check::TYPE1),
-                (&mut self.leg, &Check::LEG),
-            ];
-            for (least_margin, checks) in kinds {
-                if checks.contains(&check) && value < least_margin.value {
-                    *least_margin = LeastMargin {
-                        check,
-                        value,
-                        phase,
-                    };
-                }
-            }
-        }
-        for slider_travel in [solution.left.s, solution.right.s] {
-            self.stroke_range = (
-                self.stroke_range.0.min(slider_travel),
-                self.stroke_range.1.max(slider_travel),
-            );
-        }
-    }
 }
 
 #[cfg(test)]

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use lizard_contact::{Ground, Motors, Prediction, Travel, Walker};
+use lizard_contact::{GroundContact, Motors, Prediction, Travel, Walker};
 use lizard_core::numbers::gaits::Gait as TableGait;
 use lizard_core::numbers::units::phase16;
 use lizard_kinematics::Pose;
 
 use crate::checks::accuracy::{self, TableError};
-use crate::checks::audit::{self, Audit, LimitViolation};
+use crate::checks::audit::{self, Audit};
 use crate::config::RobotConfig;
 use crate::config::servo::FORWARD_TURN_SIGN;
 use crate::file::{ReadResult, UnlocatedError};
@@ -37,16 +37,11 @@ impl CheckedGait {
         core_robot: &lizard_core::numbers::robot::Robot,
     ) -> ReadResult<Self> {
         let audit = audit::check_gait(&gait, index, tables, config, core_robot);
-        let audit = audit.map_err(
-            |LimitViolation {
-                 consequence,
-                 problem,
-             }| {
-                let name = &gait.name;
-                UnlocatedError::with_own_subject(format!("gait.{name}"), problem)
-                    .with_consequence(format!("in \"{name}\" {consequence}"))
-            },
-        )?;
+        let audit = audit.map_err(|violation| {
+            let name = &gait.name;
+            UnlocatedError::with_own_subject(format!("gait.{name}"), violation.problem)
+                .with_consequence(format!("in \"{name}\" {}", violation.consequence))
+        })?;
         Ok(Self {
             gait,
             index,
@@ -175,16 +170,16 @@ impl CheckedGait {
     ///
     /// A component is unknown if it depends on a tie, in which two feet pull against the other two with equal force.
     /// Ties are detected with rigid legs, because they depend only on the pads.
-    pub fn predict(&self, ground: &Ground) -> Prediction {
+    pub fn predict(&self, ground: &GroundContact) -> Prediction {
         let prediction = ground
             .with_rigid_drive()
             .predict(self.sweeps_over_cycle(TIE_STEPS_PER_CYCLE));
-        prediction.keep_decided(self.simulate_cycle(ground).travel)
+        prediction.keep_determined(self.simulate_cycle(ground).travel)
     }
 
     /// Simulates one cycle on this ground, even if the result depends on ties. If the legs lag, the result is the
     /// second cycle.
-    pub fn simulate_cycle(&self, ground: &Ground) -> SimulatedCycle {
+    pub fn simulate_cycle(&self, ground: &GroundContact) -> SimulatedCycle {
         let mut walker = Walker::new(*ground, self.sweeps(self.phase_at(0.0)));
         let mut step_count = RIGID_STEPS_PER_CYCLE;
         if ground.drive.can_lag() {
@@ -193,7 +188,7 @@ impl CheckedGait {
                 walker.move_to(sweeps);
             });
         }
-        let start_place = walker.place();
+        let start_pose = walker.body_pose();
         let mut max_lag = 0.0;
         for sweeps in self.sweeps_over_cycle(step_count) {
             walker.move_to(sweeps);
@@ -204,14 +199,19 @@ impl CheckedGait {
                 .fold(max_lag, f64::max);
         }
         SimulatedCycle {
-            travel: walker.place().travel_from(start_place),
+            travel: walker.body_pose().travel_from(start_pose),
             max_lag,
         }
     }
 
     /// Simulates two cycles on this ground with these motors, in the firmware's frames. Returns the displacement of the
     /// second cycle. `pace` is relative to the gait's nominal pace.
-    pub fn simulate_driven_cycle(&self, ground: &Ground, motors: &Motors, pace: f64) -> Travel {
+    pub fn simulate_driven_cycle(
+        &self,
+        ground: &GroundContact,
+        motors: &Motors,
+        pace: f64,
+    ) -> Travel {
         self.simulate_with_angle_scale(ground, motors, pace, 1.0)
     }
 
@@ -219,7 +219,7 @@ impl CheckedGait {
     /// the firmware assumes.
     pub(crate) fn simulate_with_angle_scale(
         &self,
-        ground: &Ground,
+        ground: &GroundContact,
         motors: &Motors,
         pace: f64,
         angle_scale: f64,
@@ -235,11 +235,11 @@ impl CheckedGait {
         };
         let mut walker = Walker::new(*ground, sweeps_at(0));
         let mut walk_cycle = || {
-            let start_place = walker.place();
+            let start_pose = walker.body_pose();
             for frame in 1..=frame_count {
                 walker.drive(sweeps_at(frame).map(Some), 1.0 / FRAMES_PER_SECOND, motors);
             }
-            walker.place().travel_from(start_place)
+            walker.body_pose().travel_from(start_pose)
         };
         walk_cycle();
         walk_cycle()

@@ -5,13 +5,13 @@
 //! the servo falls behind its pulses. Friction of pads, pins and sliders takes the same torque at any pace; the rotor's
 //! inertia takes less at a lower pace.
 
-use lizard_contact::{Ground, Motor, Motors, Walker};
+use lizard_contact::{GroundContact, Motor, Motors, Walker};
 
 use crate::checks::checked_gait::CheckedGait;
 
 /// Duration of a simulation step, s.
 const STEP_SECONDS: f64 = 0.0025;
-/// Utilisation above which a servo has little reserve: play, cold gears or a thin wire may use up the rest.
+/// Utilisation above which a servo has little reserve: play, cold gears or a thin wire may use up the reserve.
 pub const HIGH_UTILISATION: f64 = 0.9;
 /// Factor that raises a motor's torque and speed so that the servo follows every gait exactly.
 const STRONG_FACTOR: f64 = 1e6;
@@ -39,7 +39,7 @@ pub struct Effort {
 impl Effort {
     /// Simulates a gait on this ground with servos that follow the gait exactly, and measures their effort.
     #[must_use]
-    pub fn simulate(gait: &CheckedGait, ground: &Ground, motors: &Motors) -> Self {
+    pub fn simulate(gait: &CheckedGait, ground: &GroundContact, motors: &Motors) -> Self {
         let mut servos = motors.per_servo.map(|motor| (motor, Vec::new()));
         if !gait.has_movement() {
             return Self { servos };

@@ -10,6 +10,6 @@ mod checked_gait;
 mod effort;
 
 pub use accuracy::TableError;
-pub use audit::{Audit, LeastMargin, PeakSpeed};
+pub use audit::{Audit, MinMargin, PeakSpeed};
 pub use checked_gait::{CheckedGait, SimulatedCycle};
 pub use effort::{Effort, HIGH_UTILISATION};

@@ -58,11 +58,6 @@ impl Coil {
         self.initial_tension() + self.rate() * (length - self.free_length).max(0.0)
     }
 
-    /// Shear stress of the wire at a force (N), N/mm^2.
-    pub fn shear_stress(&self, force: f64) -> f64 {
-        force / self.force_at_stress(1.0)
-    }
-
     /// Force at a shear stress of the wire (N/mm^2), N.
     fn force_at_stress(&self, stress: f64) -> f64 {
         PI * self.wire_diameter.powi(3) * stress / (8.0 * self.mean_diameter())
@@ -89,7 +84,7 @@ mod tests {
             "{}",
             coil.initial_tension()
         );
-        assert!((coil.shear_stress(coil.initial_tension()) - 80.8).abs() < 0.1);
+        assert!((coil.initial_tension() / coil.force_at_stress(1.0) - 80.8).abs() < 0.1);
         let force_change = coil.force(coil.free_length + 4.0) - coil.force(coil.free_length);
         assert!((force_change - 4.0 * 0.495_625).abs() < 1e-9);
         assert_eq!(coil.force(0.0), coil.initial_tension());

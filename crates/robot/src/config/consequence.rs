@@ -1,4 +1,4 @@
-//! The consequences of violated conditions for the robot, in plain words, without keys of robot.toml and without
+//! The consequences that violated conditions have for the robot, in plain words, without keys of robot.toml and without
 //! numbers.
 
 use lizard_kinematics::{Check, End, Mechanism, Side};

@@ -8,7 +8,7 @@ use crate::config::strut;
 use crate::file::{ReadResult, Section, suggest};
 
 /// The key of the table in `[leg]`.
-const TABLE: &str = "drive";
+const DRIVE_KEY: &str = "drive";
 /// The keys of all kinds of drive.
 const KEYS: [&str; 4] = ["kind", "play", "force", "rate"];
 /// The kinds of drive, each with its keys in addition to `kind` and `play`.
@@ -17,7 +17,7 @@ const KINDS: [(&str, &[&str]); 2] = [
     (DriveKind::NAMES[1], &["force", "rate"]),
 ];
 
-/// Reads `[leg.drive]`. The legs are rigid if this table is left out. The servos' neutral angles are in deg, chassis
+/// Reads `[leg.drive]`. The legs are rigid if this table is missing. The servos' neutral angles are in deg, chassis
 /// frame.
 pub(crate) fn read(
     leg_section: &Section,
@@ -25,10 +25,10 @@ pub(crate) fn read(
     neutral_angles: [f64; 4],
     parts: &Parts,
 ) -> ReadResult<Drive> {
-    if !leg_section.has_key(TABLE) {
+    if !leg_section.has_key(DRIVE_KEY) {
         return Ok(Drive::RIGID);
     }
-    let section = leg_section.open(TABLE)?;
+    let section = leg_section.open(DRIVE_KEY)?;
     let kind_name = match section.has_key("kind") {
         true => section.text("kind")?,
         false => KINDS[0].0,

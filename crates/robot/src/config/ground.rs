@@ -1,15 +1,15 @@
 //! The parameters of the contact model: `[ground]`, `[body]` and `[feet]` in robot.toml.
 
-use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, Ground, Stance};
+use lizard_contact::{Body, DEFAULT_FRICTION, Drive, Feet, GroundContact, Stance};
 
 use crate::config::servo::LEG_NAMES;
 use crate::file::{ReadResult, Section};
 
 /// Reads `[ground]`, `[body]` and `[feet]`; `feet` and `drive` come from other tables.
-pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<Ground> {
+pub(crate) fn read(root: &Section, feet: Feet, drive: Drive) -> ReadResult<GroundContact> {
     const RATIO_KEY: &str = "friction_back_over_forward";
     let section = root.section("ground", &[RATIO_KEY, "friction"])?;
-    Ok(Ground {
+    Ok(GroundContact {
         feet,
         body: read_body(root, &feet)?,
         stance: read_stance(root)?,
@@ -32,19 +32,17 @@ fn read_body(root: &Section, feet: &Feet) -> ReadResult<Body> {
         return Ok(Body::DEFAULT);
     }
     let section = root.section("body", &["mass", "centre"])?;
-    let mass = section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?;
-    let centre = match section.has_key("centre") {
-        true => section.numbers("centre", -500.0, 500.0, "mm")?,
-        false => Body::DEFAULT.centre_of_mass,
-    };
     let body = Body {
-        mass,
-        centre_of_mass: centre,
+        mass: section.number_or("mass", Body::DEFAULT.mass, 10.0, 10_000.0, "g")?,
+        centre_of_mass: match section.has_key("centre") {
+            true => section.numbers("centre", -500.0, 500.0, "mm")?,
+            false => Body::DEFAULT.centre_of_mass,
+        },
     };
     let loads = Stance::LEVEL.relative_loads(&body, feet.positions([0.0; 4]));
     match loads.iter().position(|load| *load <= 0.0) {
-        Some(foot) => {
-            let foot = LEG_NAMES[foot];
+        Some(leg) => {
+            let foot = LEG_NAMES[leg];
             let message = format!(
                 "is so far from the middle that foot {foot} is off the floor in the neutral pose; all four feet must carry load"
             );

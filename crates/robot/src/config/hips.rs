@@ -13,21 +13,21 @@ use crate::config::parts::Parts;
 use crate::file::{ReadResult, Section, UnlocatedError};
 
 /// The default position of the foot on its coupler, mm, as in [`Parts::foot`]. With the pivots of the paper's robot,
-/// the hips are 55 mm ahead and 35 mm to the side.
+/// the hips are 55 mm forward and 35 mm to the side.
 const DEFAULT_FOOT: [f64; 2] = [-3.5, 2.5];
-/// Range of the hips' distance ahead of the chassis centre, mm.
+/// Range of the hips' forward distance from the chassis centre, mm.
 const HIP_FORWARD_RANGE: (f64, f64) = (1.0, 500.0);
-/// Range of the hips' distance to the side of the chassis centre, mm.
+/// Range of the hips' sideways distance from the chassis centre, mm.
 const HIP_SIDE_RANGE: (f64, f64) = (0.0, 500.0);
 /// Largest difference between two lengths that count as equal, mm.
 const LENGTH_TOLERANCE_MM: f64 = 0.005;
 
-/// The key of the hips' distance ahead of the chassis centre.
+/// The key of the hips' forward distance from the chassis centre.
 const FORWARD_KEY: &str = "hip_forward";
-/// The key of the hips' distance to the side of the chassis centre.
+/// The key of the hips' sideways distance from the chassis centre.
 const SIDE_KEY: &str = "hip_side";
 
-/// The hips' distances from the chassis centre in `[leg]`, mm; `None` for a distance that follows from pivot and foot.
+/// The hips' distances from the chassis centre in `[leg]`, mm. A distance is `None` if it follows from pivot and foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hips {
     forward: Option<f64>,
@@ -109,7 +109,7 @@ mod tests {
         robot_with("paper", &[(LEG_HEADER, &leg)]).map_err(|error| error.to_string())
     }
 
-    /// Returns the hips' distances in the paper's robot with these lines, mm: ahead, and to the side at head and tail.
+    /// Returns the hips' distances in the paper's robot with these lines, mm: forward, and sideways at head and tail.
     fn read_hips(hip_lines: &str, part_lines: &str) -> (f64, [f64; 2]) {
         let feet = robot(hip_lines, part_lines)
             .expect("the robot is valid")

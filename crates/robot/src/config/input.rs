@@ -12,7 +12,7 @@ pub const INPUT_NAMES: [&str; 2] = ["button", "nose"];
 /// The Arduino pin numbers of a robot's inputs.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Inputs {
-    /// The pin of a push button; `None` if the robot has no button.
+    /// The pin of the push button; `None` if the robot has no button.
     pub button: Option<u8>,
     /// The pin of the switch on the robot's nose, which an obstacle closes; `None` if the robot has no such switch.
     pub nose: Option<u8>,

@@ -1,9 +1,9 @@
-//! The legs seen from above: their pivots, the coupler with the foot, and the strut through
-//! which the servo drives the leg.
+//! The legs seen from above: their pivots, the coupler with the foot, and the strut through which the servo drives the
+//! leg.
 //!
 //! The paper's figures do not show the legs' pivots. Only the foot's circle matters for walking, and a parallelogram
-//! moves its coupler without turning it. Both pivots may therefore be shifted together to a place with enough room, if
-//! the foot is shifted on the coupler by the same distance in the opposite direction. The driven crank's pivot lies
+//! moves its coupler without turning it. Both pivots may therefore be shifted together to a position with enough room,
+//! if the foot is shifted on the coupler by the same distance in the opposite direction. The driven crank's pivot lies
 //! outside the area that the servo's link sweeps. The strut joins the servo's link to the leg. It is the coupler of a
 //! second parallelogram, whose ground link goes from the servo's shaft to the crank's pivot, and whose cranks are two
 //! equal arms that carry the strut's anchors.
@@ -15,7 +15,7 @@ use lizard_contact::{FRONT_SIGN, Feet, LEFT_SIGN, Point};
 use lizard_kinematics::{Lizard, Vector};
 
 use crate::config::parts::Parts;
-use crate::config::servo::ARM_SIDE;
+use crate::config::servo::ARM_TURN_SIGN;
 
 /// The dimensions of a leg that are the same in every pose, seen from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,11 +70,11 @@ impl LegPlan {
         let hip = to_vector(feet.hips()[servo]);
         let hip_to_foot = to_vector(feet.positions([0.0; 4])[servo]) - hip;
         let shaft = lizard.shafts()[servo];
-        let crank_pivot = shaft + crank_pivot_offset(servo, parts);
+        let crank_pivot = shaft + chassis_offset(servo, parts.pivot);
         let crank_offset = hip_to_foot.angle() - neutral;
         // The angle between ground link and crank equals the servo's angle. The follower's pivot
         // may be at either end of the ground link; the end that is farther from the servo is used.
-        let ground_link = Vector::direction(crank_offset) * lizard.leg.ground;
+        let ground_link = Vector::from_angle(crank_offset) * lizard.leg.ground;
         let [first_candidate, second_candidate] =
             [crank_pivot + ground_link, crank_pivot - ground_link];
         let follower_pivot = match (first_candidate - shaft).length_squared()
@@ -94,14 +94,14 @@ impl LegPlan {
             follower_pivot,
             coupler_direction,
             crank_offset,
-            crank_joint: Vector::direction(crank_offset) * lizard.leg.crank,
+            crank_joint: Vector::from_angle(crank_offset) * lizard.leg.crank,
             foot: Vector::new(
                 foot_offset.dot(coupler_direction),
                 coupler_direction.cross(foot_offset),
             ),
             strut_direction: strut_vector * (1.0 / strut_vector.length()),
             strut_length: strut_vector.length(),
-            anchor: Vector::direction(-ARM_SIDE[servo] * angle) * radius,
+            anchor: Vector::from_angle(-ARM_TURN_SIGN[servo] * angle) * radius,
         }
     }
 
@@ -109,7 +109,7 @@ impl LegPlan {
     /// angles differ by the leg's lag.
     pub fn points_at(&self, servo_angle: f64, leg_angle: f64) -> LegPoints {
         let rotate = |angle: f64, vector: Vector| {
-            let x = Vector::direction(angle);
+            let x = Vector::from_angle(angle);
             x * vector.x + x.rotated_left() * vector.y
         };
         let pivots = [self.crank_pivot, self.follower_pivot];
@@ -126,11 +126,6 @@ impl LegPlan {
             ],
         }
     }
-}
-
-/// The vector from a servo's shaft to the pivot of its leg's crank, mm, chassis frame.
-fn crank_pivot_offset(servo: usize, parts: &Parts) -> Vector {
-    chassis_offset(servo, parts.pivot)
 }
 
 /// Converts an offset from a servo, given as the distances outward and towards the robot's middle, to the chassis

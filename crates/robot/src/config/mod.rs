@@ -34,7 +34,7 @@ pub use servo::{Servo, SpeedLimits};
 pub(crate) use strut::{mounted_spring_length, strut_with_coil};
 pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_mv};
 
-use lizard_contact::{Ground, JointFriction};
+use lizard_contact::{GroundContact, JointFriction};
 use lizard_core::numbers::bars::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
@@ -71,7 +71,7 @@ pub(crate) struct RobotConfig {
     /// Limits of the servos' speed.
     pub speed_limits: SpeedLimits,
     /// The parameters of the contact model.
-    pub ground: Ground,
+    pub ground: GroundContact,
     /// The power supplies of the board and the servos.
     pub supplies: Supplies,
     /// The pins of the inputs.

@@ -7,7 +7,7 @@
 use lizard_contact::{GRAVITY, JointFriction, Motor};
 use lizard_kinematics::Lizard;
 
-use crate::config::servo::{ARM_SIDE, Servo};
+use crate::config::servo::{ARM_TURN_SIGN, Servo};
 use crate::file::{ReadResult, Section, suggest};
 
 /// Torque of 1 kg cm, N mm.
@@ -158,16 +158,16 @@ pub(crate) fn read_joints(
     servos: &[Servo; 4],
 ) -> ReadResult<JointFriction> {
     let links = &lizard.links;
-    let lengths = [links.l14, links.l19, links.l16, links.l11];
+    let arm_lengths = [links.l14, links.l19, links.l16, links.l11];
     let frictionless = JointFriction {
         pin_torque: 0.0,
         slider_force: 0.0,
         slider_arms: std::array::from_fn(|i| {
-            let (sin, cos) = (servos[i].neutral + ARM_SIDE[i] * 90.0)
+            let (sin, cos) = (servos[i].neutral + ARM_TURN_SIGN[i] * 90.0)
                 .to_radians()
                 .sin_cos();
             // Forward is y of the chassis frame; left is -x.
-            [lengths[i] * sin, -lengths[i] * cos]
+            [arm_lengths[i] * sin, -arm_lengths[i] * cos]
         }),
         shaft_distance: links.l10,
     };
@@ -184,17 +184,9 @@ pub(crate) fn read_joints(
 
 #[cfg(test)]
 mod tests {
-    use crate::Robot;
-    use crate::testing::robot_with;
+    use crate::testing::{paper_with_tables, robot};
 
-    /// The header before which a test inserts its lines.
-    const NEXT_TABLE: &str = "[servo.A1]";
-
-    /// Reads the paper's robot with these lines before `[servo.A1]`.
-    fn robot(keys: &str) -> Result<Robot, crate::Error> {
-        robot_with("paper", &[(NEXT_TABLE, &format!("{keys}\n{NEXT_TABLE}"))])
-    }
-
+    /// Returns half the dead band, the full-torque error and the rotor time constant.
     fn dead_band_torque_error_and_time(motor: lizard_contact::Motor) -> (f64, f64, f64) {
         (
             motor.half_dead_band,
@@ -205,7 +197,7 @@ mod tests {
 
     #[test]
     fn servos_default_to_the_sg90() {
-        let motors = robot("").expect("the robot is valid").motors();
+        let motors = robot("paper").motors();
         for motor in motors.per_servo {
             // 1.8 kg cm; 60 deg in 0.12 s; half of a dead band of 10 us, at 10 us per deg.
             assert!((motor.stall_torque - 176.5197).abs() < 1e-9 && motor.no_load_speed == 500.0);
@@ -221,10 +213,12 @@ mod tests {
     }
 
     #[test]
-    fn every_key_overrides_the_models_value() {
+    fn every_key_overrides_the_value_of_the_model() {
         let keys = "[servo]\nmodel = \"mg90s\"\ns_per_60_deg = 0.2\nvolts = 6.0\nspin_up_ms = 5\n\
                     full_torque_deg = 1.5\ndead_band_us = 2\n[joints]\nslider = 0.3";
-        let motors = robot(keys).expect("the robot is valid").motors();
+        let motors = paper_with_tables(keys)
+            .expect("the robot is valid")
+            .motors();
         let motor = motors.per_servo[3];
         assert!((motor.no_load_speed - 300.0 * 6.0 / 4.8).abs() < 1e-9);
         assert!(
@@ -254,7 +248,7 @@ mod tests {
             ("stall_kg_cm = 0.0", "servo.stall_kg_cm"),
             ("volts = 12.0", "must be between 2 and 9 V"),
         ] {
-            let message = robot(&format!("[servo]\n{keys}"))
+            let message = paper_with_tables(&format!("[servo]\n{keys}"))
                 .expect_err(keys)
                 .to_string();
             assert!(message.contains(phrase), "{keys}: {message}");
@@ -263,23 +257,23 @@ mod tests {
 
     #[test]
     fn slider_arms_end_at_the_arm_tips_of_the_kinematics() {
-        let robot = robot("").expect("the robot is valid");
+        let robot = robot("paper");
         let solution = robot
             .lizard()
             .solve(&robot.neutral_pose())
             .expect("the neutral pose closes");
         let arms = robot.motors().joint_friction.slider_arms;
         for side in lizard_kinematics::Side::ALL {
-            let [front, hind] = side.servos();
+            let [front, rear] = side.servos();
             let slider = solution.side(side);
-            // The tips are given relative to the hind shaft.
+            // The tips are given relative to the rear shaft.
             let tips = [
                 (front, slider.front_tip, 135.0),
-                (hind, slider.rear_tip, 0.0),
+                (rear, slider.rear_tip, 0.0),
             ];
-            for (servo, tip, base_length) in tips {
+            for (servo, tip, shaft_y) in tips {
                 let [forward, left] = arms[servo];
-                let error = (tip.y - base_length - forward).hypot(tip.x + left);
+                let error = (tip.y - shaft_y - forward).hypot(tip.x + left);
                 assert!(
                     error < 1e-6,
                     "servo {servo}: the tip is {tip:?}, the arm {:?}",

@@ -25,15 +25,15 @@ pub struct Parts {
     pub gap: f64,
     /// Width of a cut by a laser or another cutter.
     pub kerf: f64,
-    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward and towards
-    /// the middle. The follower's pivot is farther out by the length of the ground link.
+    /// The pivot of the leg's driven crank on the chassis, from the servo's shaft: outward and towards the middle. The
+    /// follower's pivot is farther out by the length of the ground link.
     pub pivot: [f64; 2],
     /// The foot's position on its coupler, from the crank's joint: outward and towards the middle. The hip, the centre
-    /// of the foot's circle, has the same offset from the crank's pivot. `None` if the key is left out;
+    /// of the foot's circle, has the same offset from the crank's pivot. `None` if the key is missing;
     /// [`crate::LegPlan`] then contains the computed position.
     pub foot: Option<[f64; 2]>,
-    /// The strut's anchor on the servo's link, in polar coordinates: distance from the shaft, and
-    /// angle (deg) from the crank, away from the slider's arm. The leg's anchor is parallel to it.
+    /// The strut's anchor on the servo's link, in polar coordinates: distance from the shaft, and angle (deg) from the
+    /// crank, away from the slider's arm. The leg's anchor is parallel to it.
     pub anchor: [f64; 2],
     /// Height of the top of the chassis plate above the floor.
     pub height: f64,
@@ -46,21 +46,20 @@ pub struct Parts {
     /// The pads on which the robot stands.
     pub pad: Pad,
     /// Width of a strip along each pad, from head to tail, that slides more easily in one direction, such as climbing
-    /// skin; 0 leaves the strip out.
+    /// skin; 0 omits the strip.
     pub strip: f64,
     /// The legs' springs, which are mounted in their struts.
     pub spring: Coil,
     /// Size of the battery: to the right, forward, up.
     pub battery: [f64; 3],
-    /// Length of the two links behind the tail's point, which make the robot look like a
-    /// lizard; 0 leaves them out.
+    /// Length of the two links behind the tail's point, which make the robot look like a lizard; 0 omits them.
     pub tail: f64,
-    /// Length of the head's plate ahead of the head's point; 0 leaves the plate out.
+    /// Length of the head's plate beyond the head's point; 0 omits the plate.
     pub head: f64,
 }
 
-/// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its
-/// table. Each length must be between 0.1 and 200 mm; every key is optional.
+/// Defines the dimensions of a part: a struct of lengths with their defaults, and the reader of its table. Each length
+/// must be between 0.1 and 200 mm; every key is optional.
 macro_rules! dimensions {
     ($($(#[$type_doc:meta])* $type:ident in $table:literal {
         $($(#[$key_doc:meta])* $key:ident: $default:literal,)*
@@ -139,8 +138,7 @@ dimensions! {
         nut_height: 4.0,
     }
 
-    /// A round pad under a foot, with a dome below, mm. A dome slides up an edge that would stop a
-    /// flat pad.
+    /// A round pad under a foot, with a dome below, mm. A dome slides up an edge that would stop a flat pad.
     Pad in "pad" {
         /// Radius of the sphere of which the dome is a part.
         radius: 30.0,
@@ -152,8 +150,8 @@ dimensions! {
 }
 
 impl Pad {
-    /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide up. `None` for a pad
-    /// that is wider than the sphere.
+    /// Height of the dome, mm, which is also the height of the highest edge that the pad can slide up. `None` if the
+    /// pad is wider than the sphere.
     pub fn dome_height(&self) -> Option<f64> {
         let half_width = self.width / 2.0;
         (half_width <= self.radius)
@@ -280,19 +278,16 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::robot_with;
+    use crate::testing::paper_with_tables;
 
-    /// Reads the parts of the paper's robot with these lines.
-    fn parts_with(table: &str) -> Result<Parts, String> {
-        const NEXT_TABLE: &str = "[ground]";
-        robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
-            .map(|robot| *robot.parts())
-            .map_err(|error| error.to_string())
+    /// Reads the parts of the paper's robot with these tables.
+    fn parts_with(tables: &str) -> Parts {
+        *paper_with_tables(tables).expect(tables).parts()
     }
 
     #[test]
     fn omitted_keys_have_the_values_of_the_papers_robot() {
-        assert_eq!(parts_with(""), Ok(Parts::default()));
+        assert_eq!(parts_with(""), Parts::default());
         let parts = parts_with("[parts]\nbar = 10.0\npivot = [30, 11]\n[parts.servo]\nshaft = 5.9");
         let expected = Parts {
             bar: 10.0,
@@ -303,6 +298,6 @@ mod tests {
             },
             ..Parts::default()
         };
-        assert_eq!(parts, Ok(expected));
+        assert_eq!(parts, expected);
     }
 }

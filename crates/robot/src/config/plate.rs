@@ -1,4 +1,4 @@
-//! The chassis plate, seen from above: the plate, its arms to the legs' pivots, and the servos' cases in it.
+//! The chassis plate, seen from above: the plate, its arms to the legs' pivots, and the servos' cases in the plate.
 
 use lizard_kinematics::{End, Vector};
 

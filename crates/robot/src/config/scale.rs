@@ -58,7 +58,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// True if a five-bar fits at this number of bits, according to the core's bound of 127 x 256 steps.
+    /// True if a five-bar fits at a scale of this number of bits, according to the core's bound of 127 x 256 steps.
     fn five_bar_fits(five_bar: &FiveBar, bits: u16) -> bool {
         let to_steps = |mm: f64| mm * f64::from(1u32 << bits);
         let base_and_cranks =
@@ -72,7 +72,8 @@ mod tests {
         .all(|mm| to_steps(mm) < 127.0 * 256.0)
     }
 
-    /// True if a slider fits at this number of bits, according to the core's bounds of 127 x 256 and 255 x 256 steps.
+    /// True if a slider fits at a scale of this number of bits, according to the core's bounds of 127 x 256 and 255 x
+    /// 256 steps.
     fn slider_fits(slider: &Slider, stroke_max: f64, bits: u16) -> bool {
         let to_steps = |mm: f64| mm * f64::from(1u32 << bits);
         let arms = slider.front_arm + slider.rear_arm + slider.front_offset.abs();
@@ -113,26 +114,14 @@ mod tests {
     fn a_sum_of_lengths_at_the_bound_halves_the_steps_per_mm() {
         // With a base of 47 mm, base and cranks add up to 127 mm. This is exactly the bound at 256 steps per mm, so a
         // coarser scale is needed.
-        let five_bar_with_base = |base| FiveBar {
-            base,
-            left_crank_length: 40.0,
-            left_coupler_length: 60.0,
-            right_coupler_length: 60.0,
-            right_crank_length: 40.0,
-        };
+        let five_bar_with_base = |base| FiveBar::new([base, 40.0, 60.0, 60.0, 40.0]);
         assert_eq!(find_five_bar_scale(&five_bar_with_base(46.99)).bits, 8);
         assert_eq!(find_five_bar_scale(&five_bar_with_base(47.0)).bits, 7);
     }
 
     #[test]
     fn the_smallest_and_the_largest_robot_have_a_scale() {
-        let equal_five_bar = |mm| FiveBar {
-            base: mm,
-            left_crank_length: mm,
-            left_coupler_length: mm,
-            right_coupler_length: mm,
-            right_crank_length: mm,
-        };
+        let equal_five_bar = |mm| FiveBar::new([mm; 5]);
         assert_eq!(find_five_bar_scale(&equal_five_bar(1.0)).bits, 13);
         assert_eq!(
             find_five_bar_scale(&equal_five_bar(MAX_LINK_LENGTH_MM)).bits,

@@ -12,17 +12,16 @@ pub const SERVO_NAMES: [&str; 4] = ["A1", "A2", "A3", "A4"];
 /// The names of the servos' legs: left (L) or right (R), front (F) or hind (H).
 pub const LEG_NAMES: [&str; 4] = ["LF", "RF", "RH", "LH"];
 
-/// The direction from the crank to the slider's arm of the same link, for each servo: 1 for counter-clockwise, -1 for
-/// clockwise.
-pub const ARM_SIDE: [f64; 4] = {
+/// The direction in which each servo's slider arm is turned from its crank: 1 for counter-clockwise, -1 for clockwise.
+pub const ARM_TURN_SIGN: [f64; 4] = {
     let (left, right) = (Side::Left.sign(), Side::Right.sign());
     [left, right, -right, -left]
 };
 
 /// Range of the pulse widths that a hobby servo tolerates, us. Each width fits into a slot of 4 ms.
 const PULSE_RANGE_US: (f64, f64) = (500.0, 2500.0);
-/// Range of a gain's magnitude, us per degree; the firmware's i16 cannot represent a larger gain.
-const GAIN_RANGE: (f64, f64) = (1.0, 22.0);
+/// Range of a gain's magnitude; the firmware's i16 cannot represent a larger gain.
+const GAIN_RANGE_US_PER_DEGREE: (f64, f64) = (1.0, 22.0);
 
 /// For each servo, the index of its mirror image on the other side of the robot.
 pub const OPPOSITE_SERVO: [usize; 4] = [1, 0, 3, 2];
@@ -48,8 +47,7 @@ impl Servo {
     /// The travel: the smallest and the largest sweep from neutral, deg. Neither exceeds half a turn, even if the
     /// pulses allow more.
     pub fn travel(&self) -> (f64, f64) {
-        let sweep_at_min = (self.min_us - self.neutral_us) / self.us_per_degree;
-        let sweep_at_max = (self.max_us - self.neutral_us) / self.us_per_degree;
+        let (sweep_at_min, sweep_at_max) = (self.sweep(self.min_us), self.sweep(self.max_us));
         (
             sweep_at_min.min(sweep_at_max).max(-HALF_TURN),
             sweep_at_min.max(sweep_at_max).min(HALF_TURN),
@@ -87,8 +85,8 @@ pub struct SpeedLimits {
     pub gait_slew: f64,
 }
 
-/// Converts the name of a pin on the board to the pin's Arduino number: D2 to D12, A0 to A5
-/// (14 to 19); `None` for any other name.
+/// Converts the name of a pin on the board to the pin's Arduino number: D2 to D12, A0 to A5 (14 to 19); `None` for any
+/// other name.
 pub(crate) fn parse_pin(name: &str) -> Option<u8> {
     let (letter, number) = name.split_at_checked(1)?;
     // "+5" and "05" would be parsed as 5, but are not names of pins.
@@ -130,9 +128,9 @@ const MOTOR_KEYS: [&str; 8] = [
 pub(crate) fn read(root: &Section) -> ReadResult<[Servo; 4]> {
     let keys: Vec<&str> = SERVO_NAMES.into_iter().chain(MOTOR_KEYS).collect();
     let section = root.section("servo", &keys)?;
-    let mut servos = Vec::with_capacity(4);
+    let mut servos: Vec<Servo> = Vec::with_capacity(4);
     for name in SERVO_NAMES {
-        let table = section.section(
+        let servo_section = section.section(
             name,
             &[
                 "pin",
@@ -143,16 +141,12 @@ pub(crate) fn read(root: &Section) -> ReadResult<[Servo; 4]> {
                 "max_us",
             ],
         )?;
-        let servo = read_servo(&table)?;
-        if let Some(owner) = servos
-            .iter()
-            .position(|earlier: &Servo| earlier.pin == servo.pin)
-        {
-            let (pin, owner) = (table.text("pin")?, SERVO_NAMES[owner]);
-            return Err(table.error(
-                "pin",
-                format!("is \"{pin}\", which servo.{owner} already uses"),
-            ));
+        let servo = read_servo(&servo_section)?;
+        let mut earlier_servos = servos.iter().zip(SERVO_NAMES);
+        if let Some((_, owner)) = earlier_servos.find(|(earlier, _)| earlier.pin == servo.pin) {
+            let pin = servo_section.text("pin")?;
+            let message = format!("is \"{pin}\", which servo.{owner} already uses");
+            return Err(servo_section.error("pin", message));
         }
         servos.push(servo);
     }
@@ -164,7 +158,8 @@ fn read_servo(section: &Section) -> ReadResult<Servo> {
     let read_width = |name| section.number(name, PULSE_RANGE_US.0, PULSE_RANGE_US.1, "us");
     let pin = read_pin(section)?;
     let us_per_degree = section.number("us_per_degree", -f64::MAX, f64::MAX, "us")?;
-    if !(GAIN_RANGE.0..=GAIN_RANGE.1).contains(&us_per_degree.abs()) {
+    let (min, max) = GAIN_RANGE_US_PER_DEGREE;
+    if !(min..=max).contains(&us_per_degree.abs()) {
         let message = format!(
             "is {}; it must be between 1 and 22 us, or between -22 and -1 us if a longer pulse turns the horn clockwise",
             format_number(us_per_degree)
@@ -199,7 +194,7 @@ mod tests {
     };
 
     #[test]
-    fn a_reversed_servo_turns_clockwise_with_longer_pulses() {
+    fn a_reversed_servo_turns_clockwise_with_a_longer_pulse() {
         let (min, max) = SERVO.travel();
         assert_eq!((min, max), (-885.0 / 11.0, 975.0 / 11.0));
         assert_eq!(SERVO.pulse(57.0), 1425.0);
@@ -222,13 +217,16 @@ mod tests {
     }
 
     #[test]
-    fn slider_arms_are_on_the_same_side_as_in_the_kinematics() {
+    fn slider_arms_are_turned_in_the_same_direction_as_in_the_kinematics() {
         use lizard_kinematics::Vector;
         let crank = Vector::new(1.0, 0.0);
         for side in Side::ALL {
             let [front, rear] = side.servos();
-            assert_eq!(side.front_arm(crank), Vector::new(0.0, ARM_SIDE[front]));
-            assert_eq!(side.rear_arm(crank), Vector::new(0.0, ARM_SIDE[rear]));
+            assert_eq!(
+                side.front_arm(crank),
+                Vector::new(0.0, ARM_TURN_SIGN[front])
+            );
+            assert_eq!(side.rear_arm(crank), Vector::new(0.0, ARM_TURN_SIGN[rear]));
         }
     }
 }

@@ -5,7 +5,7 @@ use lizard_contact::{SLOT_LENGTH, Strut};
 use crate::config::coil::Coil;
 use crate::config::legs::LegPlan;
 use crate::config::parts::Parts;
-use crate::config::servo::ARM_SIDE;
+use crate::config::servo::ARM_TURN_SIGN;
 
 /// The length of a spring mounted in a strut, measured between the insides of its hooks, mm. Each hook goes around the
 /// far side of its screw, so a screw's diameter is added to the strut's length.
@@ -22,7 +22,7 @@ pub(crate) fn strut_with_coil(
 ) -> Strut {
     let [radius, angle] = parts.anchor;
     let arm_angle = |leg: usize| {
-        neutral_angles[leg] - ARM_SIDE[leg] * angle - legs[leg].strut_direction.angle()
+        neutral_angles[leg] - ARM_TURN_SIGN[leg] * angle - legs[leg].strut_direction.angle()
     };
     Strut {
         preload: coil.force(mounted_spring_length(legs, parts)),

@@ -36,7 +36,7 @@ const ANALOGUE_PINS: std::ops::RangeInclusive<u8> = 14..=19;
 pub struct Supplies {
     /// Voltage of the chip's internal reference, V.
     pub reference_volts: f64,
-    /// Thresholds of the board's supply, V, in descending order.
+    /// Thresholds of the board's supply in descending order: `slow`, `stop` and `rest`, V.
     pub board_thresholds: [f64; 3],
     /// The servos' rail; `None` if the rail is not measured.
     pub rail: Option<Rail>,
@@ -52,29 +52,29 @@ pub struct Rail {
     pub pin: u8,
     /// The rail's voltage divided by the pin's voltage.
     pub divider_ratio: f64,
-    /// Thresholds of the rail, V, in descending order.
+    /// Thresholds of the rail in descending order: `slow`, `stop` and `rest`, V.
     pub thresholds: [f64; 3],
-    /// True if robot.toml leaves out the `slow` threshold, which is then derived from the servos.
+    /// True if robot.toml omits the `slow` threshold, which is then derived from the servos.
     pub has_derived_slow_threshold: bool,
 }
 
-/// Smallest difference between the thresholds `slow` and `stop`, and between the supply and `slow`, V. It exceeds the
-/// hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
+/// Smallest difference between a derived `slow` threshold and both `stop` below it and the supply above it, V. It
+/// exceeds the hysteresis of 0.15 V, by which a supply must recover before gaits return to full pace.
 const MIN_THRESHOLD_GAP: f64 = 0.25;
 
-/// The pace at a low supply voltage if the servos' rail is not measured, percent.
+/// The pace limit at a low supply voltage if the servos' rail is not measured, percent.
 const DEFAULT_SLOW_PACE_PERCENT: u8 = 50;
 /// The slowest pace that the command `speed` accepts, percent.
 const MIN_PACE_PERCENT: f64 = 10.0;
 
 impl Rail {
     /// Sets the `slow` threshold if it is derived from the servos. Below it, the most demanding gait would exceed the
-    /// utilisation `allowed`. `utilisation` is this gait's utilisation at the supply `volts`.
-    pub(crate) fn set_slow_threshold(&mut self, utilisation: f64, allowed: f64, volts: f64) {
+    /// utilisation `limit`. `utilisation` is this gait's utilisation at the supply `volts`.
+    pub(crate) fn derive_slow_threshold(&mut self, utilisation: f64, limit: f64, volts: f64) {
         let [slow, stop, _] = &mut self.thresholds;
         let min = *stop + MIN_THRESHOLD_GAP;
         // Rounded to hundredths. The threshold stays below the supply itself; otherwise the robot would always be slow.
-        let slow_volts = (100.0 * volts * utilisation / allowed).round() / 100.0;
+        let slow_volts = (100.0 * volts * utilisation / limit).round() / 100.0;
         if self.has_derived_slow_threshold {
             *slow = slow_volts.min(volts - MIN_THRESHOLD_GAP).max(min);
         }
@@ -86,20 +86,7 @@ impl Supplies {
     pub(crate) fn set_slow_pace(&mut self, pace: f64) {
         self.slow_pace_percent = (100.0 * pace).floor().max(MIN_PACE_PERCENT) as u8;
     }
-}
 
-impl Default for Supplies {
-    fn default() -> Self {
-        Self {
-            reference_volts: NOMINAL_REFERENCE,
-            board_thresholds: DEFAULT_THRESHOLDS,
-            rail: None,
-            slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
-        }
-    }
-}
-
-impl Supplies {
     /// Reads `[supply]`; every key is optional.
     pub(crate) fn read(root: &Section, servos: &[Servo; 4]) -> ReadResult<Self> {
         if !root.has_key("supply") {
@@ -130,6 +117,17 @@ impl Supplies {
     }
 }
 
+impl Default for Supplies {
+    fn default() -> Self {
+        Self {
+            reference_volts: NOMINAL_REFERENCE,
+            board_thresholds: DEFAULT_THRESHOLDS,
+            rail: None,
+            slow_pace_percent: DEFAULT_SLOW_PACE_PERCENT,
+        }
+    }
+}
+
 /// The thresholds of a rail that is not measured.
 const UNMEASURED_RAIL: Thresholds = Thresholds {
     slow_mv: 0,
@@ -151,7 +149,7 @@ pub fn healthy_rail_mv(supplies: &CoreSupplies) -> Option<f64> {
         .then(|| (mv.max(BOARD_MV) / ratio).min(BOARD_MV - 1.0).floor())
 }
 
-/// Reads `[supply.rail]`; `None` if the table is left out.
+/// Reads `[supply.rail]`; `None` if the table is missing.
 fn read_rail(supply: &Section, servos: &[Servo; 4]) -> ReadResult<Option<Rail>> {
     if !supply.has_key("rail") {
         return Ok(None);
@@ -162,8 +160,8 @@ fn read_rail(supply: &Section, servos: &[Servo; 4]) -> ReadResult<Option<Rail>> 
     let pin = parse_pin(pin_name)
         .filter(|pin| ANALOGUE_PINS.contains(pin))
         .ok_or_else(|| pin_error("; it must be one of A0 to A5".to_string()))?;
-    if let Some(servo) = servos.iter().position(|servo| servo.pin == pin) {
-        let owner = SERVO_NAMES[servo];
+    let mut named_servos = servos.iter().zip(SERVO_NAMES);
+    if let Some((_, owner)) = named_servos.find(|(servo, _)| servo.pin == pin) {
         return Err(pin_error(format!(", which servo.{owner} already uses")));
     }
     // Covers a battery of two lithium cells, 8.4 V, which needs a ratio of at least 2.
@@ -217,17 +215,12 @@ fn to_millivolts(volts: f64) -> u16 {
 mod tests {
     use lizard_core::numbers::supplies::{Supplies, Thresholds};
 
-    use crate::testing::robot_with;
+    use crate::testing::{paper_with_tables, robot, robot_with};
 
     /// The header before which a test inserts its lines.
     const NEXT_TABLE: &str = "[ground]";
 
-    /// Reads the paper's robot with these lines before `[ground]`.
-    fn robot_with_supply(table: &str) -> Result<crate::Robot, crate::Error> {
-        robot_with("paper", &[(NEXT_TABLE, &format!("{table}\n{NEXT_TABLE}"))])
-    }
-
-    /// Reads the paper's robot with these servo and rail keys and this friction coefficient.
+    /// Reads the paper's robot with these servo and rail keys, and with this friction coefficient.
     fn robot_with_servo_and_rail(servo: &str, rail: &str, friction: &str) -> crate::Robot {
         let tables = format!(
             "[supply.rail]\npin = \"A3\"\nratio = 2.0\n{rail}\n{NEXT_TABLE}\nfriction = {friction}"
@@ -237,8 +230,8 @@ mod tests {
     }
 
     #[test]
-    fn the_board_is_measured_against_a_1100_mv_reference_by_default() {
-        let robot = robot_with("paper", &[]).expect("the paper's robot is valid");
+    fn the_defaults_are_a_1100_mv_reference_three_thresholds_and_no_rail() {
+        let robot = robot("paper");
         let expected = Supplies {
             reference_mv: 1100,
             board: Thresholds {
@@ -254,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_rails_reference_is_the_chips_reference_times_the_divider_ratio() {
-        let robot = robot_with_supply(
+        let robot = paper_with_tables(
             "[supply]\nreference = 1.08\nslow = 4.5\n[supply.rail]\npin = \"A3\"\nratio = 2.5\nslow = 6.6\nstop = 6.2\nrest = 6.0\n",
         )
         .expect("the rail is valid");
@@ -361,8 +354,8 @@ mod tests {
     }
 
     #[test]
-    fn a_low_supply_halves_the_pace_without_a_rail() {
-        let robot = robot_with("paper", &[]).expect("the paper's robot is valid");
+    fn a_low_supply_halves_the_pace_if_the_rail_is_not_measured() {
+        let robot = robot("paper");
         assert_eq!(robot.firmware().slow_pace(), 50);
     }
 

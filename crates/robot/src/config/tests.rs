@@ -1,9 +1,9 @@
-//! Tests of the requirements for a robot's dimensions.
+//! Tests of the requirements for a robot's dimensions and for its servos' neutral pulses.
 
 use crate::testing::robot_with;
 
 /// Returns the error message for the unequal robot after changes to its file.
-fn read_error(changes: &[(&str, &str)]) -> String {
+fn parse_error(changes: &[(&str, &str)]) -> String {
     robot_with("unequal", changes)
         .expect_err("the robot is invalid")
         .to_string()
@@ -18,7 +18,7 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
         ("l7 = 55.0", "l7 = 15.9"),
         ("l8 = 48.0", "l8 = 15.9"),
     ] {
-        let message = read_error(&[(old, new)]);
+        let message = parse_error(&[(old, new)]);
         let key = old.split(' ').next().expect("the change begins with a key");
         assert!(
             message.contains(&format!("links.{key} is 15.9 mm, which is too short"))
@@ -27,7 +27,7 @@ fn each_coupler_must_be_long_enough_for_its_own_loop() {
         );
     }
     // A longer base of the tail halves the steps per mm of the tail only.
-    let message = read_error(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
+    let message = parse_error(&[("l5 = 30.0", "l5 = 90.0"), ("l7 = 55.0", "l7 = 31.0")]);
     assert!(
         message.contains("links.l7 is 31 mm") && message.contains("at least 32.1 mm"),
         "{message}"
@@ -78,7 +78,7 @@ fn a_stroke_that_exceeds_the_shorter_sliders_length_is_rejected() {
             (slider[0], &*slider[0].replace(" 5", " 4")),
             ("stroke_min = -19.0", "stroke_min = -102.0"),
         ];
-        let message = read_error(&changes);
+        let message = parse_error(&changes);
         assert!(
             message.contains("limits.stroke_min is -102; it must be between"),
             "{message}"
@@ -94,7 +94,7 @@ fn a_leg_in_its_other_assembly_mode_is_rejected() {
         ("neutral = 316.0", "neutral = 10.0", "right hind", "leg_rh"),
         ("neutral = 228.0", "neutral = 170.0", "left hind", "leg_lh"),
     ] {
-        let message = read_error(&[(old, new)]);
+        let message = parse_error(&[(old, new)]);
         assert!(
             message.starts_with(&format!(
                 "in the neutral pose the {name} leg would lock: margin {leg} -"

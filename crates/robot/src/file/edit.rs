@@ -3,8 +3,7 @@
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// The keys of the hips' distances forward and to the side. Without these keys, the distances are computed from the
-/// legs.
+/// The keys of the hips' forward and sideways distances. If a key is missing, its distance is computed from the legs.
 pub const HIP_KEYS: [&str; 2] = ["leg.hip_forward", "leg.hip_side"];
 
 /// Optional keys of robot.toml that an edit adds to the text if they are missing.
@@ -210,7 +209,7 @@ pub struct WrittenRoutine {
 }
 
 /// Reads a text's routines in their order, without a check, so that a routine with a mistake can be shown and
-/// corrected. Routines whose steps are not strings are left out.
+/// corrected. Skips routines whose steps are not strings.
 pub fn read_routines(text: &str) -> Vec<WrittenRoutine> {
     let Ok(document) = DeTable::parse(text) else {
         return Vec::new();
@@ -400,9 +399,9 @@ mod tests {
 
     /// Reads the names and steps of a text's routines.
     fn read_names_and_steps(text: &str) -> Vec<(String, Vec<String>)> {
-        let written_routines = read_routines(text).into_iter();
-        written_routines
-            .map(|WrittenRoutine { name, steps }| (name, steps))
+        let routines = read_routines(text).into_iter();
+        routines
+            .map(|routine| (routine.name, routine.steps))
             .collect()
     }
 

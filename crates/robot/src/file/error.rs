@@ -119,11 +119,11 @@ pub(crate) fn format_number(value: f64) -> String {
 
 /// Returns a suggestion for a word that is not allowed: the most similar allowed word, or all allowed words.
 pub(crate) fn suggest(word: &str, allowed: &[&str]) -> String {
-    let nearest = allowed
+    let closest = allowed
         .iter()
         .map(|candidate| (levenshtein_distance(word, candidate), candidate))
         .min();
-    match nearest {
+    match closest {
         // A similar word has at most two wrong letters; a word of two letters may differ only in its case.
         Some((edit_count, candidate))
             if edit_count == 0

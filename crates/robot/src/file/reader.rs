@@ -1,5 +1,5 @@
-//! A reader of robot.toml as typed values. A [`Section`] is one table of the file; it rejects unknown keys, and every
-//! error contains the full name of its key.
+//! Reads robot.toml as typed values. A [`Section`] is one table of the file; it rejects unknown keys, and every error
+//! contains the full name of its key.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -175,7 +175,7 @@ impl<'a> Section<'a> {
         self.require_in_range(name, value, (min, max), unit)
     }
 
-    /// Reads a number; returns `default` if the key is left out.
+    /// Reads a number; returns `default` if the key is missing.
     pub fn number_or(
         &self,
         name: &str,
@@ -258,7 +258,7 @@ impl<'a> Section<'a> {
         strings.ok_or_else(|| self.type_error(name, value, EXPECTED_TYPE))
     }
 
-    /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is left out.
+    /// Reads an array of tables that may have only the keys `allowed`. The array is empty if the key is missing.
     pub fn sections(&self, name: &str, allowed: &[&str]) -> ReadResult<Vec<Section<'a>>> {
         #[cfg(test)]
         self.record_read(name, KeyRead::Table);

@@ -1,5 +1,5 @@
-//! A gait as the four bars of a gait diagram: one per leg, from the start to the end of the leg's stance. The page
-//! edits gaits in this form, and `lizard tune` varies them.
+//! A gait as the four bars of a gait diagram: one for each leg, from the start to the end of its stance. The page edits
+//! gaits in this form, and `lizard tune` varies them.
 
 use crate::config::servo::LEG_NAMES;
 use crate::gaits::gait::Gait;
@@ -11,8 +11,8 @@ use crate::gaits::waveform::Waveform;
 pub struct Bars {
     /// Name of the gait in robot.toml.
     pub name: String,
-    /// True if the legs have a common stance, then swing one after the other and hold in between;
-    /// false if all legs always move.
+    /// True if the legs have a common stance, then swing one after the other and hold in between; false if all legs
+    /// always move.
     pub held: bool,
     /// Duration of a cycle at full speed, s.
     pub period: f64,
@@ -28,12 +28,11 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait
-    /// is converted to the bars of the same movement.
+    /// Converts a gait to bars; `None` if a leg stands still or follows a path. A reversed gait is converted to the
+    /// bars of the same movement.
     pub(crate) fn from_gait(gait: &Gait) -> Option<Self> {
-        let pick_larger = |max: f64, leg_amplitude: f64| max.max(leg_amplitude.abs());
         let amplitudes = gait.strides.each_ref().map(|stride| stride.amplitude);
-        let amplitude = amplitudes.into_iter().fold(0.0, pick_larger);
+        let amplitude = amplitudes.map(f64::abs).into_iter().fold(0.0, f64::max);
         let mut bars = Self {
             name: gait.name.clone(),
             held: false,

@@ -1,4 +1,5 @@
-//! Gait definitions in robot.toml: each contains a waveform, a path, or the name of a gait from which it is derived.
+//! Reads the gait definitions in robot.toml. Each contains a waveform, a path, or the name of a gait from which it is
+//! derived.
 
 use std::collections::HashMap;
 
@@ -120,7 +121,7 @@ pub(super) fn check_name(name: &str, noun: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// A reader of gaits by name, which reads a gait only after the gait to which it refers.
+/// Reads gaits by name, each only after the gait to which it refers.
 struct Resolver<'a> {
     /// The table `gait`.
     section: Section<'a>,
@@ -133,7 +134,7 @@ struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
-    /// Reads the gait with this name, unless it has been read already.
+    /// Returns the gait with this name, which is read unless it has been read already.
     fn resolve(&mut self, name: &'a str) -> ReadResult<Gait> {
         if let Some(gait) = self.resolved_gaits.get(name) {
             return Ok(gait.clone());
@@ -187,7 +188,7 @@ impl<'a> Resolver<'a> {
     }
 }
 
-/// Returns the only key that defines this gait; the keys `head` and `tail` of a path count as one.
+/// Returns the only key that defines a gait; the keys `head` and `tail` of a path count as one.
 fn definition_key(table: &Section) -> ReadResult<&'static str> {
     let has_path = table.has_key("head") || table.has_key("tail");
     let mut definitions: Vec<&'static str> = REFERENCE_KEYS
@@ -353,16 +354,16 @@ fn read_leg_values(
 
 /// Reads the order of the swings. Returns each leg's position in this order, 0 to 3, in servo order.
 fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
-    let words = table.strings("order")?;
+    let legs = table.strings("order")?;
     let order_error = || table.error("order", "must list each of LF, RF, RH, LH exactly once");
-    if words.len() != LEG_NAMES.len() {
+    if legs.len() != LEG_NAMES.len() {
         return Err(order_error());
     }
     let mut swing_indices = [0; 4];
-    for (swing_index, leg) in swing_indices.iter_mut().zip(LEG_NAMES) {
-        *swing_index = words
+    for (swing_index, name) in swing_indices.iter_mut().zip(LEG_NAMES) {
+        *swing_index = legs
             .iter()
-            .position(|word| *word == leg)
+            .position(|leg| *leg == name)
             .ok_or_else(order_error)?;
     }
     Ok(swing_indices)
@@ -370,19 +371,19 @@ fn read_order(table: &Section) -> ReadResult<[usize; 4]> {
 
 /// Reads the harmonics of one coordinate of a path.
 fn read_harmonics(section: &Section, name: &str) -> ReadResult<Vec<Harmonic>> {
-    let terms = section.sections(name, &["k", "amplitude", "shift"])?;
-    let read_term = |term: Section| {
-        let order = term.number("k", 1.0, 16.0, "periods in a cycle")?;
+    let harmonics = section.sections(name, &["k", "amplitude", "shift"])?;
+    let read_harmonic = |harmonic: Section| {
+        let order = harmonic.number("k", 1.0, 16.0, "periods in a cycle")?;
         if order.fract() != 0.0 {
-            return Err(term.error("k", format!("is {order}; it must be a whole number")));
+            return Err(harmonic.error("k", format!("is {order}; it must be a whole number")));
         }
         Ok(Harmonic {
             order,
-            amplitude: term.number("amplitude", -255.0, 255.0, "mm")?,
-            phase_shift: term.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
+            amplitude: harmonic.number("amplitude", -255.0, 255.0, "mm")?,
+            phase_shift: harmonic.number_or("shift", 0.0, -1.0, 1.0, "of its period")?,
         })
     };
-    terms.into_iter().map(read_term).collect()
+    harmonics.into_iter().map(read_harmonic).collect()
 }
 
 #[cfg(test)]

@@ -62,13 +62,13 @@ impl Gait {
         std::array::from_fn(|i| self.neutral[i] + FORWARD_TURN_SIGN[i] * sweeps[i])
     }
 
-    /// Converts the firmware's rotations from neutral (angle steps, counter-clockwise positive) to servo angles: deg,
+    /// Converts the firmware's sweeps from neutral (angle steps, counter-clockwise positive) to servo angles: deg,
     /// chassis frame, servo order.
-    pub fn angles_from_table(&self, rotations: [i16; 4]) -> [f64; 4] {
-        std::array::from_fn(|i| self.neutral[i] + f64::from(rotations[i]) / STEPS_PER_DEGREE)
+    pub fn angles_from_table(&self, sweeps: [i16; 4]) -> [f64; 4] {
+        std::array::from_fn(|i| self.neutral[i] + f64::from(sweeps[i]) / STEPS_PER_DEGREE)
     }
 
-    /// Returns the gait with the strides of the left and right legs exchanged; the neutral angles stay.
+    /// Returns the gait with the strides of the left and right legs swapped; the neutral angles stay.
     pub fn mirrored(mut self) -> Self {
         self.strides = OPPOSITE_SERVO.map(|i| self.strides[i].clone());
         self

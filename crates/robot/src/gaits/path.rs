@@ -30,13 +30,11 @@ pub struct Path {
 impl Path {
     /// Returns the point at `phase` (0 to 1), mm.
     pub fn point_at(&self, phase: f64) -> Vector {
-        let sum = |terms: &[Harmonic]| -> f64 {
-            let angle = |term: &Harmonic| TAU * (term.order * phase + term.phase_shift);
-            terms
-                .iter()
-                .map(|term| term.amplitude * angle(term).sin())
-                .sum()
+        let value = |harmonic: &Harmonic| {
+            let angle = TAU * (harmonic.order * phase + harmonic.phase_shift);
+            harmonic.amplitude * angle.sin()
         };
+        let sum = |harmonics: &[Harmonic]| harmonics.iter().map(value).sum::<f64>();
         Vector::new(self.centre[0] + sum(&self.x), self.centre[1] + sum(&self.y))
     }
 }

@@ -58,9 +58,9 @@ impl PathLeg {
 
     /// The servo's sweep from neutral at a phase of 0 to 1, deg, positive if the foot is forward.
     pub fn sweep(&self, phase: f64) -> f64 {
-        // `for_both_servos` has checked only some points of the path, but the points between them are within
-        // reach, too: type-1 margins are zero at the edge of the reach, and the check of every
-        // sample keeps the path's margins far from zero.
+        // `for_both_servos` has checked only some points of the path, but the points between them are within reach,
+        // too: type-1 margins are zero at the edge of the reach, and the check of every sample keeps the path's margins
+        // far from zero.
         let angles = self
             .lizard
             .point_angles(self.end, self.path.point_at(phase))

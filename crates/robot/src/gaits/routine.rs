@@ -1,8 +1,8 @@
-//! Routines of robot.toml: sequences of gaits, rests and waits for a button. Each gait lasts for a number of cycles,
+//! Routines of robot.toml: sequences of gaits, rests and waits for a contact. Each gait lasts for a number of cycles,
 //! for a time, or until a contact closes.
 
 use lizard_core::console::command::MAX_CYCLES;
-use lizard_core::numbers::gaits::{Gait as Record, MAX_GAITS, Step};
+use lizard_core::numbers::gaits::{Gait as GaitRecord, MAX_GAITS, Step};
 
 use crate::config::{INPUT_NAMES, Inputs};
 use crate::file::{ReadResult, Section, UnlocatedError, suggest};
@@ -26,7 +26,7 @@ pub struct Routine {
     /// See [`Routine::step_records`].
     step_records: Vec<Step>,
     /// The number of rounds; 0 if the routine repeats for ever.
-    rounds: u16,
+    round_count: u16,
     /// The index of the step record at which each round except the first starts.
     repeat_record_index: u16,
 }
@@ -42,8 +42,8 @@ impl Routine {
         to_command(&self.name)
     }
 
-    /// The routine's step records in the section: one for each step. If an input ends a step, a record of the input
-    /// precedes the step's record.
+    /// The routine's step records in the flash section: one for each step. If an input ends a step, a record of the
+    /// input precedes the step's record.
     pub fn step_records(&self) -> &[Step] {
         &self.step_records
     }
@@ -60,20 +60,21 @@ impl Routine {
     }
 
     /// The number of rounds; `None` if the routine repeats for ever.
-    pub fn rounds(&self) -> Option<u16> {
-        (self.rounds > 0).then_some(self.rounds)
+    pub fn round_count(&self) -> Option<u16> {
+        (self.round_count > 0).then_some(self.round_count)
     }
 
-    /// Creates the routine's record in the section. `first_record_index` is the index of the first step record among
-    /// the step records of all routines; `name_start` is the index at which the name starts in the table of names.
-    pub(crate) fn to_record(&self, first_record_index: usize, name_start: usize) -> Record {
-        let mut record = Record {
+    /// Creates the routine's record in the flash section. `first_record_index` is the index of the first step record
+    /// among the step records of all routines; `name_start` is the index at which the name starts in the table of
+    /// names.
+    pub(crate) fn to_record(&self, first_record_index: usize, name_start: usize) -> GaitRecord {
+        let mut record = GaitRecord {
             name_start: name_start as u16,
             name_length: self.name.len() as u16,
-            ..Record::routine(
+            ..GaitRecord::routine(
                 first_record_index as u16,
                 self.step_records.len() as u16,
-                self.rounds,
+                self.round_count,
             )
         };
         record.channels[3].offset = self.repeat_record_index;
@@ -145,26 +146,26 @@ fn read_routine(
         name: name.to_string(),
         repeat_record_index: steps[..first_repeated_step as usize - 1].concat().len() as u16,
         step_records: steps.concat(),
-        rounds: read_rounds(&table)?,
+        round_count: read_round_count(&table)?,
     })
 }
 
 /// Reads the number of rounds; 0 if the routine repeats for ever.
-fn read_rounds(table: &Section) -> ReadResult<u16> {
+fn read_round_count(table: &Section) -> ReadResult<u16> {
     if table.text("repeat").is_ok_and(|text| text == FOR_EVER) {
         return Ok(0);
     }
     let max = f64::from(MAX_CYCLES);
     let unit = format!("or \"{FOR_EVER}\"");
-    let rounds = table.number_or("repeat", 1.0, 1.0, max, &unit)?;
-    if rounds.fract() != 0.0 {
-        let message = format!("is {rounds}; it must be a whole number {unit}");
+    let round_count = table.number_or("repeat", 1.0, 1.0, max, &unit)?;
+    if round_count.fract() != 0.0 {
+        let message = format!("is {round_count}; it must be a whole number {unit}");
         return Err(table.error("repeat", message));
     }
-    Ok(rounds as u16)
+    Ok(round_count as u16)
 }
 
-/// Reads a step with its input, such as `wait button` or `walk 10 until nose`, as one or two records.
+/// Parses a step with its input, such as `wait button` or `walk 10 until nose`, as one or two records.
 fn parse_records(
     text: &str,
     own_name: &str,
@@ -215,7 +216,7 @@ fn format_missing_input(name: &str) -> String {
     format!("names the input \"{name}\", which does not exist; {suggestion}")
 }
 
-/// Reads a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. A step that an input ends needs neither a
+/// Parses a step such as `walk 4`, `stand 1 s`, `rest` or `rest 2.5 s`. A step that an input ends needs neither a
 /// number nor a time.
 fn parse_step(
     words: &[&str],
@@ -267,7 +268,7 @@ fn parse_step(
     }
 }
 
-/// Converts a time in seconds, as written in a step, to frames.
+/// Parses the time of a step, s, and converts it to frames.
 fn parse_frames(time: &str) -> Result<u16, String> {
     let seconds: f64 = time.parse().unwrap_or(f64::NAN);
     let min = 1.0 / FRAMES_PER_SECOND;

@@ -1,15 +1,15 @@
-//! A sensitivity analysis of the prediction, which varies each assumption over its plausible range and lists the
-//! assumptions that change a gait's displacement by 10 % or more.
+//! A sensitivity analysis of the prediction, which varies each assumption over its plausible range: a table of the
+//! assumptions that change a gait's displacement by 10 % or more, and the extremes of a gait's displacement.
 
 use std::fmt;
 
-use lizard_contact::{Ground, Motors, Travel};
+use lizard_contact::{GroundContact, Motors, Travel};
 
 use crate::checks::CheckedGait;
 use crate::config::ServoType;
 use crate::robot::Robot;
 
-/// Smallest change of a displacement that has a row in the table, percent.
+/// Smallest change in displacement that has a row in the table, percent.
 const MIN_CHANGE_PERCENT: f64 = 10.0;
 /// Smallest noticeable distance per cycle, mm.
 const MIN_DISTANCE_MM: f64 = 1.0;
@@ -27,11 +27,11 @@ docs/limits.md lists the effect of these assumptions in MuJoCo, for the paper's 
 /// The inputs of the model that an assumption can vary.
 #[derive(Clone, Copy)]
 struct ModelInputs {
-    ground: Ground,
+    ground: GroundContact,
     /// The type of all four servos, with their supply voltage.
     servo: ServoType,
     /// Friction of the pins, N mm, and of a slider, N.
-    joints: [f64; 2],
+    joint_friction: [f64; 2],
     /// Angle that a servo turns, divided by the angle that the firmware sends.
     angle_scale: f64,
 }
@@ -43,7 +43,7 @@ impl ModelInputs {
         Self {
             ground: *robot.ground(),
             servo: *robot.servo_type(),
-            joints: [friction.pin_torque, friction.slider_force],
+            joint_friction: [friction.pin_torque, friction.slider_force],
             angle_scale: 1.0,
         }
     }
@@ -54,7 +54,7 @@ impl ModelInputs {
             per_servo,
             mut joint_friction,
         } = robot.motors_with_type(&self.servo, self.servo.supply_volts);
-        [joint_friction.pin_torque, joint_friction.slider_force] = self.joints;
+        [joint_friction.pin_torque, joint_friction.slider_force] = self.joint_friction;
         gait.simulate_with_angle_scale(
             &self.ground,
             &Motors {
@@ -94,17 +94,18 @@ impl Variation {
         }
     }
 
-    /// Changes the inputs so that the assumption has this value.
-    fn set(&self, inputs: &mut ModelInputs, value: f64) {
+    /// Returns the inputs with this value of the assumption.
+    fn apply(&self, mut inputs: ModelInputs, value: f64) -> ModelInputs {
         match self {
-            Self::Value(field) => *field(inputs) = value,
-            Self::Switch(change) if value > 0.0 => change(inputs),
+            Self::Value(field) => *field(&mut inputs) = value,
+            Self::Switch(change) if value > 0.0 => change(&mut inputs),
             Self::Switch(_) => {}
             Self::ValueAfterChange(change, field) => {
-                change(inputs);
-                *field(inputs) = value;
+                change(&mut inputs);
+                *field(&mut inputs) = value;
             }
         }
+        inputs
     }
 }
 
@@ -147,8 +148,8 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
         inputs.servo.rotor_time_constant_ms = 2.0;
         inputs.servo.full_torque_deg = 1.0;
     });
-    "pin friction", "N mm", 0.0 to 20.0, number(joints[0]);
-    "slider friction", "N", 0.0 to 1.0, number(joints[1]);
+    "pin friction", "N mm", 0.0 to 20.0, number(joint_friction[0]);
+    "slider friction", "N", 0.0 to 1.0, number(joint_friction[1]);
     "mass", "g", 350.0 to 500.0, number(ground.body.mass);
     "centre of mass ahead", "mm", -15.0 to 15.0, number(ground.body.centre_of_mass[0]);
     "pad friction", "", 0.4 to 1.2, number(ground.friction_coefficient);
@@ -164,7 +165,7 @@ const ASSUMPTIONS: [Assumption; 21] = assumptions! {
     "clone servos, stiff joints, friction 1, 50 g heavier", "(0 no, 1 yes)", 0.0 to 1.0, case(|inputs| {
         inputs.servo.stall_torque_kg_cm = 1.2;
         inputs.servo.s_per_60_deg = 0.15;
-        inputs.joints = [17.0, 0.5];
+        inputs.joint_friction = [17.0, 0.5];
         inputs.ground.friction_coefficient = 1.0;
         inputs.ground.body.mass += 50.0;
     });
@@ -187,7 +188,7 @@ struct Row {
     nominal: f64,
     /// The lowest and the highest plausible value.
     range: [f64; 2],
-    /// Change of each gait's displacement at the lowest and the highest value of the range, percent.
+    /// Change in each gait's displacement at the lowest and the highest value of the range, percent.
     changes: Vec<[f64; 2]>,
 }
 
@@ -207,13 +208,10 @@ impl Assumptions {
         let gaits = find_distinct_gaits(robot, |gait| nominal.simulate_cycle(robot, gait, 1.0));
         let compute_row = |assumption: &Assumption| {
             let compute_change = |gait: &CheckedGait, displacement: &Travel, value: f64| {
-                let mut inputs = nominal;
-                assumption.variation.set(&mut inputs, value);
+                let inputs = assumption.variation.apply(nominal, value);
                 let component = principal_component(displacement);
-                100.0
-                    * (component(&inputs.simulate_cycle(robot, gait, 1.0))
-                        / component(displacement)
-                        - 1.0)
+                let changed_displacement = inputs.simulate_cycle(robot, gait, 1.0);
+                100.0 * (component(&changed_displacement) / component(displacement) - 1.0)
             };
             let compute_changes = |(gait, displacement): &(&CheckedGait, Travel)| {
                 assumption
@@ -257,9 +255,9 @@ pub struct MovementRange {
     /// forward distance.
     pub is_turn: bool,
     /// The smallest displacement, with its sign.
-    pub smallest: Extreme,
+    pub min: Extreme,
     /// The largest displacement, with its sign.
-    pub largest: Extreme,
+    pub max: Extreme,
 }
 
 impl MovementRange {
@@ -275,8 +273,7 @@ impl MovementRange {
         };
         let extremes = ASSUMPTIONS.iter().flat_map(|assumption| {
             assumption.range.map(|value| {
-                let mut inputs = nominal;
-                assumption.variation.set(&mut inputs, value);
+                let inputs = assumption.variation.apply(nominal, value);
                 Extreme {
                     movement: component(&inputs.simulate_cycle(robot, gait, pace)),
                     assumption: Some(assumption.description),
@@ -285,15 +282,15 @@ impl MovementRange {
         });
         let mut range = Self {
             is_turn: is_turn(&travel),
-            smallest: nominal_extreme,
-            largest: nominal_extreme,
+            min: nominal_extreme,
+            max: nominal_extreme,
         };
         for extreme in extremes {
-            if extreme.movement < range.smallest.movement {
-                range.smallest = extreme;
+            if extreme.movement < range.min.movement {
+                range.min = extreme;
             }
-            if extreme.movement > range.largest.movement {
-                range.largest = extreme;
+            if extreme.movement > range.max.movement {
+                range.max = extreme;
             }
         }
         range
@@ -308,7 +305,7 @@ fn find_distinct_gaits(
     let mut gaits: Vec<(&CheckedGait, Travel)> = Vec::new();
     let rigid_ground = robot.ground().with_rigid_drive();
     for gait in robot.gaits().iter().filter(|gait| gait.has_movement()) {
-        if !gait.predict(&rigid_ground).is_decided() {
+        if !gait.predict(&rigid_ground).is_determined() {
             continue;
         }
         let displacement = simulate(gait);
@@ -326,7 +323,7 @@ fn find_distinct_gaits(
     gaits
 }
 
-/// True for a gait that turns on the spot: its turn in deg is at least its distance in mm.
+/// True if a gait turns on the spot: its turn in deg is at least its distance in mm.
 fn is_turn(displacement: &Travel) -> bool {
     displacement.turn.abs() >= displacement.forward.abs()
 }
@@ -341,7 +338,7 @@ fn principal_component(displacement: &Travel) -> fn(&Travel) -> f64 {
 }
 
 impl Row {
-    /// The largest change of a displacement, percent.
+    /// The largest change in displacement, percent.
     fn max_change(&self) -> f64 {
         let changes = self.changes.as_flattened().iter();
         changes.map(|change| change.abs()).fold(0.0, f64::max)

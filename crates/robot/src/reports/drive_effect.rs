@@ -1,7 +1,7 @@
 //! The effect of springs and play on a gait: the lag of its legs, and its displacement as a fraction of the
 //! displacement with rigid legs.
 
-use lizard_contact::{Ground, Prediction};
+use lizard_contact::{GroundContact, Prediction};
 
 use crate::checks::CheckedGait;
 
@@ -9,7 +9,7 @@ use crate::checks::CheckedGait;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveEffect {
     /// Displacement over a cycle with legs that lag. A component is `None` if [`CheckedGait::predict`] leaves it
-    /// undecided.
+    /// undetermined.
     pub movement: Prediction,
     /// Largest lag of a leg behind its servo, deg.
     pub max_lag: f64,
@@ -27,7 +27,7 @@ const MIN_TURN_DEG: f64 = 0.5;
 impl DriveEffect {
     /// Compares a gait on this ground with the same gait with rigid legs. Returns `None` if the drive is rigid, so that
     /// the legs do not lag.
-    pub fn compute(gait: &CheckedGait, ground: &Ground) -> Option<Self> {
+    pub fn compute(gait: &CheckedGait, ground: &GroundContact) -> Option<Self> {
         if !ground.drive.can_lag() {
             return None;
         }
@@ -45,7 +45,7 @@ impl DriveEffect {
         );
         let turn_fraction = divide(cycle.travel.turn, rigid_prediction.turn, MIN_TURN_DEG);
         Some(Self {
-            movement: rigid_prediction.keep_decided(cycle.travel),
+            movement: rigid_prediction.keep_determined(cycle.travel),
             max_lag: cycle.max_lag,
             fraction_of_rigid: [forward_fraction, turn_fraction]
                 .into_iter()

@@ -33,7 +33,7 @@ pub struct GaitRow {
 }
 
 impl GaitRow {
-    /// True if the gait moves the robot, but its fastest servo stays below [`SLOW_SPEED`].
+    /// True if the gait moves the robot, but its fastest servo stays below [`SLOW_SPEED_DEG_S`].
     fn is_slow(&self) -> bool {
         /// Smallest forward speed at which a gait counts as moving the robot, mm/s.
         const MIN_SPEED_MM_S: f64 = 5.0;
@@ -43,7 +43,7 @@ impl GaitRow {
         let movement = &self.movement;
         let is_walking =
             rate(movement.forward) >= MIN_SPEED_MM_S || rate(movement.turn) >= MIN_TURN_RATE_DEG_S;
-        is_walking && self.audit.peak_speed.speed < SLOW_SPEED
+        is_walking && self.audit.peak_speed.speed < SLOW_SPEED_DEG_S
     }
 }
 
@@ -54,7 +54,7 @@ pub struct Report {
     pub rows: Vec<GaitRow>,
     /// Rows of the routine table, in the order of the file.
     pub routines: Vec<RoutineRow>,
-    /// Hash that identifies the robot's numbers.
+    /// Hash that identifies the robot's parameters in the flash.
     pub hash: u32,
     /// Number of waveforms that the gaits share.
     pub waveform_count: usize,
@@ -69,16 +69,16 @@ pub struct Report {
 /// Number of CPU cycles that the main loop may spend on a console line without a delayed frame (docs/firmware.md).
 const MAX_SEARCH_CYCLES: usize = 34_000;
 
-/// The note for a robot whose console may need more than [`MAX_SEARCH_CYCLES`] to find a gait's name.
+/// The note about a robot whose console may need more than [`MAX_SEARCH_CYCLES`] to find a gait's name.
 const LONG_SEARCH_NOTE: &str = "many gaits: `cal` or a command with a gait's name may delay a frame by 20 ms; \
      fewer gaits or shorter names avoid the delay\n";
 
 /// The note that explains a dash in place of a prediction.
-pub const UNDECIDED_NOTE: &str = "- undecided: two feet pull against the other two, so tiny differences between the pads decide\n";
+pub const UNDETERMINED_NOTE: &str = "- undecided: two feet pull against the other two, so tiny differences between the pads decide\n";
 
-/// Speed of the fastest servo below which a gait counts as slow, deg/s. At an edge of 2 mm in MuJoCo, `walk` and
+/// Speed of the fastest servo below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
 /// similar gaits keep nine tenths of their distance, but slow gaits lose up to a third.
-const SLOW_SPEED: f64 = 200.0;
+const SLOW_SPEED_DEG_S: f64 = 200.0;
 
 /// The note on the assumptions about routines with inputs.
 pub const OPEN_INPUTS_NOTE: &str = "routines with inputs are computed with all inputs open: one frame per wait, one cycle per gait without an end\n";
@@ -98,7 +98,7 @@ impl Report {
                 drive_effect: DriveEffect::compute(gait, ground),
                 utilisation: Effort::simulate(gait, ground, &motors).utilisation(1.0, 1.0),
                 movement_with_servos: movement
-                    .keep_decided(gait.simulate_driven_cycle(ground, &motors, 1.0)),
+                    .keep_determined(gait.simulate_driven_cycle(ground, &motors, 1.0)),
             }
         };
         let core = robot.core();
@@ -116,9 +116,7 @@ impl Report {
             name: robot.name().to_string(),
         }
     }
-}
 
-impl Report {
     /// Writes the table of routines, if there are any.
     fn write_routines(&self, f: &mut fmt::Formatter) -> fmt::Result {
         if self.routines.is_empty() {
@@ -248,15 +246,15 @@ impl fmt::Display for Report {
         }
         let movements = self.rows.iter().map(|row| &row.movement);
         let mut movements = movements.chain(self.routines.iter().map(|routine| &routine.movement));
-        if movements.any(|movement| !movement.is_decided()) {
-            write!(f, "\n{UNDECIDED_NOTE}")?;
+        if movements.any(|movement| !movement.is_determined()) {
+            write!(f, "\n{UNDETERMINED_NOTE}")?;
         }
         let slow_names = self.rows.iter().filter(|row| row.is_slow());
         let slow_names: Vec<_> = slow_names.map(|row| row.name.as_str()).collect();
         if !slow_names.is_empty() {
             writeln!(
                 f,
-                "\nslow gaits: {}\nGaits below {SLOW_SPEED:.0} deg/s lose up to a third of their distance and half of their turn at an \
+                "\nslow gaits: {}\nGaits below {SLOW_SPEED_DEG_S:.0} deg/s lose up to a third of their distance and half of their turn at an \
                  edge of 2 mm (docs/judges.md).",
                 slow_names.join(", ")
             )?;
@@ -295,7 +293,7 @@ pub(crate) fn column_width<'a>(names: impl Iterator<Item = &'a str>) -> usize {
     names.map(str::len).fold(12, usize::max)
 }
 
-/// Formats a component of a prediction with its sign, or as a dash if it is undecided.
+/// Formats a component of a prediction with its sign, or as a dash if it is undetermined.
 pub(crate) fn format_component(component: Option<f64>, decimals: usize) -> String {
     match component {
         Some(value) => format!("{:+.decimals$}", round_to(value, decimals as i32)),
@@ -356,11 +354,11 @@ mod tests {
         for name in ["paper", "large", "unequal", "grain"] {
             assert!(find_slow_gaits(robot(name)).is_empty(), "{name}");
         }
-        let turns = [
+        let slow_turns = [
             "turn-slowly-on-the-spot-all-the-way-to-the-left",
             "turn-slowly-to-the-right",
         ];
-        assert_eq!(find_slow_gaits(robot("own-gaits")), turns);
+        assert_eq!(find_slow_gaits(robot("own-gaits")), slow_turns);
         // Such gaits lose 16 to 34 % of their distance.
         let slower_robot = robot_with(
             "own-gaits",
@@ -373,7 +371,7 @@ mod tests {
             ],
         );
         let names = find_slow_gaits(slower_robot.expect("the robot is valid"));
-        for gait in ["stroll", "veer-left"].into_iter().chain(turns) {
+        for gait in ["stroll", "veer-left"].into_iter().chain(slow_turns) {
             assert!(
                 names.iter().any(|name| name == gait),
                 "{gait} is missing from {names:?}"

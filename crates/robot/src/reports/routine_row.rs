@@ -24,10 +24,10 @@ pub struct RoutineRow {
     pub has_inputs: bool,
     /// Duration of a round that starts from standing, at full speed, s.
     pub seconds: f64,
-    /// Displacement over a round with ideal servos, according to the contact model. `None` for a component that depends
+    /// Displacement over a round with ideal servos, according to the contact model. A component is `None` if it depends
     /// on differences between the pads that cannot be measured.
     pub movement: Prediction,
-    /// Displacement over a round with the servos' limited torque and speed. `None` for the same components as in
+    /// Displacement over a round with the servos' limited torque and speed. The same components are `None` as in
     /// `movement`.
     pub movement_with_servos: Prediction,
 }
@@ -39,17 +39,17 @@ impl RoutineRow {
         let mut sweeps: Vec<[f64; 4]> = vec![[0.0; 4]];
         sweeps.extend(Self::simulate_sweeps(robot, routine));
         let seconds = (sweeps.len() - 1) as f64 / FRAMES_PER_SECOND;
-        // The undecided components depend only on the pads, so rigid legs suffice to find them.
+        // The undetermined components depend only on the pads, so rigid legs suffice to find them.
         let prediction = robot
             .ground()
             .with_rigid_drive()
             .predict(sweeps.iter().copied());
-        let movement_with_servos = prediction.keep_decided(drive_servos(robot, &sweeps));
-        let movement = prediction.keep_decided(robot.ground().travel(sweeps));
+        let movement_with_servos = prediction.keep_determined(drive_servos(robot, &sweeps));
+        let movement = prediction.keep_determined(robot.ground().travel(sweeps));
         Self {
             name: routine.name().to_string(),
             step_count: routine.step_count(),
-            round_count: routine.rounds(),
+            round_count: routine.round_count(),
             has_inputs: routine.has_inputs(),
             seconds,
             movement,
@@ -85,7 +85,7 @@ fn drive_servos(robot: &Robot, sweeps: &[[f64; 4]]) -> Travel {
     for sweeps in sweeps[1..].iter().chain(&[end_sweeps; SETTLING_FRAMES]) {
         walker.drive(sweeps.map(Some), 1.0 / FRAMES_PER_SECOND, &motors);
     }
-    walker.place().travel()
+    walker.body_pose().travel()
 }
 
 /// Number of frames after the last sweeps in which every servo comes to rest.

@@ -2,22 +2,22 @@
 
 use std::fmt;
 
-use lizard_contact::{Drive, Feet, Ground, Prediction, Stance};
+use lizard_contact::{Drive, Feet, GroundContact, Prediction, Stance};
 
-use crate::reports::report::{UNDECIDED_NOTE, column_width, format_component, format_turn};
+use crate::reports::report::{UNDETERMINED_NOTE, column_width, format_component, format_turn};
 use crate::robot::Robot;
 
 /// Excess length of the front left foot in the table that varies the stiffness of the feet, mm.
 const EXCESS_LENGTH_MM: f64 = 0.6;
 
-/// A parameter that is varied.
+/// A parameter that the analysis varies.
 struct Parameter {
     /// The heading of the parameter's table.
     title: &'static str,
     /// The values that the parameter takes.
     values: &'static [f64],
     /// Returns the ground with one of the values.
-    apply: fn(&Ground, f64) -> Ground,
+    apply: fn(&GroundContact, f64) -> GroundContact,
 }
 
 /// The varied parameters in the order of the report.
@@ -27,7 +27,7 @@ const PARAMETERS: [Parameter; 5] = [
     Parameter {
         title: "friction",
         values: &[0.8, 1.0, 1.1, 1.25, 1.5, 2.0],
-        apply: |ground, ratio| Ground {
+        apply: |ground, ratio| GroundContact {
             friction_ratio: ratio,
             ..*ground
         },
@@ -36,7 +36,7 @@ const PARAMETERS: [Parameter; 5] = [
     Parameter {
         title: "mount, deg",
         values: &[0.0, 20.0, 41.4, 49.0, -41.4],
-        apply: |ground, mount| Ground {
+        apply: |ground, mount| GroundContact {
             feet: Feet {
                 mount_angle: mount,
                 ..ground.feet
@@ -60,7 +60,7 @@ const PARAMETERS: [Parameter; 5] = [
     Parameter {
         title: "play, +-deg",
         values: &[1.0, 2.0],
-        apply: |ground, play| Ground {
+        apply: |ground, play| GroundContact {
             drive: Drive {
                 play,
                 ..ground.drive
@@ -71,8 +71,8 @@ const PARAMETERS: [Parameter; 5] = [
 ];
 
 /// Returns the ground with feet of this stiffness (N/mm), and the front left foot too long by `excess_length` (mm).
-fn ground_with_stance(ground: &Ground, stiffness: f64, excess_length: f64) -> Ground {
-    Ground {
+fn ground_with_stance(ground: &GroundContact, stiffness: f64, excess_length: f64) -> GroundContact {
+    GroundContact {
         stance: Stance {
             stiffness,
             twist: excess_length,
@@ -116,7 +116,7 @@ impl fmt::Display for Sensitivity {
             "One cycle with ideal servos: mm forward, and deg of counter-clockwise turn if not zero.\n",
         )?;
         let width = column_width(self.rows.iter().map(|(name, _)| name.as_str()));
-        let mut is_every_prediction_decided = true;
+        let mut is_every_prediction_determined = true;
         for (index, Parameter { title, values, .. }) in PARAMETERS.iter().enumerate() {
             f.write_str("\n")?;
             match *title {
@@ -137,21 +137,21 @@ impl fmt::Display for Sensitivity {
             f.write_str("\n")?;
             for (name, predictions) in &self.rows {
                 let predictions = &predictions[index];
-                is_every_prediction_decided &= predictions
+                is_every_prediction_determined &= predictions
                     .iter()
                     .all(|prediction| prediction.forward.is_some() && prediction.turn.is_some());
                 let cells: String = predictions.iter().map(format_cell).collect();
                 writeln!(f, "{}", format!("{name:<width$}{cells}").trim_end())?;
             }
         }
-        match is_every_prediction_decided {
+        match is_every_prediction_determined {
             true => Ok(()),
-            false => write!(f, "\n{UNDECIDED_NOTE}"),
+            false => write!(f, "\n{UNDETERMINED_NOTE}"),
         }
     }
 }
 
-/// Formats a prediction. A turn that rounds to zero is left out.
+/// Formats a prediction. A turn that rounds to zero is omitted.
 fn format_cell(prediction: &Prediction) -> String {
     let turn = format_turn(prediction.turn);
     format!("{:>9}{turn:>6}", format_component(prediction.forward, 1))

@@ -40,7 +40,7 @@ pub(crate) fn build_content(
         ..
     } = config;
     let pins = servos.map(|servo| servo.pin);
-    let neutral =
+    let neutral_angles =
         servos.map(|servo| Angle((servo.neutral * STEPS_PER_DEGREE).round() as u32 as u16));
     let calibrations = servos.map(|servo| convert_calibration(&servo));
     let needed_travels = find_needed_travels(tables, &calibrations);
@@ -53,11 +53,11 @@ pub(crate) fn build_content(
     }
     Content {
         name: name.to_string(),
-        servo_hash: compute_servo_hash(&pins, &neutral, &calibrations),
+        servo_hash: compute_servo_hash(&pins, &neutral_angles, &calibrations),
         pins,
         rail_pin: supplies.rail.map(|rail| rail.pin),
         slow_pace: supplies.slow_pace_percent,
-        neutral_angles: neutral,
+        neutral_angles,
         calibration: calibrations,
         needed_travel: needed_travels,
         limits: Limits {
@@ -264,7 +264,7 @@ mod tests {
     }
 
     #[test]
-    fn strokes_are_rounded_inwards() {
+    fn strokes_are_rounded_inward() {
         let changes = [
             ("stroke_min = -19.0", "stroke_min = -19.001"),
             ("stroke_max = 41.0", "stroke_max = 41.001"),
@@ -289,18 +289,15 @@ mod tests {
                 let is_within = |sweep: i32| {
                     (servo.min_us - 1e-6..=servo.max_us + 1e-6).contains(&pulse_at(sweep))
                 };
-                let (min, max) = (
-                    i32::from(calibration.travel_min.0),
-                    i32::from(calibration.travel_max.0),
-                );
-                assert!(
-                    is_within(min) && !is_within(min - 1),
-                    "{name} {servo:?} {min}"
-                );
-                assert!(
-                    is_within(max) && !is_within(max + 1),
-                    "{name} {servo:?} {max}"
-                );
+                for (end, outward_step) in
+                    [(calibration.travel_min, -1), (calibration.travel_max, 1)]
+                {
+                    let end = i32::from(end.0);
+                    assert!(
+                        is_within(end) && !is_within(end + outward_step),
+                        "{name} {servo:?} {end}"
+                    );
+                }
             }
         }
     }
@@ -333,7 +330,7 @@ mod tests {
     fn a_loop_can_nearly_stretch_beyond_three_quarters_of_its_squared_reach() {
         // The threshold is three quarters of the couplers' squared reach, so base plus cranks must exceed 0.866 of the
         // couplers' sum.
-        for (base_and_cranks, is_near) in [
+        for (base_and_cranks, expected) in [
             ([20.0, 30.0, 30.0], false),
             ([26.0, 30.0, 30.0], false),
             ([28.0, 30.0, 30.0], true),
@@ -342,8 +339,8 @@ mod tests {
         ] {
             let [base, left, right] = base_and_cranks;
             let five_bar = kinematics::FiveBar::new([base, left, 50.0, 50.0, right]);
-            let is_found_near = convert_five_bar(&five_bar).can_nearly_stretch;
-            assert_eq!(is_found_near, is_near, "{five_bar:?}");
+            let can_nearly_stretch = convert_five_bar(&five_bar).can_nearly_stretch;
+            assert_eq!(can_nearly_stretch, expected, "{five_bar:?}");
         }
     }
 

@@ -1,8 +1,7 @@
 //! The gaits in the firmware's form: waveforms of 64 samples that several servos share, each servo with its own offset
 //! and gain.
 //!
-//! The core defines the meaning of a table and the interpolation between its samples:
-//! [`lizard_core::numbers::gaits`].
+//! The core defines the meaning of a table and the interpolation between its samples: [`lizard_core::numbers::gaits`].
 
 use lizard_avr::Flash;
 use lizard_core::numbers::gaits::{Channel, Gait as TableGait, MAX_WAVES, SAMPLES_PER_WAVE, Wave};
@@ -97,9 +96,7 @@ impl Tables {
             names,
         })
     }
-}
 
-impl Tables {
     /// Returns the sweeps from neutral of the gait with this index at a phase in 1/65536 cycle: in angle steps,
     /// positive counter-clockwise, servo order.
     pub fn sweeps(&self, gait_index: usize, phase: u16) -> [i16; 4] {
@@ -237,6 +234,7 @@ fn find_rotation(
 #[cfg(test)]
 mod tests {
     use crate::Robot;
+    use crate::robot::STAND;
     use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 
     /// Number of waveforms in a robot's tables.
@@ -351,14 +349,17 @@ mod tests {
         let duty_robot =
             robot_with("paper", &[("duty = 0.875", "duty = 0.8")]).expect("the robot is valid");
         assert_eq!(wave_count(&duty_robot), 5);
-        let robot_with_step = robot_with(
+        let robot_with_added_wave = robot_with(
             "paper",
             &[(
                 "[gait.trot]",
                 "[gait.step]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.6\namplitude = 9.0\nstart = { LF = 0.1, RF = 0.2, RH = 0.3, LH = 0.4 }\n[gait.trot]",
             )],
         );
-        assert_eq!(wave_count(&robot_with_step.expect("the robot is valid")), 6);
+        assert_eq!(
+            wave_count(&robot_with_added_wave.expect("the robot is valid")),
+            6
+        );
     }
 
     #[test]
@@ -381,8 +382,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_only_stands_has_a_table_of_zeros() {
-        let stand = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
-        let robot = Robot::parse(&format!("{}{stand}", text_before_gaits("unequal")))
+        let robot = Robot::parse(&format!("{}{STAND}", text_before_gaits("unequal")))
             .expect("the robot is valid");
         assert_eq!(wave_count(&robot), 1);
         let stand = &robot.gaits()[0];

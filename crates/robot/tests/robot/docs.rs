@@ -1,8 +1,8 @@
 //! Comparisons of the tables in docs/gaits.md, docs/limits.md and docs/twin.md with computed tables.
 
 use lizard_robot::{
-    Assumptions, Drive, DriveKind, Effort, Ground, HIGH_UTILISATION, Report, Robot, Sensitivity,
-    ServoTable, SimulatedCycle,
+    Assumptions, Drive, DriveKind, Effort, GroundContact, HIGH_UTILISATION, Report, Robot,
+    Sensitivity, ServoTable, SimulatedCycle,
 };
 
 use crate::{gait, paper};
@@ -88,19 +88,19 @@ const SPRING_FORCES_N: [Option<f64>; 6] =
 
 /// Formats the cells of a row of the table of slotted struts: a value of a gait for each spring force. The springs have
 /// the rate of the paper's coil.
-fn format_strut_cells(name: &str, get_value: fn(SimulatedCycle) -> f64) -> String {
+fn format_strut_cells(name: &str, value_of: fn(SimulatedCycle) -> f64) -> String {
     let rate = paper().parts().spring.rate();
     let cells = SPRING_FORCES_N.map(|force| {
         let kind = force.map_or(DriveKind::Rigid, |force| {
             DriveKind::Strut(paper().strut_with_spring(force, rate))
         });
-        let ground = Ground {
+        let ground = GroundContact {
             drive: Drive { kind, play: 0.0 },
             ..*paper().ground()
         };
         format!(
             " {:.1} |",
-            get_value(gait(paper(), name).simulate_cycle(&ground))
+            value_of(gait(paper(), name).simulate_cycle(&ground))
         )
     });
     cells.concat()
@@ -147,7 +147,7 @@ fn format_slow_pace_row(file: &str) -> String {
         })
         .collect();
     let utilisation_at = |effort: &Effort, pace| effort.utilisation(pace, stop_volts / own_volts);
-    let (name, hardest_effort) = efforts
+    let (name, max_effort) = efforts
         .iter()
         .max_by(|(_, a), (_, b)| utilisation_at(a, 1.0).total_cmp(&utilisation_at(b, 1.0)))
         .expect("the robot has gaits");
@@ -165,7 +165,7 @@ fn format_slow_pace_row(file: &str) -> String {
         assert_eq!(robot.supplies().slow_pace_percent, percent, "{file}");
     }
     let [full_utilisation, slow_utilisation] =
-        [1.0, f64::from(percent) / 100.0].map(|pace| utilisation_at(hardest_effort, pace));
+        [1.0, f64::from(percent) / 100.0].map(|pace| utilisation_at(max_effort, pace));
     format!(
         "| `{file}` | `{name}` | {stop_volts:.1} | {full_utilisation:.2} | {percent} | {slow_utilisation:.2} |\n"
     )

@@ -1,13 +1,13 @@
 //! The drive of a leg: struts that yield in one direction, and play. The expected values come from a separate
 //! implementation of the same model.
 
-use lizard_robot::{Body, Drive, DriveEffect, DriveKind, Ground, Report, Walker};
+use lizard_robot::{Body, Drive, DriveEffect, DriveKind, GroundContact, Report, Walker};
 
 use crate::{REFERENCE_BODY, gait, paper, paper_with, simulate_movement};
 
 /// Returns the paper's ground with this drive and the reference body.
-fn ground_with(drive: Drive) -> Ground {
-    Ground {
+fn ground_with(drive: Drive) -> GroundContact {
+    GroundContact {
         drive,
         body: REFERENCE_BODY,
         ..*paper().ground()
@@ -15,7 +15,7 @@ fn ground_with(drive: Drive) -> Ground {
 }
 
 /// Returns the ground of a robot on slotted struts, with springs of this force (N) and the rate of the paper's coil.
-fn ground_with_strut(force: f64) -> Ground {
+fn ground_with_strut(force: f64) -> GroundContact {
     ground_with(Drive {
         kind: DriveKind::Strut(paper().strut_with_spring(force, 0.395)),
         play: 0.0,
@@ -23,7 +23,7 @@ fn ground_with_strut(force: f64) -> Ground {
 }
 
 /// Returns the ground of a robot whose legs have this play (deg).
-fn ground_with_play(play: f64) -> Ground {
+fn ground_with_play(play: f64) -> GroundContact {
     ground_with(Drive {
         play,
         ..Drive::RIGID
@@ -58,7 +58,7 @@ fn struts_with_at_least_two_newtons_act_like_rigid_links() {
         // The spring recommended in docs/build.md suffices for a robot of 400 g, and the strongest spring suffices for
         // pads with 1.5 times the friction.
         for (force, friction) in [(3.0, 0.7), (5.0, 1.05)] {
-            let heavy_ground = Ground {
+            let heavy_ground = GroundContact {
                 friction_coefficient: friction,
                 body: Body {
                     mass: 400.0,
@@ -163,7 +163,7 @@ fn the_drive_is_read_from_its_table() {
 }
 
 #[test]
-fn a_stiffer_drive_reduces_the_lag_of_its_legs() {
+fn a_stiffer_drive_reduces_the_lag_of_a_leg() {
     let mut walker = Walker::new(ground_with_strut(0.2), [0.0; 4]);
     (1..=40).for_each(|i| {
         walker.move_to([0.5 * f64::from(i), 0.0, 0.0, 0.0]);
@@ -178,7 +178,7 @@ fn a_stiffer_drive_reduces_the_lag_of_its_legs() {
 #[test]
 fn a_walk_depends_only_on_the_spring_force_divided_by_mass_and_friction() {
     let walk_cycle = |mass: f64, friction: f64, force: f64| {
-        let ground = Ground {
+        let ground = GroundContact {
             body: Body {
                 mass,
                 ..Body::DEFAULT
@@ -213,7 +213,7 @@ fn a_lag_stays_constant_while_no_servo_turns_and_falls_with_friction() {
             "no servo turns, so no lag changes"
         );
     }
-    walker.set_ground(Ground {
+    walker.set_ground(GroundContact {
         friction_coefficient: 0.07,
         ..ground_with_strut(0.5)
     });

@@ -9,7 +9,7 @@ use super::{paper, paper_text, paper_with_tables};
 const INPUTS: &str = "[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A2\"\n";
 
 /// Returns the error message for these tables, whose line number is counted from the tables' first line.
-fn read_error(tables: &str) -> String {
+fn parse_error(tables: &str) -> String {
     let error = paper_with_tables(tables).map(|_| ()).expect_err(tables);
     let lines_before = paper_text().trim_end().lines().count() + 1;
     let line = error.line.expect("the error has a line");
@@ -18,8 +18,8 @@ fn read_error(tables: &str) -> String {
     error.to_string().replacen(&location, &line_in_tables, 1)
 }
 
-/// Reads kind, gait and count of each record of a routine with only this step.
-fn read_records(step: &str) -> Vec<(u8, u8, u16)> {
+/// Returns kind, gait and count of each record of a routine with only this step.
+fn step_records(step: &str) -> Vec<(u8, u8, u16)> {
     let robot =
         paper_with_tables(&format!("{INPUTS}[routine.one]\nsteps = [\"{step}\"]")).expect(step);
     let [routine] = robot.routines() else {
@@ -71,14 +71,14 @@ fn a_step_with_an_input_has_two_records_with_the_input_first() {
         ),
         ("rest", vec![(Step::REST, 0, 1)]),
     ] {
-        assert_eq!(read_records(step), expected, "{step}");
+        assert_eq!(step_records(step), expected, "{step}");
     }
     assert_eq!((button.pin(), nose.pin()), (15, 16));
     assert!(nose.is_nose() && !button.is_nose());
 }
 
 #[test]
-fn unused_inputs_do_not_change_the_section() {
+fn unused_inputs_do_not_change_the_flash_section() {
     let robot = paper_with_tables(INPUTS).expect("the inputs are valid");
     assert_eq!(robot.section(), paper().section());
     let named_pins: Vec<_> = robot.inputs().named_pins().collect();
@@ -103,7 +103,7 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
         ("a1", unusable),
     ] {
         for name in ["button", "nose"] {
-            let actual = read_error(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
+            let actual = parse_error(&format!("[input.{name}]\npin = \"{pin}\"\n{rail}"));
             assert_eq!(actual, format!("2: input.{name}.pin is \"{pin}\"{message}"));
         }
     }
@@ -115,7 +115,7 @@ fn every_free_pin_can_be_an_input_and_used_pins_are_rejected() {
             paper_with_tables(&format!("[input.nose]\npin = \"{pin}\"\n{rail}")).expect(pin);
         assert!(robot.inputs().nose.is_some() && robot.inputs().button.is_none());
     }
-    let message = read_error("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
+    let message = parse_error("[input.button]\npin = \"A1\"\n[input.nose]\npin = \"A1\"");
     assert_eq!(
         message,
         "4: input.nose.pin is \"A1\", which input.button already uses"
@@ -138,7 +138,7 @@ fn an_error_in_an_input_is_reported_with_its_line_and_step() {
             "1: input.nose.pin is missing; it must be a string",
         ),
     ] {
-        assert_eq!(read_error(tables), message);
+        assert_eq!(parse_error(tables), message);
     }
     for (step, message) in [
         ("wait", "must name an input, for example \"wait button\""),
@@ -175,13 +175,13 @@ fn an_error_in_an_input_is_reported_with_its_line_and_step() {
             "names the gait \"wait-button\", which does not exist; allowed: stand, walk, trot, crawl, back, left, right, arc-left, arc-right, look",
         ),
     ] {
-        let actual = read_error(&format!(
+        let actual = parse_error(&format!(
             "{INPUTS}[routine.one]\nsteps = [\"walk 1\", \"{step}\"]"
         ));
         let expected = format!("6: routine.one.steps: step 2, \"{step}\", {message}");
         assert_eq!(actual, expected);
     }
-    let actual = read_error("[routine.one]\nsteps = [\"wait nose\"]");
+    let actual = parse_error("[routine.one]\nsteps = [\"wait nose\"]");
     let message = "names the input \"nose\", which has no pin; set one in [input.nose], for example pin = \"A1\"";
     assert_eq!(
         actual,
@@ -190,7 +190,7 @@ fn an_error_in_an_input_is_reported_with_its_line_and_step() {
 }
 
 #[test]
-fn a_round_counts_a_wait_as_a_frame_and_an_endless_gait_as_a_cycle() {
+fn a_round_counts_a_wait_as_one_frame_and_an_endless_gait_as_one_cycle() {
     let simulate_round = |steps: &str| {
         let robot = paper_with_tables(&format!(
             "{INPUTS}[routine.one]\nsteps = [{steps}]\nrepeat = \"for ever\""
@@ -214,8 +214,8 @@ fn a_round_counts_a_wait_as_a_frame_and_an_endless_gait_as_a_cycle() {
     );
     let extra_seconds = round_with_inputs.seconds - plain_round.seconds;
     assert!((0.0..0.1).contains(&extra_seconds), "{extra_seconds} s");
-    let get_turn = |round: &RoutineRow| round.movement.turn.expect("the turn is decided");
-    assert!((get_turn(&round_with_inputs) - get_turn(&plain_round)).abs() < 0.1);
+    let turn_of = |round: &RoutineRow| round.movement.turn.expect("the turn is determined");
+    assert!((turn_of(&round_with_inputs) - turn_of(&plain_round)).abs() < 0.1);
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn the_patrol_in_the_docs_repeats_from_its_second_step() {
     let [routine] = robot.routines() else {
         panic!("the robot has one routine");
     };
-    assert_eq!((routine.step_count(), routine.rounds()), (4, None));
+    assert_eq!((routine.step_count(), routine.round_count()), (4, None));
     let core = robot.core();
     let ids = lizard_core::numbers::gaits::GaitId::all(core.gait_count());
     let record = core.gait(ids.last().expect("the robot has a routine"));

@@ -3,17 +3,17 @@
 
 use std::sync::LazyLock;
 
-use lizard_robot::{Body, CheckedGait, Error, Ground, Robot};
+use lizard_robot::{Body, CheckedGait, Error, GroundContact, Robot};
 
 mod docs;
 mod drives;
-mod golden;
 mod inputs;
 mod mistakes;
 mod predictions;
 mod robots;
 mod routines;
-mod standing;
+mod snapshots;
+mod uneven_feet;
 
 /// The path of the paper's robot.
 const PAPER_PATH: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/paper.toml");
@@ -42,7 +42,7 @@ const REFERENCE_BODY: Body = Body {
 };
 
 /// Simulates the displacement over one cycle: mm forward, or deg of turn for a gait that turns on the spot.
-fn simulate_movement(gait: &CheckedGait, ground: &Ground) -> f64 {
+fn simulate_movement(gait: &CheckedGait, ground: &GroundContact) -> f64 {
     let travel = gait.simulate_cycle(ground).travel;
     match gait.name() {
         "left" | "right" => travel.turn,

@@ -1,4 +1,4 @@
-//! Predicted displacements of the paper's gaits, which match the values by which the gaits were chosen, and have the
+//! The predicted displacements of the paper's gaits match the values by which the gaits were chosen, and have the
 //! symmetries of the contact model.
 
 use lizard_robot::{Report, Robot, Travel};
@@ -20,16 +20,16 @@ const EXPECTED_MOVEMENTS: [(&str, f64, f64); 9] = [
     ("arc-right", 17.71, -5.27),
 ];
 
-/// Predicts the displacement over one cycle of a gait. Panics if a component is undecided.
+/// Predicts the displacement over one cycle of a gait. Panics if a component is undetermined.
 fn predict(robot: &Robot, name: &str) -> Travel {
     let movement = robot.predict(gait(robot, name));
-    let require_decided = |component: Option<f64>| {
-        component.unwrap_or_else(|| panic!("{name} is undecided: {movement:?}"))
+    let require_determined = |component: Option<f64>| {
+        component.unwrap_or_else(|| panic!("{name} is undetermined: {movement:?}"))
     };
     Travel {
-        forward: require_decided(movement.forward),
-        left: require_decided(movement.left),
-        turn: require_decided(movement.turn),
+        forward: require_determined(movement.forward),
+        left: require_determined(movement.left),
+        turn: require_determined(movement.turn),
     }
 }
 
@@ -61,7 +61,7 @@ fn the_tables_at_fifty_frames_per_second_move_the_robot_as_far() {
 }
 
 #[test]
-fn a_head_gesture_is_undecided() {
+fn the_displacement_of_a_head_gesture_is_undetermined() {
     let robot = paper();
     assert_eq!(robot.predict(gait(robot, "look")).forward, None);
     let report = Report::compute(robot).to_string();
@@ -142,7 +142,7 @@ fn doubling_the_samples_changes_predictions_by_less_than_0_01() {
 /// Predicts the forward distance over one cycle of a gait, mm.
 fn predict_forward(robot: &Robot, name: &str) -> f64 {
     let forward = robot.predict(gait(robot, name)).forward;
-    forward.unwrap_or_else(|| panic!("{name} is undecided"))
+    forward.unwrap_or_else(|| panic!("{name} is undetermined"))
 }
 
 #[test]

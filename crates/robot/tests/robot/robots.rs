@@ -70,11 +70,11 @@ fn every_gait_is_also_safe_between_its_samples() {
 }
 
 #[test]
-fn an_audit_contains_the_least_margins_of_all_phases() {
+fn an_audit_contains_the_smallest_margins_of_all_phases() {
     for_each_gait(|file, robot, gait| {
         let audit = gait.audit();
-        let mut least_margins = [f64::INFINITY; 3];
-        let (mut smallest_stroke, mut largest_stroke) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut min_margins = [f64::INFINITY; 3];
+        let (mut min_sampled_stroke, mut max_sampled_stroke) = (f64::INFINITY, f64::NEG_INFINITY);
         for phase in (0..=u16::MAX).step_by(64) {
             let pose = gait.table_angles(phase).into();
             let solution = robot.lizard().solve(&pose).expect("the linkage closes");
@@ -86,13 +86,17 @@ fn an_audit_contains_the_least_margins_of_all_phases() {
             .into_iter()
             .enumerate()
             {
-                least_margins[index] = margins.iter().fold(least_margins[index], |a, b| a.min(*b));
+                min_margins[index] = margins.iter().fold(min_margins[index], |a, b| a.min(*b));
             }
-            smallest_stroke = smallest_stroke.min(solution.left.s).min(solution.right.s);
-            largest_stroke = largest_stroke.max(solution.left.s).max(solution.right.s);
+            min_sampled_stroke = min_sampled_stroke
+                .min(solution.left.s)
+                .min(solution.right.s);
+            max_sampled_stroke = max_sampled_stroke
+                .max(solution.left.s)
+                .max(solution.right.s);
         }
         let audited_margins = [audit.type2.value, audit.type1.value, audit.leg.value];
-        for (audited, sampled) in audited_margins.into_iter().zip(least_margins) {
+        for (audited, sampled) in audited_margins.into_iter().zip(min_margins) {
             // The audit samples more phases than this test, so its minimum may be smaller.
             assert!(
                 (0.0..0.002).contains(&(sampled - audited)),
@@ -101,7 +105,10 @@ fn an_audit_contains_the_least_margins_of_all_phases() {
             );
         }
         let (min_stroke, max_stroke) = audit.stroke_range;
-        for difference in [smallest_stroke - min_stroke, max_stroke - largest_stroke] {
+        for difference in [
+            min_sampled_stroke - min_stroke,
+            max_stroke - max_sampled_stroke,
+        ] {
             assert!((0.0..0.1).contains(&difference), "{file} {}", gait.name());
         }
         assert!(Check::TYPE2.contains(&audit.type2.check), "{file}");
@@ -112,19 +119,18 @@ fn an_audit_contains_the_least_margins_of_all_phases() {
 fn the_peak_speed_is_the_highest_in_either_direction() {
     for_each_gait(|file, robot, gait| {
         let phase_per_frame = 0.02 / gait.period();
-        let mut largest_speed = 0.0f64;
+        let mut max_speed = 0.0f64;
         for i in 0..1000 {
             let phase = f64::from(i) / 1000.0;
             let (angles, next_angles) = (gait.angles(phase), gait.angles(phase + phase_per_frame));
             for servo in 0..4 {
-                largest_speed =
-                    largest_speed.max((next_angles[servo] - angles[servo]).abs() * 50.0);
+                max_speed = max_speed.max((next_angles[servo] - angles[servo]).abs() * 50.0);
             }
         }
         let peak = gait.audit().peak_speed;
         assert!(
-            (peak.speed - largest_speed).abs() <= 0.005 * largest_speed,
-            "{file} {}: {peak:?}, expected {largest_speed} deg/s",
+            (peak.speed - max_speed).abs() <= 0.005 * max_speed,
+            "{file} {}: {peak:?}, expected {max_speed} deg/s",
             gait.name()
         );
         assert!(peak.speed <= robot.speed_limits().gait_slew);

@@ -1,4 +1,4 @@
-//! Routines of robot.toml: valid and invalid steps, the routines' records in the section, and the predicted
+//! Routines of robot.toml: valid and invalid steps, the routines' records in the flash section, and the predicted
 //! displacement of a round.
 
 use lizard_core::numbers::gaits::Step;
@@ -7,7 +7,7 @@ use lizard_robot::RoutineRow;
 use super::{gait, paper, paper_text, paper_with_tables};
 
 /// Returns the error message for a routine `patrol` with these lines.
-fn read_error(lines: &str) -> String {
+fn parse_error(lines: &str) -> String {
     let result = paper_with_tables(&format!("[routine.patrol]\n{lines}"));
     result.map(|_| ()).expect_err(lines).to_string()
 }
@@ -35,14 +35,14 @@ fn steps_and_rounds_are_read() {
     ]
     .map(|(kind, gait, count)| Step { kind, gait, count });
     assert_eq!(routine.step_records(), steps);
-    assert_eq!(routine.rounds(), Some(3));
-    let read_rounds = |repeat: &str| {
+    assert_eq!(routine.round_count(), Some(3));
+    let read_round_count = |repeat: &str| {
         let text = format!("[routine.one]\nsteps = [\"walk 1\"]\n{repeat}");
-        paper_with_tables(&text).expect(repeat).routines()[0].rounds()
+        paper_with_tables(&text).expect(repeat).routines()[0].round_count()
     };
-    assert_eq!(read_rounds(""), Some(1));
-    assert_eq!(read_rounds("repeat = 999"), Some(999));
-    assert_eq!(read_rounds("repeat = \"for ever\""), None);
+    assert_eq!(read_round_count(""), Some(1));
+    assert_eq!(read_round_count("repeat = 999"), Some(999));
+    assert_eq!(read_round_count("repeat = \"for ever\""), None);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn the_core_finds_the_routines_after_the_unchanged_gaits() {
         let record = core.gait(*id);
         let [_, count, rounds, _] = record.channels;
         assert_eq!(usize::from(count.offset), routine.step_records().len());
-        assert_eq!(rounds.offset, routine.rounds().unwrap_or(0));
+        assert_eq!(rounds.offset, routine.round_count().unwrap_or(0));
         for (number, step) in routine.step_records().iter().enumerate() {
             assert_eq!(core.step(&record, number as u16), *step);
         }
@@ -137,7 +137,7 @@ fn an_error_is_reported_with_its_line_and_step() {
         for (number, earlier_steps) in [(1, ""), (2, "\"walk 1\", ")] {
             let lines = format!("steps = [{earlier_steps}\"{step}\"]\n{round}");
             let expected = format!("{location} step {number}, \"{step}\", {problem}");
-            assert_eq!(read_error(&lines), expected);
+            assert_eq!(parse_error(&lines), expected);
         }
     }
     for (lines, message) in [
@@ -178,12 +178,12 @@ fn an_error_is_reported_with_its_line_and_step() {
             "routine.patrol.speed is not a known key; allowed: steps, repeat, repeat_from",
         ),
     ] {
-        let actual = read_error(lines);
+        let actual = parse_error(lines);
         assert!(actual.ends_with(message), "{actual}");
         assert!(actual.starts_with("robot.toml:"), "{actual}");
     }
     let many_steps = "\"walk 1\", ".repeat(100);
-    let actual = read_error(&format!("steps = [{many_steps}]"));
+    let actual = parse_error(&format!("steps = [{many_steps}]"));
     assert!(
         actual.ends_with("has 100 steps; it must have between 1 and 99"),
         "{actual}"
@@ -226,34 +226,38 @@ fn a_round_includes_the_changes_between_its_gaits() {
         .routines()
         .iter()
         .map(|routine| RoutineRow::simulate(&robot, routine));
-    let [ahead_round, about_round, gaze_round]: [RoutineRow; 3] = rounds
+    let [walk_round, turn_round, gaze_round]: [RoutineRow; 3] = rounds
         .collect::<Vec<_>>()
         .try_into()
         .expect("there are three routines");
     let walk_forward = robot.predict(gait(&robot, "walk")).forward;
-    let walk_forward = walk_forward.expect("the movement is decided");
+    let walk_forward = walk_forward.expect("the movement is determined");
     let left_turn = robot.predict(gait(&robot, "left")).turn;
-    let left_turn = left_turn.expect("the movement is decided");
+    let left_turn = left_turn.expect("the movement is determined");
     // Ten cycles of one second each, and the changes from and to the neutral pose.
     assert!(
-        (10.0..11.0).contains(&ahead_round.seconds),
+        (10.0..11.0).contains(&walk_round.seconds),
         "{}",
-        ahead_round.seconds
+        walk_round.seconds
     );
-    let forward = ahead_round.movement.forward;
-    let ratio = forward.expect("the movement is decided") / (10.0 * walk_forward);
+    let forward = walk_round.movement.forward;
+    let ratio = forward.expect("the movement is determined") / (10.0 * walk_forward);
     assert!(
         (0.95..1.05).contains(&ratio),
         "the distance ratio is {ratio}"
     );
     assert!(
-        (7.0..8.0).contains(&about_round.seconds),
+        (7.0..8.0).contains(&turn_round.seconds),
         "{}",
-        about_round.seconds
+        turn_round.seconds
     );
-    let ratio = about_round.movement.turn.expect("the movement is decided") / (5.0 * left_turn);
+    let ratio = turn_round
+        .movement
+        .turn
+        .expect("the movement is determined")
+        / (5.0 * left_turn);
     assert!((0.9..1.1).contains(&ratio), "the turn ratio is {ratio}");
-    assert_eq!((about_round.round_count, about_round.step_count), (None, 2));
+    assert_eq!((turn_round.round_count, turn_round.step_count), (None, 2));
     // Two feet pull against the other two, so differences between the pads that cannot be measured decide the result.
     assert_eq!(gaze_round.movement.forward, None);
 }

@@ -171,7 +171,7 @@ fn after_power_on_the_chip_starts_only_when_the_supply_is_high_enough() {
 }
 
 #[test]
-fn ramps_and_power_cuts_affect_a_firmware_that_sleeps_forever() {
+fn ramps_and_power_cuts_affect_firmware_that_sleeps_forever() {
     let mut uno = uno_with_program(
         "int main(void) { GPIOR0 = MCUSR; SMCR = 1; asm volatile (\"sleep\"); for (;;) {} }",
     );

@@ -103,7 +103,7 @@ fn bytes_beyond_the_receive_buffer_are_lost_while_interrupts_are_blocked() {
     uno.block_interrupts(5 * 1389);
     uno.run_until_cycle(30_000);
     assert_eq!(mark_values(&uno), b"abcdeh");
-    assert_eq!(uno.overruns(), 2);
+    assert_eq!(uno.overrun_count(), 2);
 }
 
 #[test]

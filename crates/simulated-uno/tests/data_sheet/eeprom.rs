@@ -263,7 +263,8 @@ fn the_ready_interrupt_is_requested_while_eepe_is_zero() {
         sleep_fraction > 0.6,
         "the CPU sleeps while a byte is programmed"
     );
-    let starts: Vec<u64> = uno.eeprom_operations().iter().map(|o| o.cycle).collect();
+    let operations = uno.eeprom_operations();
+    let starts: Vec<u64> = operations.iter().map(|operation| operation.cycle).collect();
     for interval in intervals(&starts) {
         assert_within(ATOMIC_CYCLES..ATOMIC_CYCLES + 150, interval);
     }

@@ -1,7 +1,7 @@
 //! Tests of the simulated pins, memory and call timing against cycles counted with the data sheet.
 
 use simulated_uno::avr_gcc::{assemble, compile_c};
-use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, most_pins_high};
+use simulated_uno::{CYCLES_PER_MS, Call, Image, Pin, State, Uno, max_pins_high};
 
 use super::{
     FIDELITIES, LED, compile_with_headers, new_uno, numbered_edges, pulse_widths, uno_after,
@@ -70,7 +70,7 @@ fn edges_have_arduino_numbers_and_pins_that_are_high_together_are_counted() {
         [(9, false), (11, true), (11, false)],
     );
     assert_eq!(numbered_edges(&uno), [first_edges, last_edges].concat());
-    assert_eq!(most_pins_high(&uno.edges()), 2);
+    assert_eq!(max_pins_high(&uno.edges()), 2);
 }
 
 #[test]
@@ -99,7 +99,7 @@ fn every_pin_of_every_port_is_recorded_under_its_arduino_number() {
             assert_eq!(measured_pulses, [(*start, *width)], "{pin}");
         }
         assert_eq!(uno.edges().len(), 2 * 18, "D2 to D13, A0 to A5");
-        assert_eq!(most_pins_high(&uno.edges()), 1);
+        assert_eq!(max_pins_high(&uno.edges()), 1);
     }
 }
 

@@ -70,11 +70,11 @@ fn stock_simavr_enters_an_interrupt_in_zero_cycles() {
 #[test]
 fn interrupts_are_counted_with_their_cycles() {
     let uno = uno_after(100_000, assemble(TICK_PROGRAM));
-    let statistics = uno.interrupts();
+    let statistics = uno.interrupt_stats();
     assert_eq!(statistics.len(), 1);
     let name = simulated_uno::vector_name(statistics[0].vector);
     assert_eq!(name, "TIMER1_COMPA");
-    assert_eq!(statistics[0].entries, 9);
+    assert_eq!(statistics[0].entry_count, 9);
     // Each interrupt takes entry 8, jmp 3, out 1, out 1, reti 4.
     assert_eq!(statistics[0].cycles, 9 * 17);
 }
@@ -106,7 +106,7 @@ fn one_instruction_runs_between_sei_and_a_pending_interrupt() {
     // switched on only if that instruction is `sbi PORTB, 5`.
     for (nops, has_edge) in [(0, true), (1, false)] {
         let mut uno = Uno::with_image(assemble(&source_with_nops(nops)), Fidelity::DataSheet);
-        uno.run_until(200_000, 1, |uno| !uno.interrupts().is_empty());
+        uno.run_until(200_000, 1, |uno| !uno.interrupt_stats().is_empty());
         assert_eq!(!uno.edges().is_empty(), has_edge, "{nops} nops");
     }
 }

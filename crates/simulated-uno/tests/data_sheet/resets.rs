@@ -201,7 +201,7 @@ fn temp_is_cleared_by_a_reset() {
 }
 
 #[test]
-fn a_reset_restarts_a_halted_or_crashed_firmware() {
+fn a_reset_restarts_halted_or_crashed_firmware() {
     for (source, is_halt) in [
         ("ldi r16, 1 $ out SMCR, r16 $ cli $ sleep", true),
         ("ldi r16, 1 $ sts 0x0fff, r16", false),

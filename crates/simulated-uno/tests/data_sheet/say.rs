@@ -46,7 +46,7 @@ fn say_gives_up_after_a_simulated_second_of_silence() {
 }
 
 #[test]
-fn a_firmware_that_halts_does_not_answer() {
+fn firmware_that_halts_does_not_answer() {
     let mut uno = uno_after_ms(2, compile_c(CAPITALS_PROGRAM));
     assert_eq!(uno.say("!"), None);
     assert_eq!(*uno.state(), State::Halted);

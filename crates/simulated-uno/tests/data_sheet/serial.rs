@@ -34,7 +34,7 @@ fn an_echo_returns_the_sent_bytes() {
         uno.send(b"the quick brown fox");
         uno.run_ms(5);
         assert_eq!(transmitted_bytes(&uno), b"the quick brown fox");
-        assert_eq!(uno.bytes_unsent(), 0);
+        assert_eq!(uno.unsent_byte_count(), 0);
     }
 }
 
@@ -67,11 +67,14 @@ fn a_flood_has_the_baud_rate_over_a_second() {
     let mut uno = Uno::with_image(program("get();"), Fidelity::DataSheet);
     uno.flood(b"0123456789");
     uno.run_ms(1000);
-    let sent_count = uno.bytes_sent();
+    let sent_count = uno.sent_byte_count();
     assert!(sent_count.abs_diff(11_520) <= 1, "{sent_count}");
     uno.flood(b"");
     uno.run_ms(10);
-    assert!(uno.bytes_sent() <= sent_count + 1, "the flood has ended");
+    assert!(
+        uno.sent_byte_count() <= sent_count + 1,
+        "the flood has ended"
+    );
 }
 
 #[test]
@@ -87,7 +90,7 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
         uno.send(sent_text.as_bytes());
         uno.run_ms(4);
         assert_eq!(
-            (&*transmitted_bytes(&uno), uno.overruns()),
+            (&*transmitted_bytes(&uno), uno.overrun_count()),
             (kept_bytes, lost_count),
             "{sent_text}"
         );
@@ -96,7 +99,7 @@ fn two_bytes_wait_in_the_buffer_and_a_third_in_the_shift_register() {
     uno.run_cycles(3200);
     uno.send(b"abcde");
     uno.run_ms(5);
-    let stock_result = (transmitted_bytes(&uno).len(), uno.overruns());
+    let stock_result = (transmitted_bytes(&uno).len(), uno.overrun_count());
     assert_eq!(stock_result, (5, 0), "stock simavr loses nothing");
 }
 
@@ -132,7 +135,7 @@ fn a_fast_receive_interrupt_loses_no_byte() {
             sum
         });
         assert!(sums.eq(uno.marks().iter().map(|mark| mark.value)));
-        assert_eq!(uno.overruns(), 0);
+        assert_eq!(uno.overrun_count(), 0);
     }
 }
 

@@ -11,11 +11,11 @@ use super::*;
 use crate::board::BoardError;
 use crate::contents::find_robot;
 use crate::target::Model;
-use double::BoardDouble;
+use board_double::BoardDouble;
 
-mod alone;
-mod double;
+mod board_double;
 mod nano;
+mod robot_alone;
 
 /// The firmware's code, in Intel HEX.
 pub(crate) const CODE: &str = include_str!("../../../../firmware/code.hex");
@@ -163,7 +163,7 @@ fn the_first_page_is_the_idle_loop_until_all_other_pages_are_written() {
 }
 
 #[test]
-fn an_upload_only_starts_a_board_that_has_the_image() {
+fn an_upload_to_a_board_that_has_the_image_only_starts_the_program() {
     let run = run(board_with_image());
     let counts = run.assert_written();
     assert_eq!((counts.written, counts.kept), (0, 5));
@@ -185,9 +185,9 @@ fn only_pages_that_differ_are_written() {
 }
 
 #[test]
-fn a_loader_that_ignores_two_calls_needs_no_second_reset() {
+fn a_loader_that_ignores_two_sync_requests_needs_no_second_reset() {
     let mut board = BoardDouble::blank();
-    board.ignored_calls_per_reset = 2;
+    board.ignored_syncs_per_reset = 2;
     let run = run(board);
     run.assert_written();
     assert_eq!(run.board.reset_count, 1);
@@ -196,7 +196,7 @@ fn a_loader_that_ignores_two_calls_needs_no_second_reset() {
 #[test]
 fn output_of_the_old_program_before_the_answer_is_skipped() {
     let mut board = BoardDouble::with_program(&[9; 500]);
-    // The output contains both bytes of an answer, but never adjacent.
+    // The output contains both bytes of a response, but never adjacent.
     board.old_program_output = b"# t=1\r\n\x14\x15\x10ok\r\n".repeat(30);
     run(board).assert_written();
 }
@@ -320,8 +320,8 @@ fn an_upload_recovers_from_the_loss_of_any_byte_from_the_board() {
         "{} bytes",
         undisturbed_board.sent_count
     );
-    // Loses every byte of the call and of the first pages. Later, steps of 101 bytes lose every byte of a page's answer
-    // on some page.
+    // Loses every byte of the synchronisation and of the first pages. Later, steps of 101 bytes lose every byte of the
+    // response to the command that reads a page, on some page.
     for lost_byte in (0..300).chain((300..undisturbed_board.sent_count).step_by(101)) {
         let mut board = BoardDouble::with_program(&old_contents);
         board.lost_byte_from_board = Some(lost_byte);

@@ -17,19 +17,19 @@ fn studio() -> Studio {
 }
 
 /// Returns a walk that is centred on the origin.
-fn centred_walk(gait: &Gait, cycles: usize) -> Walk {
+fn centred_walk(gait: &Gait, cycle_count: usize) -> Walk {
     let start = [
-        -true_displacement(gait).forward * cycles as f64 / 2.0,
+        -true_displacement(gait).forward * cycle_count as f64 / 2.0,
         0.0,
         0.0,
     ];
     let mut rng = Rng::with_seed(1);
-    Walk::new(gait, start, cycles, Variation::default(), &mut rng)
+    Walk::new(gait, start, cycle_count, Variation::default(), &mut rng)
 }
 
 /// Records a centred walk.
-fn record_cycles(studio: &Studio, gait: &Gait, cycles: usize, frame_rate: f64) -> Video {
-    let (walk, mut rng) = (centred_walk(gait, cycles), Rng::with_seed(2));
+fn record_cycles(studio: &Studio, gait: &Gait, cycle_count: usize, frame_rate: f64) -> Video {
+    let (walk, mut rng) = (centred_walk(gait, cycle_count), Rng::with_seed(2));
     record_walk(studio, &walk, frame_rate, &mut rng)
 }
 
@@ -38,8 +38,8 @@ fn record_five_cycles(studio: &Studio) -> Video {
     record_cycles(studio, &paper_gait("walk"), 5, FRAME_RATE)
 }
 
-/// Returns the error when five cycles of `walk` are measured in a studio.
-fn measure_error(studio: &Studio, setup: Setup) -> VideoError {
+/// Returns the error that occurs when five cycles of `walk` are measured in a studio.
+fn expect_error(studio: &Studio, setup: Setup) -> VideoError {
     record_five_cycles(studio)
         .measure(setup, &paper_gait("walk"))
         .expect_err("the video cannot be measured")
@@ -60,10 +60,10 @@ fn a_video_without_frames_or_tags_is_rejected() {
 fn the_error_names_a_tag_that_is_always_covered() {
     let mut studio = studio();
     studio.hidden_tags = vec![2];
-    let error = measure_error(&studio, FULL_SCALE);
+    let error = expect_error(&studio, FULL_SCALE);
     assert_eq!(error, VideoError::NoFloorTag { id: 2 });
     studio.hidden_tags = vec![4];
-    let error = measure_error(&studio, FULL_SCALE);
+    let error = expect_error(&studio, FULL_SCALE);
     assert_matches!(
         error,
         VideoError::DeckTagTooRare {
@@ -78,7 +78,7 @@ fn a_tag_with_a_cable_over_its_corner_counts_as_missing() {
     let mut studio = studio();
     let [x, y, _] = studio.strips[0];
     studio.discs = vec![[x + 128.0, y + 22.0, 10.0, 40.0]];
-    let error = measure_error(&studio, FULL_SCALE);
+    let error = expect_error(&studio, FULL_SCALE);
     assert_eq!(error, VideoError::NoFloorTag { id: 1 });
 }
 
@@ -87,7 +87,7 @@ fn no_tag_is_found_in_darkness_or_glare() {
     let mut studio = studio();
     for light in [0.05, 10.0] {
         studio.light = light;
-        assert_eq!(measure_error(&studio, FULL_SCALE), VideoError::NoTag);
+        assert_eq!(expect_error(&studio, FULL_SCALE), VideoError::NoTag);
     }
 }
 
@@ -211,7 +211,7 @@ fn a_sheet_printed_too_small_gives_the_true_distance_if_the_ruler_is_measured() 
 fn tags_that_were_cut_apart_and_moved_are_rejected() {
     let mut studio = studio();
     studio.tag_distance_factor = 0.95;
-    let error = measure_error(&studio, FULL_SCALE);
+    let error = expect_error(&studio, FULL_SCALE);
     assert!(
         matches!(error, VideoError::WrongTagSize { edge } if edge > 51.5)
             || matches!(error, VideoError::SheetMismatch { .. }),
@@ -229,17 +229,17 @@ fn a_card_at_another_height_than_given_is_rejected_by_its_size() {
         deck_height: 40.0,
         ..FULL_SCALE
     };
-    let error = measure_error(&studio, wrong_setup);
+    let error = expect_error(&studio, wrong_setup);
     assert_matches!(error, VideoError::WrongHeight { height_by_size, .. } if height_by_size > 52.0);
 }
 
-/// Returns the error when a robot that moves as `pose_at` determines is measured as walking.
-fn measure_robot_error(pose_at: impl Fn(f64) -> Pose) -> VideoError {
-    measure_robot_error_in(&studio(), 4.0, pose_at)
+/// Returns the error that occurs when a robot that moves as `pose_at` determines is measured as walking.
+fn expect_robot_error(pose_at: impl Fn(f64) -> Pose) -> VideoError {
+    expect_robot_error_in(&studio(), 4.0, pose_at)
 }
 
-/// Returns the error of [`measure_robot_error`] in a studio, for a video of `duration_s`.
-fn measure_robot_error_in(
+/// Returns the error of [`expect_robot_error`] in a studio, for a video of `duration_s`.
+fn expect_robot_error_in(
     studio: &Studio,
     duration_s: f64,
     pose_at: impl Fn(f64) -> Pose,
@@ -252,7 +252,7 @@ fn measure_robot_error_in(
 
 #[test]
 fn a_robot_that_stands_still_is_reported_as_not_moving() {
-    let error = measure_robot_error(|_| [0.0; 3]);
+    let error = expect_robot_error(|_| [0.0; 3]);
     assert_matches!(error, VideoError::NoMovement { distance, .. } if distance < 1.0);
 }
 
@@ -261,17 +261,17 @@ fn a_robot_too_far_from_the_strips_is_rejected() {
     let mut studio = studio();
     (studio.size, studio.aim) = ([1280, 720], [150.0, 0.0]);
     studio.camera_height = 1000.0;
-    let error = measure_robot_error_in(&studio, 1.0, |_| [430.0, 0.0, 0.0]);
+    let error = expect_robot_error_in(&studio, 1.0, |_| [430.0, 0.0, 0.0]);
     assert_matches!(error, VideoError::TooFarFromStrips { distance, .. } if distance > 400.0);
 }
 
 #[test]
 fn movements_that_do_not_match_the_gait_are_rejected() {
-    let turning = measure_robot_error(|time| [0.0, 0.0, 0.6 * time]);
+    let turning = expect_robot_error(|time| [0.0, 0.0, 0.6 * time]);
     assert_matches!(turning, VideoError::GaitMismatch { .. });
-    let backward = measure_robot_error(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
+    let backward = expect_robot_error(|time| [60.0 - 30.0 * time, 0.0, 0.0]);
     assert_matches!(backward, VideoError::GaitMismatch { .. });
-    let creeping = measure_robot_error(|time| [1.5 * time, 0.0, 0.0]);
+    let creeping = expect_robot_error(|time| [1.5 * time, 0.0, 0.0]);
     assert_matches!(creeping, VideoError::NoMovement { .. });
 }
 
@@ -306,9 +306,9 @@ fn a_frame_rate_error_of_some_percent_does_not_change_the_distance_per_cycle() {
     }
 }
 
-/// Returns a frame of the sheet and the card. On the right are a second copy of both if `has_second_copy`, and an empty
+/// Renders the sheet and the card. On the right are a second copy of both if `has_second_copy`, and an empty
 /// area otherwise.
-fn frame_with_copy(has_second_copy: bool) -> Frame {
+fn render_sheet(has_second_copy: bool) -> Frame {
     let mut rng = Rng::with_seed(2);
     let frame = studio()
         .render_background(&mut rng)
@@ -323,7 +323,7 @@ fn frame_with_copy(has_second_copy: bool) -> Frame {
 
 #[test]
 fn a_tag_that_appears_twice_in_a_frame_is_rejected() {
-    let result = Video::default().add_frame(0.0, &frame_with_copy(true));
+    let result = Video::default().add_frame(0.0, &render_sheet(true));
     assert_matches!(
         result,
         Err(VideoError::DuplicateTag {
@@ -337,9 +337,9 @@ fn a_tag_that_appears_twice_in_a_frame_is_rejected() {
 fn a_second_copy_that_appears_later_is_noticed_within_sixteen_frames() {
     let mut video = Video::default();
     video
-        .add_frame(0.0, &frame_with_copy(false))
+        .add_frame(0.0, &render_sheet(false))
         .expect("each tag appears once");
-    let doubled_frame = frame_with_copy(true);
+    let doubled_frame = render_sheet(true);
     let error = (1..=16).find_map(|n| video.add_frame(f64::from(n) / 30.0, &doubled_frame).err());
     assert_matches!(error, Some(VideoError::DuplicateTag { .. }));
 }

@@ -3,7 +3,7 @@
 use std::assert_matches;
 
 use fastrand::Rng;
-use lizard_contact::Place;
+use lizard_contact::BodyPose;
 use lizard_studio::render::{Studio, random_normal};
 use lizard_studio::servo::{FRICTION_FRACTION, FULL_TORQUE_DEG, Servo};
 use lizard_video::{Estimate, Jig, MeasuredServo, PathPoint, ServoError, Setup, Video};
@@ -57,7 +57,7 @@ impl AngleCamera {
 fn point_at(seconds: f64, angle: f64) -> PathPoint {
     PathPoint {
         seconds,
-        place: Place {
+        pose: BodyPose {
             forward: 0.0,
             left: 0.0,
             heading: angle.to_radians(),
@@ -192,7 +192,7 @@ fn measure(path: &[PathPoint]) -> MeasuredServo {
     MeasuredServo::from_path(path, JIG).expect("the servo can be measured")
 }
 
-fn measure_error(path: &[PathPoint]) -> ServoError {
+fn expect_error(path: &[PathPoint]) -> ServoError {
     MeasuredServo::from_path(path, JIG).expect_err("the path cannot be measured")
 }
 
@@ -232,13 +232,13 @@ fn a_horn_that_does_not_follow_all_steps_is_rejected_with_the_reason() {
         };
         times.map(turned_point_at).collect()
     };
-    assert_eq!(measure_error(&[]), ServoError::NoTurn { turn: 0.0 });
+    assert_eq!(expect_error(&[]), ServoError::NoTurn { turn: 0.0 });
     let still_path = make_path(|_| 0.0);
-    assert_eq!(measure_error(&still_path), ServoError::NoTurn { turn: 0.0 });
+    assert_eq!(expect_error(&still_path), ServoError::NoTurn { turn: 0.0 });
     let swaying_path = make_path(f64::sin);
-    assert_eq!(measure_error(&swaying_path), ServoError::StepMismatch);
+    assert_eq!(expect_error(&swaying_path), ServoError::StepMismatch);
     let complete_path = AngleCamera::phone(60.0).simulate_path(&Servo::default(), &mut rng);
-    let error = measure_error(&complete_path[..complete_path.len() / 2]);
+    let error = expect_error(&complete_path[..complete_path.len() / 2]);
     assert_matches!(error, ServoError::TooShort { .. });
 }
 
@@ -247,10 +247,10 @@ fn a_video_in_slow_motion_or_with_few_frames_is_rejected_with_the_reason() {
     let mut rng = Rng::with_seed(7);
     let mut path = AngleCamera::phone(240.0).simulate_path(&Servo::default(), &mut rng);
     path.iter_mut().for_each(|point| point.seconds *= 4.0);
-    let error = measure_error(&path);
+    let error = expect_error(&path);
     assert_eq!(error, ServoError::WrongStepInterval { ratio: 4.0 });
     let path = AngleCamera::phone(15.0).simulate_path(&Servo::default(), &mut rng);
-    let error = measure_error(&path);
+    let error = expect_error(&path);
     assert_matches!(error, ServoError::TooFewFrames { rate } if (rate - 15.0).abs() < 0.1);
     let message = error.to_string();
     assert!(message.contains("record at least 120 frames per second"));

@@ -1,4 +1,4 @@
-//! Tests with videos of several gaits with rests between them.
+//! Tests with videos of several gaits, and of rests between them.
 
 use std::assert_matches;
 
@@ -179,9 +179,9 @@ fn a_deviation_from_the_predicted_path_is_found_at_its_phase() {
     let walk = paper_gait("walk");
     let mut swerving = walk.clone();
     let count = walk.path.len() - 1;
-    for (i, place) in swerving.path.iter_mut().enumerate() {
+    for (i, pose) in swerving.path.iter_mut().enumerate() {
         let offset = (i as f64 / count as f64 - 0.6) / 0.12;
-        place.left += 1.5 * (-offset.powi(2)).exp();
+        pose.left += 1.5 * (-offset.powi(2)).exp();
     }
     let measure = |gait: &Gait| {
         let (analysed_video, _) = record_walks(&[(gait, 6)], 1.0);

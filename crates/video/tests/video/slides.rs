@@ -3,7 +3,7 @@
 use std::assert_matches;
 
 use fastrand::Rng;
-use lizard_studio::board::{Board, EVEN_BOARD, small_studio};
+use lizard_studio::board::{EVENLY_LIFTED_BOARD, LiftedBoard, small_studio};
 use lizard_studio::render::{Studio, random_normal};
 use lizard_video::{AnalysedVideo, Estimate, MeasuredSlide, Setup, SlideError, Video};
 
@@ -14,7 +14,7 @@ const SETUP: Setup = Setup {
 };
 
 /// Records a board while it is lifted.
-fn record_board(board: &Board, studio: &Studio, frame_rate: f64) -> Video {
+fn record_board(board: &LiftedBoard, studio: &Studio, frame_rate: f64) -> Video {
     let mut video = Video::default();
     board.record(studio, frame_rate, |seconds, frame| {
         video
@@ -24,7 +24,7 @@ fn record_board(board: &Board, studio: &Studio, frame_rate: f64) -> Video {
     video
 }
 
-fn measure_slide(board: &Board) -> Result<MeasuredSlide, SlideError> {
+fn measure_slide(board: &LiftedBoard) -> Result<MeasuredSlide, SlideError> {
     MeasuredSlide::from_video(&analyse(&record_board(board, &small_studio(), 30.0)))
 }
 
@@ -48,11 +48,11 @@ fn a_slide_head_first_or_tail_first_gives_static_and_sliding_friction() {
     for (head_direction_deg, static_friction, sliding_friction) in
         [(8.0, 0.75, 0.68), (-175.0, 0.5, 0.5)]
     {
-        let board = Board {
+        let board = LiftedBoard {
             static_friction,
             sliding_friction,
             head_direction_deg,
-            ..EVEN_BOARD
+            ..EVENLY_LIFTED_BOARD
         };
         let slide = measure_slide(&board).expect("the slide can be measured");
         assert_eq!(slide.is_head_first, head_direction_deg == 8.0);
@@ -63,39 +63,40 @@ fn a_slide_head_first_or_tail_first_gives_static_and_sliding_friction() {
 }
 
 /// A board with little friction, for which a short video is sufficient.
-const SLIPPERY_BOARD: Board = Board {
+const SLIPPERY_BOARD: LiftedBoard = LiftedBoard {
     static_friction: 0.35,
     sliding_friction: 0.3,
     lift_deg_per_s: 8.0,
     end_tilt_deg: 30.0,
-    ..EVEN_BOARD
+    ..EVENLY_LIFTED_BOARD
 };
 
 #[test]
 fn a_video_without_a_measurable_slide_is_rejected_with_the_reason() {
-    let measure_error =
-        |board: Board| measure_slide(&board).expect_err("the video shows no measurable slide");
-    let not_slid = measure_error(Board {
+    let expect_error = |board: LiftedBoard| {
+        measure_slide(&board).expect_err("the video shows no measurable slide")
+    };
+    let not_slid = expect_error(LiftedBoard {
         end_tilt_deg: 12.0,
         ..SLIPPERY_BOARD
     });
     assert_matches!(not_slid, SlideError::NoSlide { tilt, .. } if (tilt - 12.0).abs() < 1.0);
-    let moving = measure_error(Board {
+    let moving = expect_error(LiftedBoard {
         lift_start_s: 0.3,
         ..SLIPPERY_BOARD
     });
     assert_matches!(moving, SlideError::NotAtRest { .. });
-    let across_slope = measure_error(Board {
+    let across_slope = expect_error(LiftedBoard {
         head_direction_deg: 36.0,
         ..SLIPPERY_BOARD
     });
     assert_matches!(across_slope, SlideError::AcrossSlope { angle } if (angle - 36.0).abs() < 3.0);
-    let pushed = measure_error(Board {
+    let pushed = expect_error(LiftedBoard {
         slide_direction_deg: 180.0,
         ..SLIPPERY_BOARD
     });
     assert_matches!(pushed, SlideError::NotDownhill { angle } if angle > 170.0);
-    let fast = measure_error(Board {
+    let fast = expect_error(LiftedBoard {
         lift_deg_per_s: 40.0,
         ..SLIPPERY_BOARD
     });
@@ -116,13 +117,13 @@ fn in_at_least_14_of_16_videos_the_true_friction_lies_within_two_standard_errors
         let start_tilt_deg = 0.3 * random_normal(&mut rng);
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();
         let friction = random_between(0.35, 0.8);
-        let board = Board {
+        let board = LiftedBoard {
             static_friction: friction,
             sliding_friction: friction * random_between(0.8, 1.0),
             lift_deg_per_s: random_between(2.0, 9.0),
             head_direction_deg: 180.0 * (i % 2) as f64 + random_between(-12.0, 12.0),
             start_tilt_deg,
-            ..EVEN_BOARD
+            ..EVENLY_LIFTED_BOARD
         };
         let mut studio = small_studio();
         let mut random_between = |low: f64, high: f64| low + (high - low) * rng.f64();

@@ -1,28 +1,17 @@
-//! Generated mistakes: one for every operator, number and call in the firmware's code. After a shuffle, the first
-//! mistakes are a random sample.
+//! Generates mutants: one for every operator, number and call in the firmware's code. After a shuffle, the first
+//! mutants are a random sample.
 
 use fastrand::Rng;
 
 use super::list::Mutant;
 
-/// Path prefixes, relative to the core's source, of files that only produce console text. Every other file can move a
-/// servo or change a saved value.
-const TEXT_FILES: [&str; 8] = [
-    "answer.rs",
-    "console.rs",
-    "console/",
-    "digits.rs",
-    "fault.rs",
-    "refusal.rs",
-    "text.rs",
-    "word.rs",
-];
+/// The folder whose files only read and produce console text. Any other file can move a servo or change a saved value.
+const CONSOLE_FOLDER: &str = "crates/core/src/console/";
 
-/// Path parts of files in which no mistake is generated, because they do not run on the chip or contain generated
-/// tables.
+/// Path parts of files in which no mutant is generated: they do not run on the chip, or contain generated tables.
 const EXCLUDED_PATH_PARTS: [&str; 7] = [
     "tests",
-    "autobaud/misread.rs",
+    "autobaud/misread",
     "virtual_board",
     "sample",
     "bounds.rs",
@@ -53,20 +42,19 @@ const REPLACEMENTS: [(&str, &str); 19] = [
     ("saturating_sub(", "wrapping_add("),
 ];
 
-/// True if mistakes are generated in the file.
-pub fn is_firmware(file: &str) -> bool {
+/// True if mutants are generated in the file.
+pub fn is_mutated(file: &str) -> bool {
     let folders = ["crates/core/src/", "src/board/", "crates/pulses/src/"];
     let is_excluded = EXCLUDED_PATH_PARTS.iter().any(|part| file.contains(part));
     file.ends_with(".rs") && folders.iter().any(|folder| file.starts_with(folder)) && !is_excluded
 }
 
-/// True if a mistake in the file can move a servo or change a saved value.
-pub fn affects_motion(file: &str) -> bool {
-    let name = file.strip_prefix("crates/core/src/").unwrap_or(file);
-    !TEXT_FILES.iter().any(|part| name.starts_with(part))
+/// True if a mutation in the file can move a servo or change a saved value.
+pub fn affects_servos_or_memory(file: &str) -> bool {
+    !file.starts_with(CONSOLE_FOLDER)
 }
 
-/// Returns all mistakes that can be generated in a file.
+/// Returns all mutants that can be generated in a file.
 pub fn generate_mutants(file: &str, text: &str) -> Vec<Mutant> {
     let code = text.split("#[cfg(test)]").next().unwrap_or_default();
     let lines: Vec<&str> = code.lines().collect();
@@ -99,13 +87,13 @@ pub fn generate_mutants(file: &str, text: &str) -> Vec<Mutant> {
     mutants
 }
 
-/// Returns all changed forms of a line of code, each with a description.
+/// Returns all mutated forms of a line of code, each with a description.
 fn generate_changes(line: &str) -> Vec<(String, String)> {
     let code = line.split("//").next().unwrap_or_default();
     let trimmed = code.trim();
-    let starts_with = |starts: &[&str]| starts.iter().any(|start| trimmed.starts_with(start));
-    let is_statement = !starts_with(&["#", "use ", "const _", "type ", "impl"]);
-    if !is_statement || starts_with(&["assert!", "debug_assert!"]) || trimmed.contains('"') {
+    let starts_with = |prefixes: &[&str]| prefixes.iter().any(|prefix| trimmed.starts_with(prefix));
+    let is_candidate = !starts_with(&["#", "use ", "const _", "type ", "impl"]);
+    if !is_candidate || starts_with(&["assert!", "debug_assert!"]) || trimmed.contains('"') {
         return Vec::new();
     }
     let mut changes = Vec::new();
@@ -139,13 +127,13 @@ fn find_numbers(code: &str) -> Vec<(usize, &str)> {
     numbers.map(|word| (byte_offset(word), word)).collect()
 }
 
-/// Shuffles mistakes. The same seed always gives the same order.
+/// Shuffles mutants. The same seed always gives the same order.
 pub fn shuffle(mut mutants: Vec<Mutant>, seed: u64) -> Vec<Mutant> {
     Rng::with_seed(seed).shuffle(&mut mutants);
     mutants
 }
 
-/// Returns the 95 % Wilson confidence interval of a rate. About 19 of 20 such intervals contain the true rate.
+/// Returns the 95 % Wilson confidence interval for the rate `caught / tried`.
 pub fn wilson_interval(caught: usize, tried: usize) -> (f64, f64) {
     const Z: f64 = 1.96;
     let n = tried.max(1) as f64;

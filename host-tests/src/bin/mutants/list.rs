@@ -1,20 +1,20 @@
-//! Deliberate mistakes, and the reader of their list, `mutants.txt`. The first lines of the list describe its format.
+//! Mutants, and the reader of their list, `mutants.txt`. The first lines of the list describe its format.
 
-/// A mistake that the tests should notice: a text replacement in one file.
+/// A mutant, which the tests should catch: a text replacement in one file.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Mutant {
     /// The file's path, relative to the root of the tree.
     pub file: String,
-    /// The description of the mistake.
+    /// The description of the mutation.
     pub description: String,
     /// A part of the names of the tests that run before all others; `None` if all tests run together.
     pub test_filter: Option<String>,
-    /// The package whose own tests must notice the mistake, if the code also runs on the host; `None` if the code runs
+    /// The package whose own tests must catch the mutant, if the code also runs on the host; `None` if the code runs
     /// only in the firmware.
     pub package: Option<String>,
-    /// True if the mistake was generated.
+    /// True if the mutant was generated.
     pub is_generated: bool,
-    /// The number of the entry's first line in the list or, for a generated mistake, of the changed line in the file.
+    /// The number of the entry's first line in the list or, for a generated mutant, of the changed line in the file.
     pub line: usize,
     /// The correct text, which is replaced.
     pub old: String,
@@ -23,7 +23,7 @@ pub struct Mutant {
 }
 
 impl Mutant {
-    /// Returns a mistake that changes nothing in a file of the core. `text` is the file's text.
+    /// Returns a mutant that changes nothing in a file of the core. `text` is the file's text.
     pub fn without_change(file: &str, text: String) -> Self {
         Self {
             file: file.into(),
@@ -36,7 +36,7 @@ impl Mutant {
         }
     }
 
-    /// Returns the file's text with the mistake.
+    /// Returns the file's text with the mutation.
     ///
     /// # Errors
     /// Fails if the old text does not occur exactly once in the file.

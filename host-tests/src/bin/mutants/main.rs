@@ -1,17 +1,17 @@
-//! `make mutants`: mutation tests of the firmware. The program makes the mistakes of `host-tests/mutants.txt` in a copy
-//! of the tree, one at a time, and reports mistakes that no test notices.
+//! `make mutants`: mutation tests of the firmware. The program applies the mutants in `host-tests/mutants.txt` to a
+//! copy of the tree, one at a time, and reports mutants that no test catches.
 //!
-//! Most of the listed mistakes are in the board's code. That code runs only in the firmware, so no mutation testing
-//! tool for host crates reaches it. If a mistake's entry names a package, the package's own tests must notice the
-//! mistake, otherwise the tests of the running firmware. The firmware's tests are built once, from the unchanged tree;
-//! the environment variable LIZARD_ELF names the firmware under test.
+//! Most of the listed mutants are in the board's code. That code runs only in the firmware, so no mutation testing tool
+//! for host crates reaches it. If a mutant's entry names a package, the package's own tests must catch the mutant,
+//! otherwise the tests of the running firmware. The firmware's tests are built once, from the unchanged tree; the
+//! environment variable LIZARD_ELF names the firmware under test.
 //!
-//! Run the program from the folder `crates`. Each argument is a part of a file's name or of a mistake's description.
-//! The program tries the entries that match at least one argument, or all entries if there is no argument.
+//! Run the program from the folder `crates`. Each argument is a part of a file's name or of a mutant's description. The
+//! program tries the entries that match at least one argument, or all entries if there is no argument.
 //!
-//! With SAMPLE=60 the program instead tries a random sample of 60 generated mistakes ([`generated`]) from all of the
-//! firmware's code, and prints the rate at which tests notice them, with its confidence interval. SEED selects the
-//! sample. For a mistake in the core, the core's own tests run first, then the model checker's tests, then the tests of
+//! With SAMPLE=60 the program instead tries a random sample of 60 generated mutants ([`generated`]) from all of the
+//! firmware's code, and prints the rate at which tests catch them, with its confidence interval. SEED selects the
+//! sample. For a mutant in the core, the core's own tests run first, then the model checker's tests, then the tests of
 //! the running firmware.
 
 mod generated;
@@ -33,13 +33,13 @@ const TIMEOUT_S: u32 = 1_800;
 /// s, even on a busy machine.
 const CPU_TIMEOUT_S: u32 = 240;
 
-/// The outcome of the tests with a mistake in the code.
+/// The outcome of the tests with a mutant.
 enum Outcome {
-    /// At least one test noticed the mistake. The text names the failed tests.
+    /// At least one test caught the mutant. The text names the failed tests.
     Caught(String),
-    /// No test noticed the mistake.
+    /// No test caught the mutant.
     Missed,
-    /// The code with the mistake does not compile.
+    /// The mutant does not compile.
     DoesNotCompile,
 }
 
@@ -47,8 +47,8 @@ fn main() -> ExitCode {
     let filters: Vec<String> = std::env::args().skip(1).collect();
     let seed = read_number("SEED").unwrap_or(1);
     let outcome = match read_number("SAMPLE") {
-        Some(count) => try_generated_mistakes(&filters, count as usize, seed),
-        None => try_listed_mistakes(&filters),
+        Some(count) => try_generated_mutants(&filters, count as usize, seed),
+        None => try_listed_mutants(&filters),
     };
     match outcome {
         Ok(0) => ExitCode::SUCCESS,
@@ -60,14 +60,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// Tries `count` generated mistakes. Returns the number of mistakes that no test notices.
-fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result<usize, String> {
+/// Tries `count` generated mutants. Returns the number of mutants that no test catches.
+fn try_generated_mutants(filters: &[String], count: usize, seed: u64) -> Result<usize, String> {
     let scratch = ScratchTree::copy()?;
     let mut mutants = Vec::new();
     for file in scratch
         .files
         .iter()
-        .filter(|file| generated::is_firmware(file))
+        .filter(|file| generated::is_mutated(file))
     {
         if filters.is_empty() || filters.iter().any(|part| file.contains(part)) {
             mutants.extend(generated::generate_mutants(
@@ -77,13 +77,13 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
         }
     }
     let generated_count = mutants.len();
-    println!("seed {seed}: {count} of {generated_count} generated mistakes");
+    println!("seed {seed}: {count} of {generated_count} generated mutants");
     let file = "crates/core/src/lib.rs";
     let unchanged = Mutant::without_change(file, read_text(&root().join(file))?);
     if !matches!(scratch.try_mutant(&unchanged)?, Outcome::Missed) {
         return Err("a test fails or hangs in the unchanged tree".into());
     }
-    // The numbers of caught and of tried mistakes, first for code that affects a servo or a saved value, then for
+    // The numbers of caught and of tried mutants, first for code that affects a servo or a saved value, then for
     // code that only produces text.
     let mut tally = [[0; 2]; 2];
     for mutant in generated::shuffle(mutants, seed) {
@@ -92,14 +92,15 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
         }
         let outcome = match scratch.try_mutant(&mutant)? {
             Outcome::DoesNotCompile => continue,
-            // Up to a hundred tests may notice a mistake; the first is enough.
+            // Up to a hundred tests may catch a mutant; the first is enough.
             Outcome::Caught(test) => {
                 format!("caught by {}", test.split(',').next().unwrap_or(&test))
             }
             Outcome::Missed => "MISSED".to_owned(),
         };
         println!("{}, {}: {outcome}", mutant.file, mutant.description);
-        let [caught, tried] = &mut tally[usize::from(!generated::affects_motion(&mutant.file))];
+        let [caught, tried] =
+            &mut tally[usize::from(!generated::affects_servos_or_memory(&mutant.file))];
         *caught += usize::from(outcome != "MISSED");
         *tried += 1;
     }
@@ -107,13 +108,13 @@ fn try_generated_mistakes(filters: &[String], count: usize, seed: u64) -> Result
     for ([caught, tried], code_kind) in tally.into_iter().zip(code_kinds) {
         let (min, max) = generated::wilson_interval(caught, tried);
         let interval = format!("{:.1} to {:.1} % (Wilson, 95 %)", 100.0 * min, 100.0 * max);
-        println!("mistakes {code_kind}: {caught} of {tried} caught, {interval}");
+        println!("mutants {code_kind}: {caught} of {tried} caught, {interval}");
     }
     Ok(tally.iter().map(|[caught, tried]| tried - caught).sum())
 }
 
-/// Tries the listed mistakes. Returns the number of mistakes that no test notices.
-fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
+/// Tries the listed mutants. Returns the number of mutants that no test catches.
+fn try_listed_mutants(filters: &[String]) -> Result<usize, String> {
     let list = read_list()?;
     let is_selected = |Mutant {
                            file, description, ..
@@ -144,7 +145,7 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
                 "MISSED".to_owned()
             }
             Outcome::DoesNotCompile => {
-                return Err(format!("{description}: the mistake does not compile"));
+                return Err(format!("{description}: the mutant does not compile"));
             }
         };
         let seconds = start.elapsed().as_secs();
@@ -152,7 +153,7 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     }
     let (count, missed_count) = (list.len(), missed_mutants.len());
     let caught_count = count - missed_count;
-    println!("{count} mistakes, {caught_count} caught, {missed_count} missed");
+    println!("{count} mutants, {caught_count} caught, {missed_count} missed");
     for Mutant {
         line, description, ..
     } in missed_mutants
@@ -162,8 +163,8 @@ fn try_listed_mistakes(filters: &[String]) -> Result<usize, String> {
     Ok(missed_count)
 }
 
-/// Reads the list of mistakes and checks the old texts of all entries, so that an outdated list is an error even if
-/// only some of its mistakes are tried.
+/// Reads the list of mutants and checks the old texts of all entries, so that an outdated list is an error even if
+/// only some of its mutants are tried.
 fn read_list() -> Result<Vec<Mutant>, String> {
     let path = root().join("host-tests/mutants.txt");
     let list = list::read(&read_text(&path)?).map_err(|error| format!("mutants.txt, {error}"))?;
@@ -178,7 +179,7 @@ fn read_text(path: &Path) -> Result<String, String> {
     fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// A copy of the tree in which mistakes are made, with its own build folders.
+/// A copy of the tree to which mutants are applied, with its own build folders.
 struct ScratchTree {
     folder: PathBuf,
     /// The paths of the copied files, relative to the root of the tree.
@@ -233,7 +234,7 @@ impl ScratchTree {
         Ok(status.success().then_some(elf))
     }
 
-    /// Makes a mistake, runs the tests and undoes the mistake.
+    /// Applies a mutant, runs the tests and restores the file.
     fn try_mutant(&self, mutant: &Mutant) -> Result<Outcome, String> {
         // Reads the text from the copy, because the original tree may be edited during the run.
         let correct_text = read_text(&self.folder.join("tree").join(&mutant.file))?;
@@ -264,8 +265,8 @@ impl ScratchTree {
         Ok(Outcome::Missed)
     }
 
-    /// Runs the tests of a package in the copy: first the tests that should notice the mistake, then all. For a
-    /// generated mistake, also runs the tests of the model checker and of the running firmware.
+    /// Runs the tests of a package in the copy: first the tests that should catch the mutant, then all. For a
+    /// generated mutant, also runs the tests of the model checker and of the running firmware.
     fn test_in_package(&self, package: &str, mutant: &Mutant) -> Result<Outcome, String> {
         if !matches!(
             self.run_package_tests(package, &["--no-run"])?,
@@ -318,17 +319,10 @@ impl ScratchTree {
 /// Runs the firmware's tests whose names contain `filter`. Returns the names of the failed tests; `None` if the tests
 /// hang.
 fn run_firmware_tests(elf: &Path, filter: &str) -> Result<Option<Vec<String>>, String> {
-    let arguments = [
-        "-p",
-        "lizard-host-tests",
-        "--test",
-        "firmware",
-        "--test",
-        "trouble",
-    ];
+    let arguments = format!("-p lizard-host-tests --test firmware --test trouble -- {filter}");
     let result = run_cargo_test(
         &root().join("crates"),
-        &[&arguments[..], &["--", filter]].concat(),
+        &arguments.split(' ').collect::<Vec<_>>(),
         // Five times the default number of random inputs.
         &[
             ("LIZARD_ELF", elf.as_os_str()),
@@ -386,8 +380,8 @@ fn find_failed_tests(output_text: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn the_old_texts_of_all_listed_mistakes_are_current() {
+    fn the_old_texts_of_all_listed_mutants_are_current() {
         let list = super::read_list().expect("the list is current");
-        assert!(list.len() > 50, "only {} mistakes are listed", list.len());
+        assert!(list.len() > 50, "only {} mutants are listed", list.len());
     }
 }

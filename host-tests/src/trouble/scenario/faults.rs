@@ -1,6 +1,6 @@
 //! The random faults that scenarios inject.
 
-use super::{Activity, MS, Script, Step, setup};
+use super::{Activity, MS, Script, Step, random_commands};
 
 impl Script<'_> {
     /// Adds a fault of a random kind and waits until the fault has ended. In one of four cases, a contact closes first.
@@ -110,7 +110,7 @@ impl Script<'_> {
         self.send(gait);
         for _ in 0..6 {
             self.wait_up_to(700);
-            let line = setup::random_adjustment(self.rng);
+            let line = random_commands::random_adjustment(self.rng);
             self.send(line);
         }
         self.wait(700);

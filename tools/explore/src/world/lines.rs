@@ -1,7 +1,7 @@
 //! Lines that the search sends to the robot, and lines that the robot prints.
 
 use lizard_core::console::command::{effect, parse};
-use lizard_core::step::Step;
+use lizard_core::step::StepResult;
 use lizard_core::virtual_board::{RunningRobot, is_answer};
 use lizard_rules::{Event, Rule, Time};
 
@@ -29,7 +29,7 @@ impl World {
                 break;
             }
             let step = self.running_robot.main.step(&mut self.running_robot.board);
-            if step != Step::Worked || self.running_robot.board.memory.take_polled_busy() {
+            if step != StepResult::Worked || self.running_robot.board.memory.take_polled_busy() {
                 // Main is busy and reads the line later.
                 break;
             }

@@ -75,11 +75,9 @@ impl Object<'_> {
                     None => other_files_piece,
                 };
                 if is_call(&&reference) && caller != callee {
-                    let is_in_middle = caller == middle_piece;
-                    let offset = if is_in_middle {
-                        0
-                    } else {
-                        reference.offset as u32
+                    let offset = match caller == middle_piece {
+                        true => 0,
+                        false => reference.offset as u32,
                     };
                     pieces.calls.push(Call {
                         caller,

@@ -1,8 +1,8 @@
-// The step Board, in which the user connects a board.
+// The Board step, in which the user connects a board.
 import { findBluetoothProblem } from '../../link/bluetooth-link';
 import { hasSerial, NO_SERIAL_MESSAGE } from '../../link/port-link';
 import type { Session } from '../../session';
-import { button, list, note, row, warning, paragraph } from '../make';
+import { button, list, note, row, warning, paragraph } from '../elements';
 import type { Step } from './step';
 
 /** Formats the name of the page's robot for messages. */

@@ -1,7 +1,7 @@
 // The drawing of the robot for the first connection, from above with the head upward: each servo, its crank's
 // direction, and an arrow for a rotation. The body is shortened, so that the cranks appear large.
 import type { Description, Four, Scene, Point } from '../../robot';
-import { makeSvg } from '../make';
+import { makeSvg } from '../elements';
 
 /** The positions of servos A1 to A4 in the robot. */
 export const SERVO_POSITIONS = ['front left', 'front right', 'back right', 'back left'] as const;
@@ -28,15 +28,15 @@ function pointAt([x, y]: Point, lengthMm: number, degrees: number): Point {
 
 const makeLine = (className: string, [x1, y1]: Point, [x2, y2]: Point) => makeSvg('line', { class: className, x1, y1, x2, y2 });
 
-/** Makes an arrow about a shaft; it starts at the angle `start`, deg, and has the direction of `turn`. */
-function makeArrow(shaft: Point, radius: number, start: number, turn: number): SVGElement[] {
-  const direction = Math.sign(turn);
-  const end = start + direction * ARC_DEG;
-  const [x1, y1] = pointAt(shaft, radius, start);
-  const [x2, y2] = pointAt(shaft, radius, end);
+/** Makes an arrow about a shaft; it starts at the angle `startDeg` and has the direction of `turnDeg`. */
+function makeArrow(shaft: Point, radius: number, startDeg: number, turnDeg: number): SVGElement[] {
+  const direction = Math.sign(turnDeg);
+  const endDeg = startDeg + direction * ARC_DEG;
+  const [x1, y1] = pointAt(shaft, radius, startDeg);
+  const [x2, y2] = pointAt(shaft, radius, endDeg);
   // Because y is downward, SVG's sweep flag is 0 for counter-clockwise.
-  const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turn > 0 ? 0 : 1} ${x2} ${y2}` });
-  const headPoints = [pointAt(shaft, radius + 6, end - direction * 9), [x2, y2], pointAt(shaft, radius - 6, end - direction * 9)];
+  const arc = makeSvg('path', { class: 'arrow', d: `M ${x1} ${y1} A ${radius} ${radius} 0 0 ${turnDeg > 0 ? 0 : 1} ${x2} ${y2}` });
+  const headPoints = [pointAt(shaft, radius + 6, endDeg - direction * 9), [x2, y2], pointAt(shaft, radius - 6, endDeg - direction * 9)];
   return [arc, makeSvg('polyline', { class: 'arrow', points: headPoints.map((point) => point.map((n) => (n as number).toFixed(2)).join()).join(' ') })];
 }
 
@@ -46,7 +46,7 @@ export function makeDrawing({ servos, plate }: Description, { shafts, tips }: Sc
   const shorten = ([x, y]: Point): Point => [x, -Math.sign(y) * (Math.abs(y) - shortening)];
   const shaftPoints = shafts.map(shorten) as Four<Point>;
   const crankLength = Math.hypot(tips[0][0] - shafts[0][0], tips[0][1] - shafts[0][1]);
-  const [halfWidth, halfLength] = [plate.half[0], plate.half[1] - shortening];
+  const [halfWidth, halfLength] = [plate.half_size[0], plate.half_size[1] - shortening];
   const viewHalfWidth = Math.max(...shaftPoints.map(([x]) => Math.abs(x))) + crankLength + 58;
   const viewHalfHeight = Math.max(HALF_LENGTH_MM + crankLength, halfLength) + 8;
   const angles = servos.map(({ neutral }, n) => `${formatServo(n)}: ${neutral.toFixed(1)}°`).join('; ');

@@ -1,7 +1,7 @@
-// The step Firmware, which writes the firmware and the robot through the boot loader.
+// The Firmware step, which writes the firmware and the robot through the boot loader.
 import { describeBoard, formatRobotName } from './board';
 import { NO_WRITING_BY_RADIO } from '../../session';
-import { button, note, row, warning, paragraph } from '../make';
+import { button, note, row, warning, paragraph } from '../elements';
 import type { Step } from './step';
 
 export const firmwareStep: Step = {

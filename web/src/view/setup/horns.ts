@@ -1,5 +1,5 @@
-// The step Horns, in which each servo holds its middle position while the user presses the crank onto the shaft.
-import { button, list, note, row, paragraph } from '../make';
+// The Horns step, in which each servo holds its middle position while the user presses the crank onto the shaft.
+import { button, list, note, row, paragraph } from '../elements';
 import type { Step } from './step';
 
 export const hornsStep: Step = {
@@ -11,16 +11,16 @@ export const hornsStep: Step = {
     paragraph('The shafts are still empty, and each horn is screwed into its link. First end the pulses, so that no servo moves; then switch on the servos\' supply.'),
     row(
       button('Let the servos rest', () =>
-        run(async (guide) => {
-          await guide.rest();
+        run(async (calibrator) => {
+          await calibrator.rest();
           return 'The pulses have ended. Switch on the servos\' supply now.';
         }),
       ),
       button(
         'Turn all servos to their middle',
         () =>
-          run(async (guide) => {
-            await guide.center();
+          run(async (calibrator) => {
+            await calibrator.centerServos();
             markDone('Horns');
             return 'Every servo now holds its middle position (pulse width 1500 µs).';
           }),

@@ -1,17 +1,17 @@
-// The step Keep, which saves the calibration in the board and as a file.
+// The Keep step, which saves the calibration in the board and as a file.
 import { formatCalibration } from '../../robot';
 import { formatServo } from './drawing';
 import { saveFile } from '../download';
-import { button, make, note, row, table, paragraph } from '../make';
+import { button, make, note, row, table, paragraph } from '../elements';
 import type { Step } from './step';
 
 export const keepStep: Step = {
   name: 'Keep',
   title: 'Save the calibration, also as a file',
   needsRobot: true,
-  makeElements({ guide, run, markDone, setCalibration, isDone }) {
-    if (!guide) return [paragraph('Reading the calibration…')];
-    const { servos } = guide.calibration;
+  makeElements({ calibrator, run, markDone, setCalibration, isDone }) {
+    if (!calibrator) return [paragraph('Reading the calibration…')];
+    const { servos } = calibrator.calibration;
     const rows = servos.map(({ trim, limit, dir, scale }, servo) => [
       formatServo(servo),
       dir,
@@ -20,8 +20,8 @@ export const keepStep: Step = {
       scale.toFixed(2),
     ]);
     const saveCalibration = () =>
-      run(async (guide) => {
-        await guide.save();
+      run(async (calibrator) => {
+        await calibrator.save();
         markDone('Keep');
         return 'Saved: the board starts with it from now on, even with new firmware.';
       });
@@ -32,8 +32,8 @@ export const keepStep: Step = {
     });
     return [
       table('Calibration of the robot', ['servo', 'sign', 'trim', 'limits', 'µs per °'], rows),
-      paragraph(guide.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'Saved in the board.' : 'No setting has changed since the board was connected.'),
-      row(button('Save in the board', saveCalibration, guide.isChanged), button('Save as a file', () => saveFile('calibration.toml', [formatCalibration(guide.calibration)], 'application/toml'))),
+      paragraph(calibrator.isChanged ? 'Not saved yet.' : isDone('Keep') ? 'Saved in the board.' : 'No setting has changed since the board was connected.'),
+      row(button('Save in the board', saveCalibration, calibrator.isChanged), button('Save as a file', () => saveFile('calibration.toml', [formatCalibration(calibrator.calibration)], 'application/toml'))),
       row(make('label', { className: 'file' }, 'Open a saved file ', fileInput)),
       note('The file has the format of `lizard calibrate backup`. An opened file takes effect at once; the button saves it in the board.'),
     ];

@@ -1,6 +1,6 @@
-// The step Limits, which limits each servo's travel, so that printed parts do not touch each other.
+// The Limits step, which limits each servo's travel, so that printed parts do not touch each other.
 import { formatServo, type SelectedServo } from './drawing';
-import { button, note, numberBox, row, paragraph } from '../make';
+import { button, note, numberBox, row, paragraph } from '../elements';
 import type { Step, StepTools } from './step';
 
 /** Rotation of the servo per press of a button. */
@@ -11,7 +11,7 @@ export class LimitsStep implements Step {
   readonly title = 'Limit the servos’ travel';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The last turned servo and its commanded angle, deg; null while the robot stands. */
+  /** The servo that was turned last and its commanded angle, deg; null while the robot stands. */
   private lastTurn: { servo: number; degrees: number } | null = null;
 
   reset(): void {
@@ -23,8 +23,8 @@ export class LimitsStep implements Step {
   }
 
   makeElements(tools: StepTools): Node[] {
-    const { guide, servo, session } = tools;
-    const limit = guide?.calibration.servos[servo].limit ?? null;
+    const { calibrator, servo, session } = tools;
+    const limit = calibrator?.calibration.servos[servo].limit ?? null;
     const currentAngle = this.lastTurn?.servo === servo ? this.lastTurn.degrees : session.description.servos[servo].neutral;
     const [from, to] = limit ?? [0, 0];
     const makeBox = (label: string, value: number, action: (value: number) => void) => numberBox(label, value, '0.01', action);
@@ -52,18 +52,18 @@ export class LimitsStep implements Step {
   }
 
   private turnServo({ servo, run }: StepTools, degrees: number): void {
-    run(async (guide) => {
-      const angle = await guide.point(servo, degrees);
+    run(async (calibrator) => {
+      const angle = await calibrator.moveServo(servo, degrees);
       this.lastTurn = { servo, degrees };
       return `A${servo + 1} points to ${angle.toFixed(2)}°.`;
     });
   }
 
   private setLimit({ servo, run, markDone }: StepTools, from: number, to: number): void {
-    run(async (guide) => {
-      await guide.limit(servo, from, to);
+    run(async (calibrator) => {
+      await calibrator.setLimit(servo, from, to);
       markDone(this.name);
-      const [min, max] = guide.calibration.servos[servo].limit;
+      const [min, max] = calibrator.calibration.servos[servo].limit;
       return `A${servo + 1} travels from ${min.toFixed(2)}° to ${max.toFixed(2)}°.`;
     });
   }

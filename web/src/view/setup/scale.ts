@@ -1,7 +1,7 @@
-// The step Scale, in which the user measures each servo's rotation: not every servo turns by 1° per 10 µs of pulse
+// The Scale step, in which the user measures each servo's rotation: not every servo turns by 1° per 10 µs of pulse
 // width.
 import { formatServo, type SelectedServo } from './drawing';
-import { button, note, numberBox, row, paragraph } from '../make';
+import { button, note, numberBox, row, paragraph } from '../elements';
 import type { Step, StepTools } from './step';
 
 export class ScaleStep implements Step {
@@ -9,7 +9,7 @@ export class ScaleStep implements Step {
   readonly title = 'Measure the servos’ rotation';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The last turned servo and its commanded rotation, deg counter-clockwise; null before the rotation. */
+  /** The servo that was turned last and its commanded rotation, deg counter-clockwise; null before the rotation. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
 
   reset(): void {
@@ -21,8 +21,8 @@ export class ScaleStep implements Step {
   }
 
   makeElements(tools: StepTools): Node[] {
-    const { guide, servo } = tools;
-    const currentScale = guide?.calibration.servos[servo].scale;
+    const { calibrator, servo } = tools;
+    const currentScale = calibrator?.calibration.servos[servo].scale;
     const isTurned = this.lastTurn?.servo === servo;
     return [
       paragraph(`Mark the direction of the crank of ${formatServo(servo)}, turn the servo, and measure the angle.`),
@@ -34,19 +34,19 @@ export class ScaleStep implements Step {
   }
 
   private turnServo({ servo, run }: StepTools): void {
-    run(async (guide) => {
-      const turn = await guide.turnForScale(servo);
-      this.lastTurn = { servo, turnDeg: turn };
-      return `A${servo + 1} received the command to turn by ${Math.abs(turn)}°. Measure its angle.`;
+    run(async (calibrator) => {
+      const turnDeg = await calibrator.turnToMeasureScale(servo);
+      this.lastTurn = { servo, turnDeg };
+      return `A${servo + 1} received the command to turn by ${Math.abs(turnDeg)}°. Measure its angle.`;
     });
   }
 
   private setMeasuredTurn({ servo, run, markDone }: StepTools, degrees: number): void {
-    run(async (guide) => {
+    run(async (calibrator) => {
       if (!this.lastTurn || degrees <= 0) return 'The measured angle must be more than 0 degrees.';
       const commandedTurn = this.lastTurn.turnDeg;
       this.reset();
-      const scale = await guide.scaleByTurn(servo, commandedTurn, degrees);
+      const scale = await calibrator.setScaleFromTurn(servo, commandedTurn, degrees);
       markDone(this.name);
       return `The scale of A${servo + 1} is ${scale.toFixed(2)} µs per degree.`;
     });

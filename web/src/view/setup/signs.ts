@@ -1,23 +1,23 @@
-// The step Signs, in which the user checks each servo's direction of rotation. A servo with a wrong sign turns to the
+// The Signs step, in which the user checks each servo's direction of rotation. A servo with a wrong sign turns to the
 // other side of its neutral angle; the guard would therefore accept an unsafe pose.
 import { formatServo, SERVO_POSITIONS, type SelectedServo } from './drawing';
-import { button, note, row, paragraph } from '../make';
+import { button, note, row, paragraph } from '../elements';
 import type { Step, StepTools } from './step';
 
 /** Returns the key that marks a servo's sign as checked. */
 const toSignKey = (servo: number) => `sign ${servo}`;
 
-/** Returns the servos whose signs are not checked yet. */
+/** Returns the servos whose signs have not been checked yet. */
 export const findUncheckedServos = (tools: StepTools): number[] => [0, 1, 2, 3].filter((servo) => !tools.isDone(toSignKey(servo)));
 
 export class SignsStep implements Step {
   readonly name = 'Signs';
-  readonly title = 'Prove the signs';
+  readonly title = 'Check the signs';
   readonly needsRobot = true;
   readonly isPerServo = true;
-  /** The last turned servo and its rotation, deg counter-clockwise; null before the first rotation. */
+  /** The servo that was turned last and its rotation, deg counter-clockwise; null before the first rotation. */
   private lastTurn: { servo: number; turnDeg: number } | null = null;
-  /** The fault that the user observed: another servo turned, or no servo turned; null without a fault. */
+  /** The fault that the user observed: another servo turned, or no servo turned; null if there is no fault. */
   private observedFault: 'other' | 'none' | null = null;
 
   reset(): void {
@@ -48,7 +48,7 @@ export class SignsStep implements Step {
       tools.redraw();
     };
     const advice = {
-      other: `Two signal wires are exchanged. Switch the servos' supply off and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn it again.`,
+      other: `Two signal wires are swapped. Switch off the servo supply and connect the signal of the ${SERVO_POSITIONS[servo]} servo to pin D${pin}. Then turn it again.`,
       none: `Check that its supply is on, that its ground is connected to the UNO's ground, and that its plug is the right way round, with the signal (orange) on pin D${pin}. Then turn it again.`,
     };
     return [
@@ -65,20 +65,20 @@ export class SignsStep implements Step {
 
   private turnServo(tools: StepTools): void {
     const { servo } = tools;
-    tools.run(async (guide) => {
-      const turn = await guide.turnForSign(servo);
+    tools.run(async (calibrator) => {
+      const turnDeg = await calibrator.turnToCheckSign(servo);
       this.observedFault = null;
-      this.lastTurn = { servo, turnDeg: turn };
-      return `A${servo + 1} received the command to turn by ${Math.abs(turn)}° ${turn > 0 ? 'counter-clockwise' : 'clockwise'}.`;
+      this.lastTurn = { servo, turnDeg };
+      return `A${servo + 1} received the command to turn by ${Math.abs(turnDeg)}° ${turnDeg > 0 ? 'counter-clockwise' : 'clockwise'}.`;
     });
   }
 
   private reverseSign(tools: StepTools): void {
     const { servo } = tools;
-    tools.run(async (guide) => {
-      await guide.reverse(servo);
+    tools.run(async (calibrator) => {
+      await calibrator.reverseSign(servo);
       this.reset();
-      return `The sign of A${servo + 1} is now "${guide.calibration.servos[servo].dir}". Turn it again and check.`;
+      return `The sign of A${servo + 1} is now "${calibrator.calibration.servos[servo].dir}". Turn it again and check.`;
     });
   }
 
@@ -92,8 +92,8 @@ export class SignsStep implements Step {
       return tools.redraw();
     }
     tools.markDone(this.name);
-    tools.run(async (guide) => {
-      await guide.stand();
+    tools.run(async (calibrator) => {
+      await calibrator.stand();
       return 'All four servos turn in the right direction.';
     });
     tools.goTo('Trims');

@@ -1,24 +1,24 @@
 // The interface of a step of the first connection, and the tools that a step may use.
-import type { Guide } from '../../../generated/board';
-import type { BoardGuide } from '../../setup/guide';
+import type { Calibrator } from '../../../generated/board';
+import type { BoardCalibrator } from '../../setup/board-calibrator';
 import type { Session } from '../../session';
-import type { WriteContent, Writer } from '../writer';
+import type { WriteContent, BoardWriter } from '../writer';
 import type { SelectedServo } from './drawing';
 
 /** The state and functions that the dialog offers to its steps. */
 export interface StepTools {
   readonly session: Session;
-  readonly writer: Writer;
-  /** The guide for the connected robot; null until its calibration is read. */
-  readonly guide: BoardGuide | null;
+  readonly writer: BoardWriter;
+  /** The calibrator for the connected robot; null until its calibration is read. */
+  readonly calibrator: BoardCalibrator | null;
   /** The selected servo, 0 to 3. */
   servo: number;
   /** Connects a board on USB, or disconnects a board. */
   connect(): void;
   /** Writes the page's robot, alone or with the firmware. */
   write(content: WriteContent): void;
-  /** Runs an action with the robot's guide; shows the returned message, or the error. */
-  run(action: (guide: Guide) => Promise<string>): void;
+  /** Runs an action with the robot's calibrator; shows the returned message, or the error. */
+  run(action: (calibrator: Calibrator) => Promise<string>): void;
   /** Makes the robot stand, with all servos at neutral. */
   stand(): void;
   /** Applies the calibration in the text of the file `name`, without saving it in the board. */
@@ -27,9 +27,7 @@ export interface StepTools {
   markDone(step: string): void;
   /** Returns true if a step, or a part of a step, is done. */
   isDone(step: string): boolean;
-  /** Goes to another step. */
   goTo(step: string): void;
-  /** Shows the current step again. */
   redraw(): void;
 }
 
@@ -42,7 +40,6 @@ export interface Step {
   readonly needsRobot: boolean;
   /** True if the step concerns one servo at a time, which the user selects. */
   readonly isPerServo?: boolean;
-  /** Makes the elements of the step. */
   makeElements(tools: StepTools): Node[];
   /** Returns the highlighted servo of the drawing, null for none; a step without this method has no drawing. */
   selectedServo?(tools: StepTools): SelectedServo | null;

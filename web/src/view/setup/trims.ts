@@ -1,6 +1,6 @@
-// The step Trims, in which the user corrects each crank's angle in small steps that take effect at once.
+// The Trims step, in which the user corrects each crank's angle in small steps that take effect at once.
 import { formatServo } from './drawing';
-import { button, note, row, paragraph } from '../make';
+import { button, note, row, paragraph } from '../elements';
 import type { Step } from './step';
 
 /** The trim changes of the buttons, deg counter-clockwise. */
@@ -12,14 +12,14 @@ export const trimsStep: Step = {
   needsRobot: true,
   isPerServo: true,
   selectedServo: ({ servo }) => ({ servo, turnDeg: null }),
-  makeElements({ guide, servo, run, stand, markDone, session }) {
-    const trim = guide?.calibration.servos[servo].trim;
+  makeElements({ calibrator, servo, run, stand, markDone, session }) {
+    const trim = calibrator?.calibration.servos[servo].trim;
     const neutral = session.description.servos[servo].neutral.toFixed(1);
     const changeTrim = (change: number) => () =>
-      run(async (guide) => {
-        await guide.trim(servo, change);
+      run(async (calibrator) => {
+        await calibrator.changeTrim(servo, change);
         markDone('Trims');
-        return `The trim of A${servo + 1} is ${guide.calibration.servos[servo].trim.toFixed(2)}°.`;
+        return `The trim of A${servo + 1} is ${calibrator.calibration.servos[servo].trim.toFixed(2)}°.`;
       });
     return [
       paragraph(`Make the robot stand, and change the trim until the crank of ${formatServo(servo)} points to ${neutral}°, or mirrors the crank on the other side.`),

@@ -1,5 +1,5 @@
-// The step First walk, in which the robot walks with its new calibration before the user saves it.
-import { button, note, row, warning, paragraph } from '../make';
+// The First walk step, in which the robot walks with its new calibration before the user saves it.
+import { button, note, row, warning, paragraph } from '../elements';
 import { findUncheckedServos } from './signs';
 import type { Step } from './step';
 
@@ -12,18 +12,18 @@ export const walkStep: Step = {
     const uncheckedServos = findUncheckedServos(tools);
     const isWalking = session.description.gaits.some(({ command, moves }) => moves && command === session.gait);
     const startWalk = () =>
-      run(async (guide) => {
-        const gait = await guide.walk();
+      run(async (calibrator) => {
+        const gait = await calibrator.startWalk();
         if (gait === undefined) return 'This robot has no gait.';
         markDone('First walk');
         return `The robot has started "${gait}".`;
       });
     const saveCalibration = () =>
-      run(async (guide) => {
-        await guide.save();
+      run(async (calibrator) => {
+        await calibrator.save();
         return 'Saved. You may now switch off the power.';
       });
-    const isUnsaved = tools.guide?.isChanged ?? false;
+    const isUnsaved = tools.calibrator?.isChanged ?? false;
     return [
       paragraph('Assemble the robot now (quickstart, step 7). Let it walk first on a box, with its feet in the air, and then on the floor with free space ahead.'),
       ...(isUnsaved ? [paragraph('Without power, unsaved settings are lost.'), row(button('Save first', saveCalibration))] : []),

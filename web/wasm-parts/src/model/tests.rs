@@ -7,18 +7,18 @@ use crate::solids::Triangles;
 const PAPER: &str = include_str!("../../../../robots/paper.toml");
 
 fn make_model(drive: &str) -> Model {
-    Model::read(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\""))
+    Model::from_toml(&format!("{PAPER}\n[leg.drive]\nkind = \"{drive}\""))
         .expect("paper.toml is valid with either drive")
 }
 
-/// Transforms a point from a mount's frame to the chassis frame.
+/// Converts a point from a mount's frame to the chassis frame.
 fn to_chassis([x, y, cos, sin]: [f64; 4], point: Vector) -> Vector {
     let (origin, x_axis) = (Vector::new(x, y), Vector::new(cos, sin));
     origin + x_axis * point.x + x_axis.rotated_left() * point.y
 }
 
 #[test]
-fn mounts_of_lagging_legs_match_the_twin_shape() {
+fn the_mounts_of_lagging_legs_match_the_shape_of_the_twin() {
     let model = make_model("strut");
     let robot = model.assembly().robot().clone();
     let neutral: [f64; 4] = robot.neutral_pose().into();
@@ -26,8 +26,8 @@ fn mounts_of_lagging_legs_match_the_twin_shape() {
     let lags = [0.0, 2.5, -3.0, 7.0];
     let sweeps = [0, 1, 2, 3].map(|i| FORWARD_TURN_SIGN[i] * (angles[i] - neutral[i]) - lags[i]);
     let shape = Shape::from_angles(&robot, angles, sweeps).expect("every loop closes");
-    let places = model.place_mounts(angles, lags).expect("every loop closes");
-    let get_place = |mount| places[model.find_mount(mount)];
+    let placements = model.place_mounts(angles, lags).expect("every loop closes");
+    let placement_of = |mount| placements[model.mount_index(mount)];
     for servo in 0..4 {
         let (leg, plan) = (shape.legs[servo], &model.assembly().layout().legs[servo]);
         for (joint, mount) in leg
@@ -35,14 +35,14 @@ fn mounts_of_lagging_legs_match_the_twin_shape() {
             .into_iter()
             .zip([Mount::Crank(servo), Mount::Follower(servo)])
         {
-            let error = (to_chassis(get_place(mount), plan.crank_joint) - joint).length();
+            let error = (to_chassis(placement_of(mount), plan.crank_joint) - joint).length();
             assert!(error < 1e-9, "{mount:?} is off by {error} mm");
         }
-        let error = (to_chassis(get_place(Mount::Foot(servo)), plan.foot) - leg.foot).length();
+        let error = (to_chassis(placement_of(Mount::Foot(servo)), plan.foot) - leg.foot).length();
         assert!(error < 1e-9, "foot {servo} is off by {error} mm");
         let [from, to] = leg.strut_anchors;
         let strut_end = Vector::new((to - from).length(), 0.0);
-        let strut = get_place(Mount::Strut(servo));
+        let strut = placement_of(Mount::Strut(servo));
         let error = (to_chassis(strut, Vector::default()) - from).length()
             + (to_chassis(strut, strut_end) - to).length();
         assert!(error < 1e-9, "strut {servo} is off by {error} mm");
@@ -50,7 +50,7 @@ fn mounts_of_lagging_legs_match_the_twin_shape() {
 }
 
 #[test]
-fn mounts_without_lag_match_the_assembly() {
+fn the_mounts_of_legs_that_do_not_lag_match_the_assembly() {
     let model = make_model("rigid");
     let robot = model.assembly().robot();
     let angles = [130.0, 45.0, 322.0, 219.0];
@@ -58,15 +58,15 @@ fn mounts_without_lag_match_the_assembly() {
         .lizard()
         .solve(&angles.into())
         .expect("every loop closes");
-    let places = model
+    let placements = model
         .place_mounts(angles, [0.0; 4])
         .expect("every loop closes");
-    assert_eq!(places.len(), model.mounts.len());
-    for (mount, place) in model.mounts.iter().zip(places) {
+    assert_eq!(placements.len(), model.mounts.len());
+    for (mount, placement) in model.mounts.iter().zip(placements) {
         let Placement { origin, x_axis } = model.assembly().placement(*mount, &pose);
         let coordinates = [origin.x, origin.y, x_axis.x, x_axis.y]
             .into_iter()
-            .zip(place);
+            .zip(placement);
         let error = coordinates.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-9, "{mount:?} is off by {error} mm");
     }
@@ -83,12 +83,12 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
     let model = make_model("strut");
     let (entry, solids) = (
         model.entry(),
-        list_corners(&model.solids().expect("every solid is closed")),
+        list_corners(&model.make_solids().expect("every solid is closed")),
     );
     let largest_solid_index = entry.bodies.iter().map(|body| body.solid).max();
     assert_eq!(largest_solid_index, Some(solids.len() - 1));
     for (body_entry, body) in entry.bodies.iter().zip(model.assembly().bodies()) {
-        let matrix = body_entry.place;
+        let matrix = body_entry.matrix;
         let z = solids[body_entry.solid].iter().map(|corner| {
             let [x, y, z] = corner.map(f64::from);
             matrix[2] * x + matrix[6] * y + matrix[10] * z + matrix[14]
@@ -123,7 +123,7 @@ fn every_solid_has_the_height_of_its_body_and_no_corner_outside_the_body() {
 }
 
 #[test]
-fn every_body_has_a_step_and_every_part_has_a_body_per_piece() {
+fn every_body_has_a_step_and_every_part_has_one_body_per_piece() {
     let model = make_model("strut");
     let entry = model.entry();
     assert_eq!(entry.steps.len(), 15);
@@ -146,11 +146,11 @@ fn every_body_has_a_step_and_every_part_has_a_body_per_piece() {
 #[test]
 fn the_refusal_of_impossible_parts_names_the_key_and_the_value() {
     let toml = format!("{PAPER}\n[parts]\nheight = 10.0");
-    let refusal = Model::read(&toml).err().expect("the robot is refused");
+    let refusal = Model::from_toml(&toml).err().expect("the robot is refused");
     assert!(
         refusal.refused.starts_with("parts.height ") && refusal.refused.ends_with(" 10 mm"),
         "{}",
         refusal.refused
     );
-    assert!(Model::read("[links]").is_err());
+    assert!(Model::from_toml("[links]").is_err());
 }

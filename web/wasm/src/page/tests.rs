@@ -7,7 +7,7 @@ use crate::paper::PAPER_TOML;
 
 #[test]
 fn the_previous_robot_stays_after_a_refused_robot() {
-    let mut page = Page::default();
+    let mut page = PageState::default();
     assert_eq!(page.follow_pulses([24_000; 4]), None);
     page.read(PAPER_TOML).expect("paper.toml is valid");
     let error = page
@@ -17,32 +17,32 @@ fn the_previous_robot_stays_after_a_refused_robot() {
     assert!(page.follow_pulses([24_000; 4]).is_some());
 }
 
-fn make_paper_page() -> Page {
-    let mut page = Page::default();
+fn make_paper_page() -> PageState {
+    let mut page = PageState::default();
     page.read(PAPER_TOML).expect("paper.toml is valid");
     page
 }
 
 /// Makes a page with the paper's robot and ideal servos.
-fn make_ideal_page() -> Page {
+fn make_ideal_page() -> PageState {
     let mut page = make_paper_page();
     page.set_servos("ideal");
     page
 }
 
 /// Returns the robot's own slider values.
-fn own_floor(page: &Page) -> Floor {
+fn own_floor(page: &PageState) -> Floor {
     Floor::for_robot(page.robot().expect("a robot was read"))
 }
 
-fn predict_walk(page: &Page) -> GaitPrediction {
+fn predict_walk(page: &PageState) -> GaitPrediction {
     let walk = page.robot().and_then(|robot| robot.gait("walk"));
     let walk_index = walk.expect("the robot has this gait").index();
     page.predict(walk_index).expect("the robot has this gait")
 }
 
 /// Predicts the distance of a cycle of `walk`, mm.
-fn predict_walk_mm(page: &Page) -> f64 {
+fn predict_walk_mm(page: &PageState) -> f64 {
     let forward = predict_walk(page).displacement.forward;
     forward.expect("the displacement is determined")
 }
@@ -66,7 +66,7 @@ fn a_servo_keeps_its_angle_when_its_pulses_end() {
 #[test]
 fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
     let mut page = make_paper_page();
-    let step_a1 = |page: &mut Page, cycles: u32| {
+    let step_a1 = |page: &mut PageState, cycles: u32| {
         let frame = page.follow_pulses([24_000 + cycles, 24_000, 24_000, 24_000]);
         let frame = frame.expect("a robot was read");
         (
@@ -97,20 +97,26 @@ fn real_servos_have_a_dead_band_and_limited_speed_but_ideal_servos_do_not() {
     assert_near(step_a1(&mut page, 0), [0.0, 0.0]);
 }
 
-/// Follows two cycles of a gait with ideal servos, by poses that are `frames` frames apart. Returns for the second
-/// cycle the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
-fn follow_cycles(page: &mut Page, name: &str, frames: u32) -> (Travel, Vec<[f64; 4]>, f64) {
+/// Follows two cycles of a gait with ideal servos, by poses that are `frame_step` frames apart. Returns for the
+/// second cycle the displacement, the slide of each foot per pose, mm, and the largest lag, deg.
+fn follow_cycles(
+    page: &mut PageState,
+    name: &str,
+    frame_step: u32,
+) -> (Travel, Vec<[f64; 4]>, f64) {
     page.set_servos("ideal");
     let gait = page.robot().and_then(|robot| robot.gait(name));
     let gait = gait.expect("the robot has this gait");
     let poses: Vec<[f64; 4]> = gait
         .frames()
-        .step_by(frames as usize)
+        .step_by(frame_step as usize)
         .map(|(_, phase)| gait.table_angles(phase))
         .collect();
     let mut follow_cycle = || -> Vec<Frame> {
-        let frame_at =
-            |angles: &[f64; 4]| page.follow_pose(*angles, frames).expect("a robot was read");
+        let frame_at = |angles: &[f64; 4]| {
+            let frame = page.follow_pose(*angles, frame_step);
+            frame.expect("a robot was read")
+        };
         poses.iter().map(frame_at).collect()
     };
     let (first_cycle, second_cycle) = (follow_cycle(), follow_cycle());
@@ -132,20 +138,20 @@ fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
         let robot = page.robot().expect("a robot was read");
         let prediction = robot.predict(robot.gait(name).expect("the robot has this gait"));
         // A pose in every frame, and in every second frame, as a board reports poses on USB.
-        for frames in [1, 2] {
-            let (displacement, _, _) = follow_cycles(&mut page, name, frames);
+        for frame_step in [1, 2] {
+            let (displacement, _, _) = follow_cycles(&mut page, name, frame_step);
             let assert_near = |value: f64, expected: Option<f64>, tolerance: f64| {
                 let deviation = value - expected.expect("the displacement is determined");
                 assert!(
                     deviation.abs() < tolerance,
-                    "{name}, {frames} frames: {displacement:?}"
+                    "{name}, {frame_step} frames per pose: {displacement:?}"
                 );
             };
             // The poses in between are interpolated.
             assert_near(
                 displacement.forward,
                 prediction.forward,
-                0.4 * f64::from(frames),
+                0.4 * f64::from(frame_step),
             );
             assert_near(displacement.left, prediction.left, 0.5);
             assert_near(displacement.turn, prediction.turn, 0.3);
@@ -156,7 +162,7 @@ fn a_cycle_followed_frame_by_frame_ends_where_predicted() {
 #[test]
 fn the_prediction_depends_on_the_servos_dead_band_torque_and_supply() {
     let mut page = make_paper_page();
-    let predict_utilisations = |page: &Page| {
+    let predict_utilisations = |page: &PageState| {
         predict_walk(page)
             .utilisations
             .expect("the servos are not ideal")
@@ -283,12 +289,12 @@ fn mass_and_friction_matter_only_with_springs() {
 #[test]
 fn friction_that_differs_by_direction_changes_the_prediction() {
     let mut page = make_paper_page();
-    let even_prediction = predict_walk(&page);
+    let isotropic_prediction = predict_walk(&page);
     page.set_floor(Floor {
         ratio: 1.4,
         ..own_floor(&page)
     });
-    assert_ne!(predict_walk(&page), even_prediction);
+    assert_ne!(predict_walk(&page), isotropic_prediction);
     assert_eq!(page.predict(99), None);
 }
 
@@ -297,7 +303,7 @@ fn a_written_floor_is_read_back_and_all_other_values_stay() {
     let read_floor =
         |text: &str| Floor::for_robot(&Robot::parse(text).expect("the text is a valid robot"));
     let write_floor = |text: &str, floor| {
-        let edited = Page::edit_floor(text, floor).expect("the values can be written");
+        let edited = PageState::edit_floor(text, floor).expect("the values can be written");
         assert_eq!(edited.refusal, None);
         edited.text
     };

@@ -34,7 +34,11 @@ fn a_gait_rebuilt_from_its_bars_has_the_same_prediction() {
             GaitPrediction::predict(&twin, gait),
             "{name}"
         );
-        assert_eq!(trial.speed, gait.audit().peak_speed.speed, "{name}");
+        assert_eq!(
+            trial.max_servo_speed,
+            gait.audit().peak_speed.speed,
+            "{name}"
+        );
     }
     for name in ["stand", "look"] {
         let gait = robot.gait(name).expect("the robot has this gait");
@@ -58,7 +62,7 @@ fn a_reversed_gait_walks_the_same_distance_backward() {
         predicted_mm < -5.0 && (trial_mm - predicted_mm).abs() < 0.1,
         "trial {trial_mm} mm, predicted {predicted_mm} mm"
     );
-    assert!((trial.speed - back.audit().peak_speed.speed).abs() < 2.0);
+    assert!((trial.max_servo_speed - back.audit().peak_speed.speed).abs() < 2.0);
     for name in ["walk", "crawl", "arc-left"] {
         let bars = get_bars(&robot, name);
         let [own_mm, reversed_mm] = [bars.clone(), bars.reversed()].map(|bars| {
@@ -88,14 +92,18 @@ fn a_refusal_offers_the_nearest_valid_values() {
         amplitude: 60.0,
         ..get_bars(&robot, "walk")
     };
-    let refusal = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
+    let refused_trial = try_bars(&too_large_gait, &twin).expect_err("the gait is too large");
     assert!(
-        refusal.refused.key.starts_with("gait.walk"),
+        refused_trial.refusal.key.starts_with("gait.walk"),
         "{:?}",
-        refusal.refused
+        refused_trial.refusal
     );
-    assert!(!refusal.alternatives.is_empty(), "{:?}", refusal.refused);
-    for Alternative { parameter, value } in refusal.alternatives {
+    assert!(
+        !refused_trial.alternatives.is_empty(),
+        "{:?}",
+        refused_trial.refusal
+    );
+    for Alternative { parameter, value } in refused_trial.alternatives {
         let is_valid_with = |value: f64| {
             let mut bars = too_large_gait.clone();
             match parameter {
@@ -158,6 +166,6 @@ fn an_invalid_name_is_refused_without_alternatives() {
         name: "Wa lk".to_string(),
         ..get_bars(&robot, "walk")
     };
-    let refusal = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
-    assert_eq!(refusal.alternatives, []);
+    let refused_trial = try_bars(&misnamed_gait, &twin).expect_err("the name is invalid");
+    assert_eq!(refused_trial.alternatives, []);
 }

@@ -35,7 +35,7 @@ enum ReceivedLine {
     /// A line with a garbled byte.
     Garbled,
     /// A line of unknown content: a backspace has deleted a byte, and several states may precede this byte.
-    Deleted,
+    Unknown,
     /// A command with its line end: the state before the line end, or `usize::MAX` if the content is unknown.
     CompleteCommand(usize),
 }
@@ -49,13 +49,13 @@ impl ReceivedLine {
             {
                 Self::CompleteCommand(state)
             }
-            (b'\r' | b'\n', Self::Deleted) => Self::CompleteCommand(usize::MAX),
+            (b'\r' | b'\n', Self::Unknown) => Self::CompleteCommand(usize::MAX),
             (b'\r' | b'\n', _) => Self::CommandPrefix(LineAutomaton::START),
             (0x80.., _) | (_, Self::Garbled) => Self::Garbled,
-            (_, Self::Deleted) => Self::Deleted,
+            (_, Self::Unknown) => Self::Unknown,
             (0x08 | 0x7f, Self::CommandPrefix(state)) => automaton
                 .previous_state(state)
-                .map_or(Self::Deleted, Self::CommandPrefix),
+                .map_or(Self::Unknown, Self::CommandPrefix),
             (0x08 | 0x7f, Self::Mismatch(state, 1)) => Self::CommandPrefix(state),
             (0x08 | 0x7f, Self::Mismatch(state, count)) => Self::Mismatch(state, count - 1),
             (_, Self::Mismatch(state, count)) => Self::Mismatch(state, count + 1),
@@ -116,10 +116,10 @@ impl BitGraph {
                 .collect::<Vec<_>>()
         };
         for (index, (_, byte, next_state)) in bytes.iter().enumerate() {
-            let frame_bits = 1 << 9 | u16::from(*byte) << 1;
+            let sent_bits = 1 << 9 | u16::from(*byte) << 1;
             graph
                 .levels
-                .extend((0..10).map(|bit| frame_bits >> bit & 1 == 1));
+                .extend((0..10).map(|bit| sent_bits >> bit & 1 == 1));
             graph
                 .successors
                 .extend((1..10).map(|bit| vec![start_bit_index(index) + bit]));
@@ -132,7 +132,7 @@ impl BitGraph {
     }
 
     /// Creates the graph of any sequence of 7-bit bytes, with or without pauses between them.
-    fn with_any_bytes() -> Self {
+    fn for_any_bytes() -> Self {
         let mut automaton = LineAutomaton::new();
         automaton.transitions[0] = (0..0x80).map(|byte| (byte, 0)).collect();
         let mut graph = Self::for_automaton(&automaton);
@@ -240,7 +240,7 @@ fn find_start_edges(states: BTreeSet<LinkState>, graph: &BitGraph) -> BTreeSet<L
 /// together. Each command is identified by its final automaton state.
 fn find_decodable_commands(sender: BaudRate, receiver: BaudRate) -> BTreeSet<usize> {
     let (graph, automaton) = (
-        BitGraph::for_automaton(&LineAutomaton::for_usual_commands()),
+        BitGraph::for_automaton(&LineAutomaton::for_canonical_commands()),
         LineAutomaton::for_accepted_lines(),
     );
     let initial_lines = [
@@ -288,7 +288,7 @@ fn rate_pairs(is_sender_faster: bool) -> impl Iterator<Item = (BaudRate, BaudRat
 
 #[test]
 fn a_receiver_faster_than_the_sender_never_decodes_a_line_end() {
-    let graph = BitGraph::with_any_bytes();
+    let graph = BitGraph::for_any_bytes();
     let automaton = LineAutomaton::for_accepted_lines();
     for (sender, receiver) in rate_pairs(false) {
         let start_edges: BTreeSet<LinkState> = (0..graph.levels.len())

@@ -21,7 +21,7 @@ fn assert_each_refused(lines: &str, line_error: LineError) {
     }
 }
 
-/// Returns the command that starts a gait without a number of cycles.
+/// Returns the command that starts a gait for an unlimited number of cycles.
 fn gait_command(gait: GaitId) -> Command {
     Command::Order(Order::Gait(gait, 0))
 }

@@ -9,9 +9,9 @@ use proptest::prelude::*;
 mod any_line;
 mod calibration;
 mod counts;
-mod dialogue;
 mod effect;
 mod faults;
+mod helpers;
 mod inputs;
 mod memory;
 mod routines;
@@ -26,12 +26,12 @@ use crate::motion::Activity;
 use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::units::PulseWidth;
 use crate::sample::{GAIT_NAMES, SLOW_PACE, Sample};
-use crate::step::Step;
+use crate::step::StepResult;
 use crate::virtual_board::{Eeprom, VirtualBoard, is_answer};
-use dialogue::{
-    Dialogue, activity_name, assert_status, format_neutral_pose, parse_pairs,
-    run_frame_and_read_widths, set_supply, start_asymmetric_robot, wake_asymmetric_robot,
-    wake_robot,
+use helpers::{
+    Dialogue, activity_name, assert_status, format_neutral_pose, measure_phase_advance,
+    parse_pairs, run_frame_and_read_widths, set_supply, start_asymmetric_robot,
+    wake_asymmetric_robot, wake_robot,
 };
 
 /// The command for the neutral pose of [`Sample::asymmetric`].
@@ -116,7 +116,7 @@ fn help_lists_all_gait_names_and_fills_each_line_before_the_next() {
             let next_name = pair[1].split('|').next().expect("each line has a name");
             let joined_length = "# gaits: ".len() + pair[0].len() + 1 + next_name.len();
             assert!(
-                joined_length > usize::from(print::MAX_GAITS_LINE_BYTES),
+                joined_length > usize::from(print::MAX_GAIT_NAMES_LINE_BYTES),
                 "{pair:?}"
             );
         }
@@ -184,7 +184,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
     let mut printed_lines = Vec::new();
     let mut read_line_and_match_gaits = |dialogue: &mut Dialogue| {
         while !dialogue.board.transmitter.text.ends_with("\r\n") {
-            assert_eq!(dialogue.main.step(&mut dialogue.board), Step::Worked);
+            assert_eq!(dialogue.main.step(&mut dialogue.board), StepResult::Worked);
         }
         printed_lines.push(core::mem::take(&mut dialogue.board.transmitter.text));
         printed_lines
@@ -194,7 +194,7 @@ fn pending_lines_are_written_in_the_order_banner_answer_notice_hold_reason_repor
     };
     while !read_line_and_match_gaits(&mut dialogue) {}
     // From here on the output is not read, while the guard stops the robot, a pulse edge is late and a report becomes
-    // due.
+    // pending.
     dialogue.run_without_reader(199);
     assert!(dialogue.motion().hazard().is_some());
     dialogue.board.late_edges = 1;

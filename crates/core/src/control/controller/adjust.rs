@@ -1,4 +1,4 @@
-//! Changes of the servos' settings.
+//! Changes of the servo settings.
 //!
 //! A change takes effect at once. It is refused if a gait, the current pose or the target would then exceed a servo's
 //! travel.

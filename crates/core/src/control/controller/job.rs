@@ -36,20 +36,20 @@ impl Controller {
 
     /// True while an order waits for the measurement of the supply, or for the end of a dip: either the supply recovers
     /// or its level falls. Meanwhile there is nothing to do before the next frame.
-    pub fn waits_for_supply(&self) -> bool {
+    pub fn is_waiting_for_supply(&self) -> bool {
         let supply = self.safety.supply();
-        let is_supply_undecided = match supply.measured_level() {
+        let is_supply_undetermined = match supply.measured_level() {
             None => self.motion.frame_count() < MEASURING_FRAMES,
             Some(level) => level == Level::Good && !supply.is_steady(),
         };
-        self.job.is_some() && is_supply_undecided
+        self.job.is_some() && is_supply_undetermined
     }
 
     /// Advances the EEPROM operation by at most one byte. Returns the outcome of the order once the order is complete,
     /// otherwise `None`.
     #[inline(never)]
     pub fn advance_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
-        if !memory.is_ready() || self.waits_for_supply() {
+        if !memory.is_ready() || self.is_waiting_for_supply() {
             return None;
         }
         let may_write = self.safety.allows_writing_now();
@@ -78,7 +78,7 @@ impl Controller {
                 }
             }
             Some(Job::ChooseCopy | Job::WriteCopy(_)) if !may_write => Err(Refusal::SupplyTooLow),
-            Some(Job::ChooseCopy) => match copies::save(&mut self.settings, memory) {
+            Some(Job::ChooseCopy) => match copies::start_save(&mut self.settings, memory) {
                 None => Ok(()),
                 Some(record_write) => {
                     self.job = Some(Job::WriteCopy(record_write));

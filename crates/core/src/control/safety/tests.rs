@@ -19,7 +19,7 @@ fn check_still_frame(safety: &mut Safety, health: &Health) -> Reaction {
     safety.check_frame(health, &sample_supplies(), State::Posing, 0)
 }
 
-/// Returns the health of a board whose chip is supplied with `volts`, and whose servos' rail has 6 V.
+/// Returns the health of a board whose chip is supplied with `volts`, and whose servo rail has 6 V.
 fn health_at_volts(volts: f64) -> Health {
     Health {
         supply: Reading {

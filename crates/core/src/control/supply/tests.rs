@@ -1,4 +1,4 @@
-//! Tests of the supply's level as a function of the readings in successive frames.
+//! Tests of the supply level as a function of the readings in successive frames.
 
 use std::vec::Vec;
 
@@ -206,7 +206,7 @@ fn the_worse_of_two_supplies_determines_the_level_and_is_reported() {
             &supplies,
         );
         assert_eq!(supply.level(), level);
-        let reported_volts = f64::from(supply.worst_voltage(&supplies).centivolts()) / 100.0;
+        let reported_volts = f64::from(supply.limiting_voltage(&supplies).centivolts()) / 100.0;
         assert!(
             (reported_volts - worse_volts).abs() < 0.05,
             "reported {reported_volts} V for {worse_volts} V"

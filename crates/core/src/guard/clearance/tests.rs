@@ -13,7 +13,7 @@ use crate::numbers::limits::Limits;
 use crate::numbers::slider::Slider;
 use crate::numbers::units::Sweep;
 use crate::sample::bounds::{self, MAX_DIRECTION_ERROR, Q15_STEP};
-use crate::sample::{Measurements, Sample, sine, steps_per_mm};
+use crate::sample::{Measurements, Sample, steps_per_mm, to_f64};
 
 /// Yields random robots, each with several poses, because building a robot takes longer than testing a pose.
 fn robots_with_poses() -> impl Strategy<Value = (Sample, [Pose; 8])> {
@@ -131,7 +131,7 @@ fn check_errors(robot: &Sample, pose: &Pose) -> Result<(), TestCaseError> {
             3 | 4 => bound.type1_right,
             _ => MAX_DIRECTION_ERROR,
         };
-        let error = sine(clearance.margins[index]) - exact;
+        let error = to_f64(clearance.margins[index]) - exact;
         prop_assert!(
             error.abs() <= max_error,
             "{name}: error {error}, at most {max_error} allowed"
@@ -303,7 +303,7 @@ fn the_smallest_margin_is_found_at_every_index() {
     for index in 0..10 {
         let mut clearance = safe_clearance;
         clearance.margins[index] = Sine(-20_000 + index as i16);
-        assert_eq!(clearance.smallest_margin(), Sine(-20_000 + index as i16));
+        assert_eq!(clearance.min_margin(), Sine(-20_000 + index as i16));
     }
 }
 

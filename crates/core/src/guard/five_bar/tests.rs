@@ -5,7 +5,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::numbers::units::Angle;
-use crate::sample::{SampleFiveBar, bounds, degrees, sine};
+use crate::sample::{SampleFiveBar, bounds, to_degrees, to_f64};
 
 /// Yields random five-bars, in mm, whose couplers are long enough for the other bars.
 fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
@@ -53,14 +53,14 @@ proptest! {
         let [left, right] = [left, right].map(Angle);
         let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let actual = compute_margins(&sample, left, right);
-        let angles = [left, right].map(degrees);
+        let angles = [left, right].map(to_degrees);
         let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
         let Ok(pose) = five_bar.forward(angles[0], angles[1]) else {
             // Couplers that just fail to meet may meet once their lengths are rounded to whole steps.
-            prop_assert!(sine(actual.type2).abs() <= bound.type2, "{actual:?}");
+            prop_assert!(to_f64(actual.type2).abs() <= bound.type2, "{actual:?}");
             return Ok(());
         };
-        let error = sine(actual.type2).abs() - pose.type2;
+        let error = to_f64(actual.type2).abs() - pose.type2;
         prop_assert!(error <= bound.type2, "type-2 error {error}: {bound:?}");
         if actual == EndMargins::default() {
             // Margins of zero are reported as "below 0.1", so the true type-2 margin must be below 0.1.
@@ -79,7 +79,7 @@ proptest! {
             ("left", actual.type1_left, pose.type1_left(), bound.type1_left),
             ("right", actual.type1_right, pose.type1_right(), bound.type1_right),
         ] {
-            let error = sine(actual) - exact;
+            let error = to_f64(actual) - exact;
             prop_assert!(error.abs() <= bound, "type-1, {side}: error {error}, at most {bound} allowed");
         }
     }
@@ -118,12 +118,12 @@ fn the_largest_known_errors_are_within_their_bounds() {
         let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
         let angles = angles.map(Angle);
         let actual = compute_margins(&sample, angles[0], angles[1]);
-        let angles = angles.map(degrees);
+        let angles = angles.map(to_degrees);
         let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
         let pose = five_bar
             .forward(angles[0], angles[1])
             .expect("the loop closes");
-        let error = (sine(actual.type2).abs() - pose.type2).abs();
+        let error = (to_f64(actual.type2).abs() - pose.type2).abs();
         // The five-bar must still have the error for which it was chosen.
         assert!(error > known_error && pose.type2 > 0.1, "{error}");
         assert!(
@@ -143,9 +143,9 @@ fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
         let pose = five_bar
-            .forward(degrees(left), degrees(right))
+            .forward(to_degrees(left), to_degrees(right))
             .expect("the loop closes");
-        let actual = sine(compute_margins(&sample, left, right).type2);
+        let actual = to_f64(compute_margins(&sample, left, right).type2);
         if pose.gap.x > 0.0 && pose.type2 > 0.1 && pose.type2 < 0.3 {
             error_sum += actual - pose.type2;
             count += 1.0;

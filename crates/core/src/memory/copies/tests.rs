@@ -32,7 +32,7 @@ fn make_settings(robot: &Sample, n: i16) -> Settings {
 /// Saves settings as the console does, and returns them with their save number.
 fn save_settings(settings: &Settings, eeprom: &mut Eeprom) -> Settings {
     let mut saved_settings = *settings;
-    if let Some(mut record_write) = save(&mut saved_settings, eeprom) {
+    if let Some(mut record_write) = start_save(&mut saved_settings, eeprom) {
         let mut progress = Progress::InProgress;
         while progress == Progress::InProgress {
             progress = record_write.advance(saved_settings.bytes(), eeprom);

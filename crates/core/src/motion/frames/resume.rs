@@ -14,9 +14,9 @@ impl Motion {
     /// pose if the rest pose is unsafe or exceeds the travel.
     #[inline(never)]
     pub fn wake(&mut self, rest_pose: Option<&Pose>) {
-        self.begin();
+        self.start_standing();
         if let Some(pose) = rest_pose
-            && self.may_hold(pose)
+            && self.can_hold(pose)
         {
             self.servo_state.pose = *pose;
             self.state = State::Holding {
@@ -32,7 +32,7 @@ impl Motion {
     pub fn resume_rest(&mut self, servo_state: Option<&ServoState>) {
         self.freeze(State::Resting);
         if let Some(servo_state) = servo_state
-            && self.may_hold(&servo_state.pose)
+            && self.can_hold(&servo_state.pose)
         {
             self.servo_state.pose = servo_state.pose;
             self.servo_state.sent_pulses = servo_state.sent_pulses;
@@ -44,7 +44,7 @@ impl Motion {
     /// the robot stands; otherwise all servos that had pulses get them immediately.
     #[inline(never)]
     pub fn resume(&mut self, servo_state: &ServoState, will_stand: bool) -> bool {
-        if !self.may_hold(&servo_state.pose) {
+        if !self.can_hold(&servo_state.pose) {
             return false;
         }
         self.servo_state.pose = servo_state.pose;
@@ -64,7 +64,7 @@ impl Motion {
     }
 
     /// True if a pose is safe and within the travel.
-    fn may_hold(&self, pose: &Pose) -> bool {
+    fn can_hold(&self, pose: &Pose) -> bool {
         self.first_hazard(pose).is_none()
     }
 }

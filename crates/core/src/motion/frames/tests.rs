@@ -4,8 +4,7 @@ use std::vec::Vec;
 
 use super::*;
 use crate::guard::clearance::Clearance;
-use crate::numbers::units::PulseWidth;
-use crate::numbers::units::{CYCLE, Sweep};
+use crate::numbers::units::{CYCLE, PulseWidth, Sweep};
 use crate::sample::{GAIT_NAMES, Sample};
 
 mod any_order;
@@ -43,7 +42,7 @@ impl Motion {
 
     fn run(&mut self, frames: u32) {
         for _ in 0..frames {
-            self.tick();
+            self.advance_frame();
         }
     }
 
@@ -96,7 +95,7 @@ const OPPOSITE_SWEEPS: [i16; 4] = [-600, 500, -800, 700];
 /// Checks that two motions are equal for 100 frames.
 fn assert_same_motion(mut first: Motion, mut second: Motion) {
     for _ in 0..100 {
-        assert_eq!(first.tick(), second.tick());
+        assert_eq!(first.advance_frame(), second.advance_frame());
         assert_eq!(first.activity(), second.activity());
         assert_eq!(first.phase(), second.phase());
         assert_eq!(first.hazard(), second.hazard());
@@ -125,7 +124,7 @@ fn a_held_pose_has_the_activity_pose_if_ordered_and_stop_otherwise() {
     ] {
         let held_pulses = motion.held_pulses();
         for _ in 0..50 {
-            assert_eq!(motion.tick(), held_pulses);
+            assert_eq!(motion.advance_frame(), held_pulses);
             assert_eq!(motion.activity(), activity);
         }
     }
@@ -143,7 +142,7 @@ fn from_a_held_pose_the_next_frame_begins_the_move_to_a_gait_or_a_pose() {
         } else {
             motion.go_to_sweeps(SWEEPS);
         }
-        motion.tick();
+        motion.advance_frame();
         assert!(motion.is_moving());
         assert_ne!(motion.pose(), &held_pose);
     }
@@ -168,16 +167,16 @@ fn a_move_that_arrives_at_a_gait_starts_at_phase_0_and_accelerates() {
         motion.start(name);
         let id = motion.robot.gait_id(name);
         let gait = motion.robot.gait(id);
-        motion.tick();
+        motion.advance_frame();
         while motion.is_moving() {
             assert_eq!(motion.phase(), 0);
-            motion.tick();
+            motion.advance_frame();
         }
         assert_eq!(motion.state, State::cycling(&motion.robot, id));
         assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), 0));
         let mut phase = 0;
         for pace in [147, 294, 441, 588, 735, 882, 1024, 1024] {
-            motion.tick();
+            motion.advance_frame();
             phase = gait.advance(phase, pace);
             assert_eq!((motion.pace(), motion.phase()), (pace, phase));
             assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
@@ -197,7 +196,7 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
         assert_eq!(motion.activity(), Activity::Pose);
         let mut pace = motion.pace();
         while pace > 0 {
-            motion.tick();
+            motion.advance_frame();
             pace = pace.saturating_sub(147);
             assert!(motion.is_moving() && motion.next_target.is_some());
             assert_eq!(motion.pace(), pace);
@@ -205,7 +204,7 @@ fn a_move_brakes_on_its_line_before_it_turns_to_another_pose() {
             let fraction_of = |n: usize| f64::from(motion.pose().0[n].0) / f64::from(FAR_SWEEPS[n]);
             assert!((fraction_of(0) - fraction_of(3)).abs() < 0.002);
         }
-        motion.tick();
+        motion.advance_frame();
         assert!(motion.next_target.is_none());
         motion.run(TRANSITION_FRAMES);
         assert_eq!(motion.pose(), &Pose(OPPOSITE_SWEEPS.map(Sweep)));
@@ -247,7 +246,7 @@ fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
     motion.start("swing");
     let mut phase = motion.phase();
     for pace in [877, 730, 583, 436, 289, 142, 0] {
-        motion.tick();
+        motion.advance_frame();
         phase = gait.advance(phase, pace);
         assert_eq!((motion.pace(), motion.phase()), (pace, phase));
         assert_eq!(motion.pose(), &gait.pose(motion.robot.waves(), phase));
@@ -257,7 +256,7 @@ fn a_gait_brakes_along_its_cycle_before_the_move_to_another_gait_begins() {
             "the activity is that of the next target"
         );
     }
-    motion.tick();
+    motion.advance_frame();
     assert!(motion.is_moving());
     motion.run(TRANSITION_FRAMES);
     assert!(motion.is_cycling());
@@ -296,7 +295,7 @@ fn a_new_speed_changes_the_pace_step_by_step() {
     assert_eq!(motion.speed_percent(), 50);
     let mut paces = Vec::new();
     for _ in 0..5 {
-        motion.tick();
+        motion.advance_frame();
         paces.push(motion.pace());
     }
     assert_eq!(paces, [877, 730, 583, 512, 512]);
@@ -318,7 +317,7 @@ fn stop_freezes_the_pose_in_the_next_frame_of_every_gait_and_of_the_move_to_it()
             motion.run(20);
             assert_eq!(motion.activity(), Activity::Stop);
             assert_eq!(motion.pose(), &pose, "{name}, frame {frames}");
-            assert_eq!(motion.tick(), motion.held_pulses());
+            assert_eq!(motion.advance_frame(), motion.held_pulses());
         }
     }
 }
@@ -330,7 +329,7 @@ fn rest_ends_the_pulses_in_the_next_frame_of_every_gait() {
             let mut motion = Motion::in_gait(name, frames);
             let pose = *motion.pose();
             motion.rest();
-            assert_eq!(motion.tick(), Pulses::default());
+            assert_eq!(motion.advance_frame(), Pulses::default());
             assert_eq!((motion.pose(), motion.phase()), (&pose, 0));
         }
     }
@@ -355,10 +354,10 @@ fn a_stopped_gait_restarts_at_its_first_pose() {
     motion.stop();
     motion.run(5);
     motion.start("sway");
-    motion.tick();
+    motion.advance_frame();
     assert!(motion.is_moving());
     while motion.is_moving() {
-        motion.tick();
+        motion.advance_frame();
     }
     let first_pose = motion
         .robot

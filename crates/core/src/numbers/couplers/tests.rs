@@ -9,7 +9,7 @@ use crate::sample::SampleCouplers;
 use crate::sample::bounds::{self, MIN_KNOWN_MARGIN};
 
 /// The longest coupler that the scale of a five-bar allows, in steps.
-const MAX_COUPLER: i16 = 32_511;
+const MAX_COUPLER_STEPS: i16 = 32_511;
 
 /// Computes the rise and the skew of couplers of these lengths directly from the triangle. `tips_sq` is the square of
 /// half the distance between the crank tips. Returns `None` if the couplers do not meet.
@@ -33,26 +33,26 @@ proptest! {
 
     #[test]
     fn the_shape_is_that_of_the_triangle_from_folded_to_stretched_couplers(
-        first_length in MIN_COUPLER_STEPS..=MAX_COUPLER,
-        second_length in MIN_COUPLER_STEPS..=MAX_COUPLER,
+        first_length in MIN_COUPLER_STEPS..=MAX_COUPLER_STEPS,
+        second_length in MIN_COUPLER_STEPS..=MAX_COUPLER_STEPS,
         length_variant in 0u8..4,
-        is_exchanged: bool,
+        is_swapped: bool,
         fraction in (0.0..1.0f64, 0u8..3),
     ) {
         // Equal lengths, nearly equal ones, or any.
         let second_length = match length_variant {
             0 => first_length,
-            1 => first_length + (second_length % 100).min(MAX_COUPLER - first_length),
+            1 => first_length + (second_length % 100).min(MAX_COUPLER_STEPS - first_length),
             _ => second_length,
         };
-        let (left, right) = if is_exchanged { (second_length, first_length) } else { (first_length, second_length) };
+        let (left, right) = if is_swapped { (second_length, first_length) } else { (first_length, second_length) };
         // Evenly distributed over the range, or dense at one of its ends.
         let fraction = match fraction {
             (fraction, 0) => fraction,
             (fraction, 1) => fraction.powi(4),
             (fraction, _) => 1.0 - fraction.powi(4),
         };
-        let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
+        let [reach_sq, folded_sq] = compute_limits_sq(left, right);
         let tips_sq = folded_sq + (f64::from(reach_sq - folded_sq) * fraction) as u32;
         let sample = SampleCouplers::new(left, right);
         let shape = sample.couplers().shape_at(tips_sq);
@@ -85,12 +85,12 @@ proptest! {
 
     #[test]
     fn couplers_that_do_not_meet_have_no_shape(
-        left in MIN_COUPLER_STEPS..=MAX_COUPLER,
-        right in MIN_COUPLER_STEPS..=MAX_COUPLER,
+        left in MIN_COUPLER_STEPS..=MAX_COUPLER_STEPS,
+        right in MIN_COUPLER_STEPS..=MAX_COUPLER_STEPS,
         excess_sq in 0u32..1 << 28,
     ) {
         let sample = SampleCouplers::new(left, right);
-        let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
+        let [reach_sq, folded_sq] = compute_limits_sq(left, right);
         prop_assert_eq!(sample.couplers().shape_at(reach_sq + excess_sq), None);
         prop_assert_eq!(sample.couplers().shape_at(folded_sq.saturating_sub(excess_sq)), None);
     }
@@ -99,12 +99,12 @@ proptest! {
 #[test]
 fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
     for (left, right) in [(12_800, 12_800), (13_000, 11_000), (9_000, 20_001)] {
-        let (reach_sq, folded_sq) = (reach_sq(left, right), folded_sq(left, right));
+        let [reach_sq, folded_sq] = compute_limits_sq(left, right);
         let tables = [
-            rise_table(left, right),
-            stretched_rise_table(left, right),
-            folded_rise_table(left, right),
-            skew_table(left, right),
+            compute_rise_table(left, right),
+            compute_stretched_rise_table(left, right),
+            compute_folded_rise_table(left, right),
+            compute_skew_table(left, right),
         ];
         let exact_rise = |tips_sq: u64| {
             let [r, n, s] = [reach_sq.into(), folded_sq.into(), tips_sq].map(|sq: u64| sq as f64);
@@ -116,7 +116,7 @@ fn table_entries_are_rounded_to_nearest_but_the_falling_rise_is_rounded_down() {
             let [falling_entry, stretched_entry, folded_entry, skew_entry] =
                 tables.map(|table| f64::from(table[index]));
             let tips_sq = argument_at(reach_sq, index);
-            if is_within_range(tips_sq) && tips_sq >= peak_sq(left, right).into() {
+            if is_within_range(tips_sq) && tips_sq >= compute_peak_sq(left, right).into() {
                 assert!(
                     (0.0..1.0).contains(&(exact_rise(tips_sq) - falling_entry)),
                     "rise {index}"
@@ -169,7 +169,7 @@ fn couplers_that_differ_by_a_few_steps_keep_the_rise_accurate() {
 
 #[test]
 fn a_loop_is_near_stretched_beyond_three_quarters_of_its_squared_reach() {
-    let reach_sq = reach_sq(20_000, 30_000);
+    let [reach_sq, _] = compute_limits_sq(20_000, 30_000);
     let limit_sq = reach_sq - reach_sq / 4;
     assert!(!Couplers::is_near_stretched(20_000, 30_000, limit_sq));
     assert!(Couplers::is_near_stretched(20_000, 30_000, limit_sq + 1));

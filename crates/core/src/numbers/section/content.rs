@@ -9,12 +9,11 @@ use lizard_avr::{Flash, Pod};
 use super::seal::add_seal;
 use super::{
     AFTER_NUMBERS_OFFSET, CURVE_COUNT, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers,
-    Part, PartRange,
+    PartRange, SectionPart,
 };
 use crate::numbers::bars::Bars;
-use crate::numbers::calibration::Calibration;
-use crate::numbers::calibration::SweepRange;
-use crate::numbers::cells::Cells;
+use crate::numbers::calibration::{Calibration, SweepRange};
+use crate::numbers::cells::CellMap;
 use crate::numbers::couplers::{self, Couplers};
 use crate::numbers::curve::Table;
 use crate::numbers::gaits::{Gait, Step, Wave};
@@ -32,11 +31,11 @@ static ROBOT_HASH: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 pub struct Content {
     /// The robot's name, at most [`MAX_NAME_BYTES`] characters.
     pub name: String,
-    /// The hash of the servos' pins, pulses and neutral angles, with which saved settings are stored.
+    /// The hash of the servo pins, pulses and neutral angles, with which saved settings are stored.
     pub servo_hash: u32,
-    /// The Arduino numbers of the servos' pins, A1 to A4; 14 to 19 are A0 to A5.
+    /// The Arduino numbers of the servo pins, A1 to A4; 14 to 19 are A0 to A5.
     pub pins: [u8; 4],
-    /// The Arduino number of the pin where the servos' rail is measured; `None` if the rail is not measured.
+    /// The Arduino number of the pin where the servo rail is measured; `None` if the rail is not measured.
     pub rail_pin: Option<u8>,
     /// The pace to which a low supply limits gaits, in percent of the pace in robot.toml, 10 to 100.
     pub slow_pace: u8,
@@ -83,7 +82,7 @@ pub struct FiveBarLengths {
     pub can_nearly_stretch: bool,
 }
 
-/// A map of certified cells, see [`Cells::from_rows`].
+/// A map of certified cells, see [`CellMap::from_rows`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Map {
     /// The row number of the first row.
@@ -95,8 +94,8 @@ pub struct Map {
 
 impl Map {
     /// Converts the map to the form that the guard reads.
-    pub fn cells(&self) -> Cells<'_> {
-        Cells::new(self.first_row, Flash::from(self.rows.as_slice()))
+    pub fn cells(&self) -> CellMap<'_> {
+        CellMap::new(self.first_row, Flash::from(self.rows.as_slice()))
     }
 }
 
@@ -111,12 +110,12 @@ impl FiveBarLengths {
     fn tables(&self) -> [Option<Table>; CURVE_COUNT] {
         let [left, right] = self.couplers;
         [
-            Some(couplers::rise_table(left, right)),
+            Some(couplers::compute_rise_table(left, right)),
             self.can_nearly_stretch
-                .then(|| couplers::stretched_rise_table(left, right)),
+                .then(|| couplers::compute_stretched_rise_table(left, right)),
             Couplers::needs_folded_table(left, right)
-                .then(|| couplers::folded_rise_table(left, right)),
-            (left != right).then(|| couplers::skew_table(left, right)),
+                .then(|| couplers::compute_folded_rise_table(left, right)),
+            (left != right).then(|| couplers::compute_skew_table(left, right)),
         ]
     }
 }
@@ -203,7 +202,7 @@ impl Content {
         let mut digest = ROBOT_HASH.digest();
         // The hash does not include the maps, because they save time but change no decision.
         let mut without_maps = numbers;
-        without_maps.parts[Part::Rows as usize] = PartRange {
+        without_maps.parts[SectionPart::Rows as usize] = PartRange {
             address: 0,
             count: 0,
         };

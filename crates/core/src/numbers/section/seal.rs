@@ -59,8 +59,8 @@ fn compute_prefix_checksums(bytes: &[u8]) -> Vec<Checksum> {
     sums
 }
 
-/// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all bytes. Excludes prefixes
-/// without only those last bytes that equal erased flash, because such a cut changes nothing.
+/// True if a proper prefix of the bytes, followed by erased flash, has the checksum of all bytes. Ignores a prefix if
+/// all bytes after it equal erased flash, because such a cut changes nothing.
 fn has_undetected_prefix(bytes: &[u8], sums: &[Checksum]) -> bool {
     // A prefix with this checksum, followed by erased bytes, has the checksum of all bytes.
     let mut needed_sum = sums[bytes.len()];

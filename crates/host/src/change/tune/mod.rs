@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
+use crate::shared::robot_file::unknown_gait_failure;
 use crate::shared::spread::{SpreadArgs, Spreadable};
-use crate::shared::suggestion::format_suggestion;
 
 /// Search for a faster gait at the same servo speed
 ///
@@ -77,8 +77,8 @@ impl Spreadable for Args {
 /// Searches for a gait and prints it.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml; a gait that does not exist or cannot be tuned; an invalid rate or name; a search
-/// that finds no gait within the limits; an output that cannot be written.
+/// Fails if robot.toml, the rate or the name is invalid, if the gait does not exist or cannot be tuned, if the search
+/// finds no gait within the limits, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let Some(comparison) = tune(&robot, &args)? else {
@@ -118,13 +118,9 @@ fn tune(robot: &Robot, args: &Args) -> Result<Option<Comparison>, Failure> {
 /// Returns the gait called `name`, the start of the search.
 fn find_gait<'a>(robot: &'a Robot, name: &str) -> Result<&'a CheckedGait, Failure> {
     robot.gait(name).ok_or_else(|| {
+        let problem = format!("--gait {name}: unknown gait");
         let moving_gaits = robot.gaits().iter().filter(|gait| gait.has_movement());
-        let names: Vec<&str> = moving_gaits.map(|gait| gait.name()).collect();
-        Failure::Input(format!(
-            "--gait {name}: unknown gait; allowed values: {}{}",
-            names.join(", "),
-            format_suggestion(name, names)
-        ))
+        unknown_gait_failure(&problem, name, moving_gaits)
     })
 }
 
@@ -147,16 +143,16 @@ fn check_name(robot: &Robot, name: &str) -> Result<(), Failure> {
 /// Finds the best gait of all kinds; `None` if this process computed only a part of the search. Each kind is a
 /// separate piece of the search; the trials of a round are distributed over all cores.
 fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure> {
-    let rounds = args.rounds as usize;
+    let round_count = args.rounds as usize;
     let kind_count = args.spread.count_own_pieces(GaitKind::ALL.len());
     let bar = create_progress_bar(
-        kind_count * trial_count(rounds),
+        kind_count * trial_count(round_count),
         "{bar:40} {pos}/{len} gaits, {eta}",
     );
     let search_kind = |index: usize| -> Vec<(f64, Vec<f64>)> {
         let kind = GaitKind::ALL[index];
         let mut search = tuning.start_search(kind);
-        for _ in 0..=rounds {
+        for _ in 0..=round_count {
             let trial_scores = search.trials().par_iter().map(|parameters| {
                 bar.inc(1);
                 tuning.score(kind, parameters)
@@ -208,17 +204,17 @@ mod tests {
 
     fn run_tune(arguments: &str) -> Result<Comparison, String> {
         let robot = Robot::parse(PAPER_TOML).expect("paper.toml is valid");
-        let line = CommandLine::try_parse_from(
+        let command_line = CommandLine::try_parse_from(
             std::iter::once("tune").chain(arguments.split_whitespace()),
         );
-        let args = line.map_err(|error| error.to_string())?.args;
+        let args = command_line.map_err(|error| error.to_string())?.args;
         let comparison = tune(&robot, &args).map_err(|failure| failure.to_string())?;
         Ok(comparison.expect("one process computes all parts"))
     }
 
     /// Checks the output of `lizard tune --rounds 1 --robot robots/paper.toml` in docs/twin.md.
     #[test]
-    fn short_search_beats_walk_at_the_same_rate_and_matches_the_docs() {
+    fn a_short_search_beats_walk_at_the_same_rate_and_matches_the_docs() {
         let comparison = run_tune("--rounds 1").expect("the search finds a gait");
         let (walk, tuned) = (&comparison.gait, &comparison.tuned);
         assert!(tuned.rate <= walk.rate, "{tuned:?}");
@@ -248,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn reports_why_an_argument_is_invalid() {
+    fn the_error_for_an_invalid_argument_states_the_reason() {
         for (arguments, reason) in [
             (
                 "--gait run",

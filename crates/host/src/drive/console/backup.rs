@@ -21,7 +21,7 @@ pub struct BackupArgs {
     /// The file to write; an existing file is replaced
     file: PathBuf,
     #[command(flatten)]
-    connect: ConnectionArgs,
+    connection: ConnectionArgs,
 }
 
 /// Send a calibration from a file to the robot, and save it in the board
@@ -33,7 +33,7 @@ pub struct RestoreArgs {
     /// A file that `lizard calibrate backup` wrote
     file: PathBuf,
     #[command(flatten)]
-    connect: ConnectionArgs,
+    connection: ConnectionArgs,
 }
 
 /// Runs `lizard calibrate backup`.
@@ -41,7 +41,7 @@ pub struct RestoreArgs {
 /// # Errors
 /// Fails if there is no board, the board does not answer, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
-    let finder = args.connect.into_finder("calibrate backup FILE")?;
+    let finder = args.connection.into_finder("calibrate backup FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     let calibration = block_on(read_settings(&mut board.link))
         .map_err(|error| board.to_failure(&error.into()))?;
@@ -62,7 +62,7 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let text = files::read_text(&args.file)?;
     let calibration = Calibration::parse(&text, &args.file.display().to_string())
         .map_err(|error| Failure::Input(error.to_string()))?;
-    let finder = args.connect.into_finder("calibrate restore FILE")?;
+    let finder = args.connection.into_finder("calibrate restore FILE")?;
     let (mut board, _) = finder.open_and_greet()?;
     send_calibration(&calibration, &mut board.link)
         .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
@@ -93,11 +93,11 @@ pub fn send_calibration<P: Read + Write>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{connect_paper_robot, read_calibration};
+    use super::super::test_double::{connect_paper_robot, read_calibration};
     use super::*;
 
     #[test]
-    fn restored_backup_is_active_after_load() {
+    fn a_restored_backup_is_active_after_load() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
         link.command("boot walk").expect("the line is accepted");
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn refused_calibration_changes_and_saves_nothing() {
+    fn a_refused_calibration_changes_and_saves_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
         let before = read_calibration(&mut link);

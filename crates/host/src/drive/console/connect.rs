@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use serialport::SerialPort;
 
-use super::find;
 use super::link::{Link, LinkError, Timeouts};
 use super::port;
-use crate::shared::plain::escape_controls;
+use super::usb_ports;
+use crate::shared::escape::escape_controls;
 use crate::{Failure, RobotFile};
 
 /// The arguments that select the board to connect to.
@@ -115,7 +115,7 @@ impl BoardFinder {
             }
             Some(port) => (port.clone(), port.clone()),
             None => {
-                let port = find::choose_port(&find::list_usb_ports(), self.command)
+                let port = usb_ports::choose(&usb_ports::list(), self.command)
                     .map_err(|error| Failure::Impossible(error.to_string()))?;
                 // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))

@@ -25,7 +25,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    connect: ConnectionArgs,
+    connection: ConnectionArgs,
 }
 
 /// A board's answers; the field names are the JSON keys.
@@ -71,11 +71,11 @@ impl From<Calibration> for CalibrationInfo {
 /// # Errors
 /// Fails if there is no board, or if the board does not answer like a lizard.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let finder = args.connect.into_finder("info")?;
+    let finder = args.connection.into_finder("info")?;
     let (mut board, banner) = finder.open_and_greet()?;
     let result = BoardInfo::read(board.name.clone(), banner.as_deref(), &mut board.link);
-    let answers = result.map_err(|error| board.to_failure(&error))?;
-    json::print_json_or_text(args.json, &answers, || answers.to_text())
+    let info = result.map_err(|error| board.to_failure(&error))?;
+    json::print_json_or_text(args.json, &info, || info.to_text())
 }
 
 impl BoardInfo {
@@ -172,12 +172,12 @@ fn read_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError>
     let answer = link.command("status")?.answer;
     Status::parse(&answer).ok_or_else(|| {
         let line = "status".to_owned();
-        BadReply::Unclear { line, answer }.into()
+        BadReply::UnknownFormat { line, answer }.into()
     })
 }
 
-/// Parses the firmware's version and the robot in a banner; only the version for an old firmware with a compiled-in
-/// robot.
+/// Parses the firmware's version and the robot in a banner; the robot is `None` for older firmware, into which it was
+/// compiled.
 pub(in crate::drive) fn parse_firmware_and_robot(
     line: &str,
 ) -> (Option<String>, Option<RobotIdentity>) {
@@ -193,11 +193,11 @@ pub(in crate::drive) fn parse_firmware_and_robot(
 
 #[cfg(test)]
 mod tests {
-    use super::super::double::{PAPER_TOML, connect_paper_robot, read_calibration};
+    use super::super::test_double::{PAPER_TOML, connect_paper_robot, read_calibration};
     use super::*;
 
     #[test]
-    fn report_shows_the_board_and_changes_nothing() {
+    fn the_report_shows_the_board_and_changes_nothing() {
         let mut link = connect_paper_robot();
         link.command("trim 3 -4.25").expect("the line is accepted");
         let before = read_calibration(&mut link);
@@ -222,9 +222,9 @@ mod tests {
     }
 
     #[test]
-    fn banner_of_an_old_firmware_has_a_version_and_no_robot() {
-        let old = parse_firmware_and_robot("# lizard 0.1.0, send help for the commands");
-        assert_eq!(old, (Some("0.1.0".to_owned()), None));
+    fn the_banner_of_old_firmware_has_a_version_and_no_robot() {
+        let old_banner = parse_firmware_and_robot("# lizard 0.1.0, send help for the commands");
+        assert_eq!(old_banner, (Some("0.1.0".to_owned()), None));
         assert_eq!(parse_firmware_and_robot("hello"), (None, None));
     }
 }

@@ -36,7 +36,7 @@ pub struct ConsoleArgs {
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
-    connect: ConnectionArgs,
+    connection: ConnectionArgs,
 }
 
 type FileRecorder = Recorder<BufWriter<File>>;
@@ -55,7 +55,7 @@ pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
     if let Some(file) = args.record.as_ref().filter(|file| file.exists()) {
         recorder::create(file)?;
     }
-    run_dialogue(&args.connect.into_finder("console")?, args.record)
+    run_dialogue(&args.connection.into_finder("console")?, args.record)
 }
 
 fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {

@@ -281,14 +281,14 @@ mod tests {
     use super::*;
 
     /// A port with scripted output: each write releases the next piece, and at `None` the port vanishes.
-    struct Script {
+    struct ScriptedPort {
         pieces: VecDeque<Option<&'static str>>,
         ready_bytes: VecDeque<u8>,
         is_gone: bool,
         sent_text: String,
     }
 
-    impl Script {
+    impl ScriptedPort {
         fn connect(pieces: &[Option<&'static str>]) -> Link<Self> {
             let mut script = Self {
                 pieces: pieces.iter().copied().collect(),
@@ -314,7 +314,7 @@ mod tests {
         }
     }
 
-    impl Read for Script {
+    impl Read for ScriptedPort {
         fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
             if self.ready_bytes.is_empty() {
                 if self.is_gone {
@@ -328,7 +328,7 @@ mod tests {
         }
     }
 
-    impl Write for Script {
+    impl Write for ScriptedPort {
         fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
             self.sent_text.push_str(&String::from_utf8_lossy(bytes));
             self.release_piece();
@@ -343,11 +343,11 @@ mod tests {
     const BANNER_LINE: &str = "# lizard 0.2.0 robot paper 1a2b3c4d, send help for the commands\r\n";
 
     #[test]
-    fn finds_a_banner_directly_after_a_partial_line() {
+    fn a_banner_directly_after_a_partial_line_is_found() {
         for cut_line in ["", "ok wal", "# t=12 pose=138.5", "\u{fffd}x"] {
             let bytes = format!("{cut_line}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
-            let mut link = Script::connect(&[Some(bytes)]);
+            let mut link = ScriptedPort::connect(&[Some(bytes)]);
             let banner = link.greet().expect("the robot greets");
             assert_eq!(
                 banner.as_deref(),
@@ -358,8 +358,8 @@ mod tests {
     }
 
     #[test]
-    fn finds_the_banner_after_noise() {
-        let mut link = Script::connect(&[Some(
+    fn a_banner_after_noise_is_found() {
+        let mut link = ScriptedPort::connect(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
         let banner = link.greet().expect("the device is a lizard");
@@ -367,17 +367,17 @@ mod tests {
     }
 
     #[test]
-    fn recognizes_a_board_without_reset_by_its_status() {
+    fn a_board_that_was_not_reset_is_recognized_by_its_status() {
         let mut link =
-            Script::connect(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
+            ScriptedPort::connect(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
         assert_eq!(link.greet().expect("the device is a lizard"), None);
         assert_eq!(link.port.sent_text, "status\n");
     }
 
     #[test]
-    fn error_quotes_another_device_or_reports_silence() {
+    fn the_error_quotes_another_device_or_reports_silence() {
         let greet_error = |pieces: &[Option<&'static str>]| {
-            let error = Script::connect(pieces)
+            let error = ScriptedPort::connect(pieces)
                 .greet()
                 .expect_err("the device must be refused");
             error.to_string()
@@ -392,8 +392,8 @@ mod tests {
     }
 
     #[test]
-    fn answer_is_the_first_line_that_is_not_a_note() {
-        let mut link = Script::connect(&[
+    fn the_answer_is_the_first_line_that_is_not_a_note() {
+        let mut link = ScriptedPort::connect(&[
             Some(BANNER_LINE),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
         ]);
@@ -404,9 +404,9 @@ mod tests {
     }
 
     #[test]
-    fn refusal_names_the_line_and_the_reason() {
+    fn the_refusal_names_the_line_and_the_reason() {
         let mut link =
-            Script::connect(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
+            ScriptedPort::connect(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
         link.greet().expect("the device is a lizard");
         let error = link
             .command("trim 1 50")
@@ -419,15 +419,15 @@ mod tests {
 
     #[test]
     fn silence_and_a_vanished_port_are_different_errors() {
-        let mut link = Script::connect(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
+        let mut link = ScriptedPort::connect(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
         link.greet().expect("the device is a lizard");
         assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }
 
     #[test]
-    fn endless_line_is_truncated_and_control_characters_are_replaced() {
-        let mut link = Script::connect(&[]);
+    fn an_endless_line_is_truncated_and_control_characters_are_replaced() {
+        let mut link = ScriptedPort::connect(&[]);
         for _ in 0..2000 {
             link.push_byte(b'a');
         }

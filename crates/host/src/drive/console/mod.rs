@@ -8,9 +8,6 @@ pub mod calibrate;
 pub mod connect;
 mod deadman;
 mod dialogue_error;
-#[cfg(test)]
-pub mod double;
-pub mod find;
 mod history;
 pub mod info;
 pub mod interactive;
@@ -23,3 +20,6 @@ pub mod replay;
 mod screen;
 pub mod session;
 mod terminal;
+#[cfg(test)]
+pub mod test_double;
+pub mod usb_ports;

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use serialport::{ErrorKind, SerialPort};
 
-use super::find;
+use super::usb_ports;
 
 /// The console's baud rate.
 pub const BAUD_RATE: u32 = 115_200;
@@ -107,7 +107,7 @@ pub(in crate::drive) fn may_open(_: &str) -> bool {
 }
 
 fn missing_port_error(name: &str) -> PortError {
-    let ports = find::list_usb_ports();
+    let ports = usb_ports::list();
     let ports: Vec<String> = ports.iter().map(ToString::to_string).collect();
     PortError::Missing {
         name: name.to_owned(),
@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_port_and_ordinary_file_have_different_errors() {
+    fn a_missing_port_and_an_ordinary_file_have_different_errors() {
         let message = open_error("/dev/no-such-port").to_string();
         assert!(message.starts_with("/dev/no-such-port does not exist; USB serial ports"));
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
@@ -179,16 +179,22 @@ mod tests {
         assert_eq!(crate::Failure::from(open_error(&name)).exit_code(), 2);
     }
 
+    /// Starts a program that has `file` open for some seconds.
+    #[cfg(target_os = "linux")]
+    fn hold_open(file: &tempfile::NamedTempFile, seconds: &str) -> std::process::Child {
+        std::process::Command::new("sleep")
+            .arg(seconds)
+            .stdin(file.reopen().expect("the file can be reopened"))
+            .spawn()
+            .expect("`sleep` starts")
+    }
+
     #[cfg(target_os = "linux")]
     #[test]
     fn open_waits_for_a_program_that_is_about_to_close_the_port() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
-        let mut process = std::process::Command::new("sleep")
-            .arg("0.1")
-            .stdin(file.reopen().expect("the file can be reopened"))
-            .spawn()
-            .expect("`sleep` starts");
+        let mut process = hold_open(&file, "0.1");
         let message = open_error(&name).to_string();
         TIME_LIMIT
             .wait_for_exit(&mut process)
@@ -198,14 +204,10 @@ mod tests {
 
     #[cfg(target_os = "linux")]
     #[test]
-    fn error_names_the_program_that_has_the_port_open() {
+    fn the_error_names_the_program_that_has_the_port_open() {
         let file = tempfile::NamedTempFile::new().expect("a temporary file can be created");
         let name = file.path().display().to_string();
-        let mut process = std::process::Command::new("sleep")
-            .arg("60")
-            .stdin(file.reopen().expect("the file can be reopened"))
-            .spawn()
-            .expect("`sleep` starts");
+        let mut process = hold_open(&file, "60");
         let message = open_error(&name).to_string();
         process.kill().expect("the process can be killed");
         TIME_LIMIT

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn line_can_be_edited_in_its_middle() {
+    fn a_line_can_be_edited_in_its_middle() {
         let mut prompt = Prompt::default();
         for c in "wal 5".chars() {
             press(&mut prompt, KeyCode::Char(c));
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn long_line_scrolls_with_its_cursor() {
+    fn a_long_line_scrolls_with_its_cursor() {
         let mut prompt = Prompt::default();
         prompt.paste("0123456789");
         let (shown, cursor) = prompt.view(6);

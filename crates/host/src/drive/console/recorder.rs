@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 #[cfg(feature = "simulator")]
-use crate::shared::plain::escape_controls;
+use crate::shared::escape::escape_controls;
 use crate::shared::{files, json};
 
 /// The value of `format` in the first line. The number increases when a key changes its meaning.
@@ -18,7 +18,7 @@ pub const FORMAT: &str = "lizard record 1";
 
 /// A line in the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct TimedEvent {
     /// Milliseconds since the session began.
     pub ms: u64,
     /// The event at that time.
@@ -95,7 +95,7 @@ impl<W: Write> Recorder<W> {
     pub fn write(&mut self, now: Instant, event: Event) -> Result<(), Failure> {
         let ms = now.saturating_duration_since(self.start).as_millis() as u64;
         let is_pose = matches!(event, Event::Pose { .. });
-        json::write_line(&mut self.out, &Entry { ms, event })
+        json::write_line(&mut self.out, &TimedEvent { ms, event })
             .map_err(|error| self.write_failure(&error))?;
         if is_pose { Ok(()) } else { self.flush() }
     }
@@ -185,8 +185,8 @@ mod tests {
         let read_events: Vec<Event> = text
             .lines()
             .map(|line| {
-                serde_json::from_str::<Entry>(line)
-                    .expect("the line is an entry")
+                serde_json::from_str::<TimedEvent>(line)
+                    .expect("the line is an event")
                     .event
             })
             .collect();
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn write_error_names_the_file() {
+    fn a_write_error_names_the_file() {
         let small_buffer: &mut [u8] = &mut [0; 10];
         let mut recorder = Recorder::new("a.jsonl".to_owned(), small_buffer, Instant::now());
         let event = Event::Sent("walk".to_owned());

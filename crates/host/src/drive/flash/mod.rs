@@ -3,7 +3,7 @@
 //! [`lizard_upload`] writes the pages in an order in which a pulled cable is never dangerous; this module chooses the
 //! port, builds the image and reports to the user.
 
-pub mod file;
+pub mod image_source;
 mod serial_board;
 
 use std::io::{self, Write};
@@ -17,10 +17,10 @@ use lizard_upload::{
 use pollster::block_on;
 use serde::Serialize;
 
-use crate::drive::console::find::{self, FindError, UsbPort};
 use crate::drive::console::info;
 use crate::drive::console::link::{self, Link};
 use crate::drive::console::port::BAUD_RATE;
+use crate::drive::console::usb_ports::{self, ChoiceError, UsbPort};
 use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
 use crate::{Failure, RobotFile};
@@ -74,11 +74,11 @@ struct FlashReport {
 /// afterwards. After a failed upload, the message describes the contents of the flash.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
-        Some(path) => file::read_hex_image(path)?,
-        None if args.only_robot => file::build_robot_image(&args.robot.load()?)?,
-        None => file::build_image(&args.robot.load()?)?,
+        Some(path) => image_source::read_hex_image(path)?,
+        None if args.only_robot => image_source::build_robot_image(&args.robot.load()?)?,
+        None => image_source::build_image(&args.robot.load()?)?,
     };
-    let ports = find::list_usb_ports();
+    let ports = usb_ports::list();
     let (port, board_name) = match args.port {
         Some(port) => (port.clone(), port),
         None => {
@@ -113,10 +113,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
 
 /// Chooses the port of the board to write.
 fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
-    find::choose_port(ports, "flash").map_err(|error| {
+    usb_ports::choose(ports, "flash").map_err(|error| {
         Failure::Impossible(match error {
             // The usual message suggests a simulated board; `flash` needs a real one.
-            FindError::NoPort { .. } => "no board found: this machine has no USB serial port. \
+            ChoiceError::NoPort { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO with a cable that carries data (some only charge), or name its \
                  port: lizard flash /dev/ttyACM0"
                 .to_owned(),
@@ -153,9 +153,9 @@ fn write_image(
         Event::Found(found_board) => bar.suspend(|| print_line(&found_board.to_string())),
         Event::Retry {
             error,
-            called_kind,
+            tried_kind,
             next_kind,
-        } => bar.suspend(|| match (called_kind.baud(), next_kind.baud()) {
+        } => bar.suspend(|| match (tried_kind.baud(), next_kind.baud()) {
             (old_baud, new_baud) if old_baud != new_baud => {
                 eprintln!("lizard: no answer at {old_baud} baud; retrying at {new_baud} baud");
             }
@@ -218,7 +218,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn summary_counts_bytes() {
+    fn the_summary_counts_bytes() {
         let summarize = |written, kept| {
             let duration = Duration::from_millis(1240);
             format_summary(PageCounts { written, kept }, duration)
@@ -233,14 +233,17 @@ mod tests {
         );
     }
 
-    #[test]
-    fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
-        let port = |name: &str, vendor_id| UsbPort {
+    fn port(name: &str, vendor_id: u16) -> UsbPort {
+        UsbPort {
             name: name.to_owned(),
             vendor_id,
             product_id: 0x43,
             product_name: None,
-        };
+        }
+    }
+
+    #[test]
+    fn only_a_board_without_arduinos_usb_chip_may_be_a_nano() {
         let ports = [port("/dev/ttyACM7", 0x2341), port("/dev/ttyUSB7", 0x1a86)];
         assert!(!may_be_nano(&ports, "/dev/ttyACM7"));
         assert!(may_be_nano(&ports, "/dev/ttyUSB7"));
@@ -248,21 +251,15 @@ mod tests {
     }
 
     #[test]
-    fn choice_without_exactly_one_board_names_the_remedy() {
+    fn a_choice_without_exactly_one_board_names_the_remedy() {
         let choice_error = |ports: &[UsbPort]| {
             let error =
                 choose_port(ports).expect_err("the choice must fail unless there is one port");
             error.to_string()
         };
         assert!(choice_error(&[]).ends_with("lizard flash /dev/ttyACM0"));
-        let port = |name: &str| UsbPort {
-            name: name.to_owned(),
-            vendor_id: 0x2341,
-            product_id: 0x43,
-            product_name: None,
-        };
         assert_eq!(
-            choice_error(&[port("COM3"), port("COM4")]),
+            choice_error(&[port("COM3", 0x2341), port("COM4", 0x2341)]),
             "several boards found: COM3, COM4. Select one: lizard flash COM3"
         );
     }

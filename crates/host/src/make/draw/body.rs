@@ -7,7 +7,7 @@ use lizard_kinematics::Vector;
 use lizard_robot::{LegPoints, Plate};
 use svg::node::element::{Circle, Group, Line};
 
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, SERVO_COLOURS, add_outline, circle, line, rectangle, round_hundredths,
 };
 
@@ -18,7 +18,7 @@ const STRUT_COLOUR: &str = "#6b6b6b";
 /// Radius of a foot, mm.
 const FOOT_RADIUS_MM: f64 = 6.5;
 /// Width of the plate's drawn edge, mm.
-const RIM_WIDTH_MM: f64 = 0.6;
+const EDGE_WIDTH_MM: f64 = 0.6;
 
 /// The page of the drawing, and the robot's position on the page.
 pub struct Sheet<Projection> {
@@ -27,7 +27,7 @@ pub struct Sheet<Projection> {
     /// Scale of the drawing.
     pub pixels_per_mm: f64,
     /// The robot's rotation on the page, deg counter-clockwise.
-    pub turn_deg: f64,
+    pub rotation_deg: f64,
 }
 
 impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
@@ -72,13 +72,13 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
             fill,
         )
         .set("rx", round_hundredths(corner_radius * self.pixels_per_mm));
-        let turn = round_hundredths(-self.turn_deg);
-        match turn == 0.0 {
+        let svg_rotation_deg = round_hundredths(-self.rotation_deg);
+        match svg_rotation_deg == 0.0 {
             true => Group::new().add(shape),
             false => Group::new().add(shape.set(
                 "transform",
                 format!(
-                    "rotate({turn} {} {})",
+                    "rotate({svg_rotation_deg} {} {})",
                     round_hundredths(x),
                     round_hundredths(y)
                 ),
@@ -106,8 +106,8 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
     /// Adds the plate and its servos to `group`.
     pub fn draw_plate(&self, mut group: Group, plate: &Plate) -> Group {
         let centre = Vector::default();
-        let add_margin = |margin: f64| plate.half_size + Vector::new(margin, margin);
-        for (margin, colour) in [(RIM_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
+        let half_size_with = |margin: f64| plate.half_size + Vector::new(margin, margin);
+        for (margin, colour) in [(EDGE_WIDTH_MM, EDGE_COLOUR), (0.0, PLATE_COLOUR)] {
             for [start, end] in plate.arms.as_flattened() {
                 group = group.add(self.draw_bar(
                     *start,
@@ -118,7 +118,7 @@ impl<Projection: Fn(Vector) -> (f64, f64)> Sheet<Projection> {
             }
             group = group.add(self.draw_rectangle(
                 centre,
-                add_margin(margin),
+                half_size_with(margin),
                 plate.corner_radius + margin,
                 colour,
             ));

@@ -4,24 +4,23 @@ use lizard_kinematics::{Vector, sin_cos};
 use lizard_robot::servo::SERVO_NAMES;
 use svg::node::element::Group;
 
-use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, View};
-use crate::shared::ink::{
+use super::top_view::{LABEL_GAP_MM, PAGE_SIZE, Point, SKIN_REACH_MM, TopView};
+use crate::shared::shapes::{
     Anchor, DARK, GREY, SERVO_COLOURS, line, pin_name, text, text_middle, text_start,
 };
 
 /// Distance of the servos' names from the middle of the page, horizontally and vertically, pixels.
 const SERVO_NAME_DISTANCE: f64 = 347.0;
 
-impl View<'_> {
+impl TopView<'_> {
     /// Adds to `group` the labels of servos and parts, with angles and dimensions, the axes and the scale bar.
     pub(super) fn draw_labels(&self, mut group: Group) -> Group {
         let angles = self.angles();
         for servo in 0..4 {
             let shaft = self.shafts()[servo];
-            let is_left = matches!(servo, 0 | 3);
-            let side = if is_left { -1.0 } else { 1.0 };
+            let side = if matches!(servo, 0 | 3) { -1.0 } else { 1.0 };
             let sign = shaft.y.signum();
-            let anchor = if is_left { Anchor::End } else { Anchor::Start };
+            let anchor = outward_anchor(side);
             let (x, y) = (
                 PAGE_SIZE.0 / 2.0 + side * SERVO_NAME_DISTANCE,
                 PAGE_SIZE.1 / 2.0 - sign * SERVO_NAME_DISTANCE,
@@ -54,9 +53,8 @@ impl View<'_> {
         let solution = self.solution;
         let head = solution.head_point();
         let tail = solution.tail_point();
-        let format_point = |name: &str, position: Point| {
-            format!("{name} ({:.1}, {:.1}) mm", position.x, position.y)
-        };
+        let format_point =
+            |name: &str, point: Point| format!("{name} ({:.1}, {:.1}) mm", point.x, point.y);
         let (x, y) = self.to_page_point(
             head + Vector::new(0.0, SKIN_REACH_MM * self.size_ratio() + LABEL_GAP_MM),
         );
@@ -64,11 +62,7 @@ impl View<'_> {
         let (x, y) = self.to_page_point(tail + Vector::new(0.0, -26.0 * self.size_ratio() - 8.0));
         group = group.add(text_middle(&format_point("tail", tail), (x, y), 18.0));
         for (side, slider) in [(-1.0, solution.left), (1.0, solution.right)] {
-            let anchor = if side < 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
-            };
+            let anchor = outward_anchor(side);
             let (x, y) = self.to_page_point(Vector::new(side * 50.0 * self.size_ratio(), 0.0));
             let travel_text = if slider.s.abs() < 0.05 {
                 "s = 0.0 mm".to_owned()
@@ -82,11 +76,6 @@ impl View<'_> {
         for servo in 0..4 {
             let foot = self.foot(servo);
             let side = foot.x.signum();
-            let anchor = if side < 0.0 {
-                Anchor::End
-            } else {
-                Anchor::Start
-            };
             let (x, y) = self.to_page_point(foot + Vector::new(side * 24.0, -2.0));
             let name = [
                 "front left foot",
@@ -94,9 +83,17 @@ impl View<'_> {
                 "back right foot",
                 "back left foot",
             ][servo];
-            group = group.add(text(name, (x, y), 17.0, GREY, anchor));
+            group = group.add(text(name, (x, y), 17.0, GREY, outward_anchor(side)));
         }
         group
+    }
+}
+
+/// Returns the anchor of a text that leads away from the robot; `side` is -1 on the left and 1 on the right.
+fn outward_anchor(side: f64) -> Anchor {
+    match side < 0.0 {
+        true => Anchor::End,
+        false => Anchor::Start,
     }
 }
 
@@ -106,8 +103,8 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
     for (degrees, name) in [(0.0, "x, right"), (90.0, "y, forward")] {
         let (sin, cos) = sin_cos(degrees);
         let tip = (origin.0 + 62.0 * cos, origin.1 - 62.0 * sin);
-        let barb = |turn: f64| {
-            let (sin, cos) = sin_cos(degrees + turn);
+        let barb_end = |lean_deg: f64| {
+            let (sin, cos) = sin_cos(degrees + lean_deg);
             (tip.0 + 11.0 * cos, tip.1 - 11.0 * sin)
         };
         let name_point = if degrees == 0.0 {
@@ -117,8 +114,8 @@ fn draw_axes_and_scale_bar(mut group: Group, scale: f64) -> Group {
         };
         group = group
             .add(line(origin, tip, DARK, 2.0))
-            .add(line(tip, barb(155.0), DARK, 2.0))
-            .add(line(tip, barb(-155.0), DARK, 2.0))
+            .add(line(tip, barb_end(155.0), DARK, 2.0))
+            .add(line(tip, barb_end(-155.0), DARK, 2.0))
             .add(text_start(name, name_point, 16.0));
     }
     let end = (PAGE_SIZE.0 - 60.0, PAGE_SIZE.1 - 48.0);

@@ -1,7 +1,7 @@
 //! `lizard draw`: draws the robot from above, its wiring, and the angles of its cranks.
 
 pub mod body;
-mod horns;
+mod cranks;
 mod labels;
 mod route;
 mod top_view;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use crate::shared::files;
 use crate::{Failure, PoseArgs, RobotFile};
 
-pub use horns::draw_horns;
+pub use cranks::draw_cranks;
 pub use top_view::draw_top_view;
 pub use wiring::draw_wiring;
 
@@ -33,7 +33,7 @@ pub struct Args {
     /// Draw the wiring: servos, supply, board
     #[arg(long, conflicts_with_all = ["plain", "theta1", "horns"])]
     wiring: bool,
-    /// Draw the angles for fitting the cranks, and the effect of a trim
+    /// Draw the angles at which the cranks are fitted, and the effect of a trim
     #[arg(long, conflicts_with_all = ["plain", "theta1"])]
     horns: bool,
     #[command(flatten)]
@@ -45,7 +45,7 @@ pub struct Args {
 /// Draws the robot.
 ///
 /// # Errors
-/// Fails for an impossible pose, or a file that cannot be written.
+/// Fails if robot.toml is invalid, if the pose is impossible, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     if args.output.is_none() && io::stdout().is_terminal() {
         return Err(Failure::Input(
@@ -57,7 +57,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let picture = if args.wiring {
         draw_wiring(&robot)
     } else if args.horns {
-        draw_horns(&robot)
+        draw_cranks(&robot)
     } else {
         let pose = args.pose.to_pose().unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose)?;

@@ -19,14 +19,14 @@ pub fn route_between_rows(
     let leads_right = |wire: usize| ends[wire].0 > starts[wire].0;
     (0..starts.len())
         .map(|wire| {
-            let ahead_count = if leads_right(wire) {
-                (wire + 1..starts.len())
-                    .filter(|ahead| leads_right(*ahead))
-                    .count()
-            } else {
-                (0..wire).filter(|ahead| !leads_right(*ahead)).count()
+            // The wires on the side to which this wire leads; those that also lead there turn first.
+            let outer_wires = match leads_right(wire) {
+                true => wire + 1..starts.len(),
+                false => 0..wire,
             };
-            let turn_y = first_turn_y + WIRE_SPACING * ahead_count as f64;
+            let is_same_side = |outer_wire: &usize| leads_right(*outer_wire) == leads_right(wire);
+            let outer_count = outer_wires.filter(is_same_side).count();
+            let turn_y = first_turn_y + WIRE_SPACING * outer_count as f64;
             vec![
                 starts[wire],
                 (starts[wire].0, turn_y),

@@ -5,7 +5,7 @@ use lizard_robot::{LegPoints, Robot};
 use svg::node::element::{Group, Path};
 
 use super::body::Sheet;
-use crate::shared::ink::{DARK, SERVO_COLOURS, add_outline, circle, render_svg};
+use crate::shared::shapes::{DARK, SERVO_COLOURS, add_outline, circle, render_svg};
 
 /// Width and height of the page, pixels.
 pub(super) const PAGE_SIZE: (f64, f64) = (1000.0, 1110.0);
@@ -28,7 +28,7 @@ pub(super) type Point = Vector;
 
 /// Draws the robot at a solved pose, as SVG text; with names, angles and dimensions if `has_labels` is true.
 pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> String {
-    let view = View::new(robot, solution);
+    let view = TopView::new(robot, solution);
     let mut group = view.draw_skin(Group::new());
     let (legs, sheet) = (view.legs(), view.sheet());
     group = sheet.draw_feet(group, &legs, [DARK; 4]);
@@ -48,14 +48,14 @@ pub fn draw_top_view(robot: &Robot, solution: &Solution, has_labels: bool) -> St
 }
 
 /// A robot at a solved pose, and the drawing's scale.
-pub(super) struct View<'a> {
+pub(super) struct TopView<'a> {
     pub(super) robot: &'a Robot,
     pub(super) solution: &'a Solution,
     /// Scale of the drawing.
     pub(super) pixels_per_mm: f64,
 }
 
-impl<'a> View<'a> {
+impl<'a> TopView<'a> {
     fn new(robot: &'a Robot, solution: &'a Solution) -> Self {
         let view = Self {
             robot,
@@ -96,7 +96,7 @@ impl<'a> View<'a> {
         Sheet {
             project: |point| self.to_page_point(point),
             pixels_per_mm: self.pixels_per_mm,
-            turn_deg: 0.0,
+            rotation_deg: 0.0,
         }
     }
 
@@ -268,11 +268,11 @@ mod tests {
     use lizard_kinematics::{Pose, wrap};
 
     /// Passes the paper's robot at `pose` to `check_view`; `None` is the neutral pose.
-    fn with_view(pose: Option<Pose>, check_view: impl Fn(&View)) {
+    fn with_view(pose: Option<Pose>, check_view: impl Fn(&TopView)) {
         let robot = built_in_robot("paper");
         let pose = pose.unwrap_or_else(|| robot.neutral_pose());
         let solution = robot.lizard().solve(&pose).expect("the pose closes");
-        check_view(&View::new(&robot, &solution));
+        check_view(&TopView::new(&robot, &solution));
     }
 
     /// A pose without symmetry.
@@ -299,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn feet_are_beside_the_hips_at_neutral() {
+    fn the_feet_are_beside_the_hips_at_neutral() {
         with_view(None, |view| {
             let feet: Vec<(f64, f64)> = (0..4)
                 .map(|servo| view.foot(servo))
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn forward_turn_moves_the_foot_forward() {
+    fn a_forward_turn_moves_the_foot_forward() {
         use lizard_robot::servo::FORWARD_TURN_SIGN;
         with_view(None, |view| {
             for servo in 0..4 {
@@ -328,13 +328,13 @@ mod tests {
     }
 
     #[test]
-    fn large_robot_fits_the_page() {
+    fn a_large_robot_fits_the_page() {
         let robot = built_in_robot("large");
         let solution = robot
             .lizard()
             .solve(&robot.neutral_pose())
             .expect("the neutral pose closes");
-        let view = View::new(&robot, &solution);
+        let view = TopView::new(&robot, &solution);
         let mut joints = view
             .legs()
             .iter()

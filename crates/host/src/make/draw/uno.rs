@@ -2,10 +2,9 @@
 
 use svg::node::element::{Group, Text};
 
-use crate::shared::ink::pin_name;
-use crate::shared::ink::{
-    Anchor, DARK, GREY, PANEL_COLOUR, add_outline, circle, rectangle, round_hundredths, text,
-    text_middle, text_start,
+use crate::shared::shapes::{
+    Anchor, DARK, GREY, PANEL_COLOUR, add_outline, circle, pin_name, rectangle, round_hundredths,
+    text, text_middle, text_start,
 };
 
 /// Distance between neighbouring pins, a tenth of an inch, in pixels.
@@ -19,13 +18,24 @@ const UPPER_ROW_Y: f64 = 20.0;
 /// Height of the lower row of pins above the board's lower edge, in tenths of an inch.
 const LOWER_ROW_Y: f64 = 1.0;
 
-/// The power header: its first pin's distance from the left edge, tenths of an inch, and the names printed beside its
-/// pins.
-const POWER_HEADER: (f64, [&str; 7]) =
-    (12.0, ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"]);
-/// The pins to the left of D13, including the analogue reference: the first pin's distance from the left edge, tenths
-/// of an inch, and the names printed beside the pins.
-const REFERENCE_HEADER: (f64, [&str; 4]) = (7.4, ["SCL", "SDA", "AREF", "GND"]);
+/// A row of pins.
+struct Header<const N: usize> {
+    /// The first pin's distance from the left edge, tenths of an inch.
+    first_x: f64,
+    /// The names printed beside the pins.
+    names: [&'static str; N],
+}
+
+/// The power header.
+const POWER_HEADER: Header<7> = Header {
+    first_x: 12.0,
+    names: ["IOREF", "RESET", "3.3V", "5V", "GND", "GND", "VIN"],
+};
+/// The pins to the left of D13, including the analogue reference.
+const REFERENCE_HEADER: Header<4> = Header {
+    first_x: 7.4,
+    names: ["SCL", "SDA", "AREF", "GND"],
+};
 
 /// Distance of D13 from the left edge, tenths of an inch; D12 to D8 are counted from D13.
 const D13_X: f64 = 11.4;
@@ -64,7 +74,7 @@ impl Uno {
 
     /// Returns the position of the 5V pin.
     pub fn five_volt_point(&self) -> (f64, f64) {
-        self.to_page_point(POWER_HEADER.0 + 3.0, LOWER_ROW_Y)
+        self.to_page_point(POWER_HEADER.first_x + 3.0, LOWER_ROW_Y)
     }
 
     /// Draws the board and emphasizes the pins in `used_pins`.
@@ -84,8 +94,8 @@ impl Uno {
                 .add(hole)
                 .add(self.draw_label(self.pin_point(number), &name, is_used));
         }
-        for (index, name) in REFERENCE_HEADER.1.iter().enumerate() {
-            let point = self.to_page_point(REFERENCE_HEADER.0 + index as f64, UPPER_ROW_Y);
+        for (index, name) in REFERENCE_HEADER.names.iter().enumerate() {
+            let point = self.to_page_point(REFERENCE_HEADER.first_x + index as f64, UPPER_ROW_Y);
             let is_used = point == self.ground_point();
             let mut hole = draw_hole(point, is_used);
             if is_used {
@@ -93,8 +103,8 @@ impl Uno {
             }
             group = group.add(hole).add(self.draw_label(point, name, is_used));
         }
-        for (index, name) in POWER_HEADER.1.iter().enumerate() {
-            let point = self.to_page_point(POWER_HEADER.0 + index as f64, LOWER_ROW_Y);
+        for (index, name) in POWER_HEADER.names.iter().enumerate() {
+            let point = self.to_page_point(POWER_HEADER.first_x + index as f64, LOWER_ROW_Y);
             group = group
                 .add(draw_hole(point, false))
                 .add(self.draw_label(point, name, false));

@@ -6,7 +6,7 @@ use crate::Failure;
 
 /// The format of a model's file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Format {
+pub(super) enum ModelFormat {
     /// MuJoCo's format.
     Mjcf,
     /// The format of ROS, without closed loops.
@@ -15,7 +15,7 @@ pub(super) enum Format {
     Sdf,
 }
 
-impl Format {
+impl ModelFormat {
     /// Returns the format for a file's extension. A file without an extension, such as /dev/stdout, gets MuJoCo's
     /// format, the only format with a single file.
     ///
@@ -42,21 +42,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn file_extension_determines_the_format() {
+    fn the_file_extension_determines_the_format() {
         for (path, format) in [
-            ("out/a.xml", Format::Mjcf),
-            ("/dev/stdout", Format::Mjcf),
-            ("a.b/robot", Format::Mjcf),
-            ("a.xml.URDF", Format::Urdf),
-            ("a.sdf", Format::Sdf),
+            ("out/a.xml", ModelFormat::Mjcf),
+            ("/dev/stdout", ModelFormat::Mjcf),
+            ("a.b/robot", ModelFormat::Mjcf),
+            ("a.xml.URDF", ModelFormat::Urdf),
+            ("a.sdf", ModelFormat::Sdf),
         ] {
             assert_eq!(
-                Format::from_path(Path::new(path)).expect(path),
+                ModelFormat::from_path(Path::new(path)).expect(path),
                 format,
                 "{path}"
             );
         }
-        let refusal = Format::from_path(Path::new("out/a.urfd"))
+        let refusal = ModelFormat::from_path(Path::new("out/a.urfd"))
             .expect_err("an unknown extension must be refused");
         assert!(refusal.to_string().starts_with("out/a.urfd: "), "{refusal}");
     }

@@ -56,7 +56,7 @@ impl FromStr for FootOffset {
 ///
 /// # Errors
 /// Fails if a foot is given twice.
-pub(super) fn order_by_leg(foot_offsets: &[FootOffset]) -> Result<[f64; 4], Failure> {
+pub(super) fn list_in_servo_order(foot_offsets: &[FootOffset]) -> Result<[f64; 4], Failure> {
     let mut offsets_mm = [None; 4];
     for FootOffset { leg, offset_mm } in foot_offsets {
         if offsets_mm[*leg].replace(*offset_mm).is_some() {
@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn foot_offset_is_parsed_from_leg_and_mm() {
+    fn a_foot_offset_is_parsed_from_leg_and_mm() {
         for (text, leg, offset_mm) in [("LF=0.6", 0, 0.6), ("rh=-5", 2, -5.0)] {
             let foot_offset = text.parse::<FootOffset>().expect(text);
             assert_eq!(foot_offset, FootOffset { leg, offset_mm });
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn invalid_foot_offset_is_refused_with_the_reason() {
+    fn an_invalid_foot_offset_is_refused_with_the_reason() {
         let parse_error = |text: &str| text.parse::<FootOffset>().expect_err(text).to_string();
         assert_eq!(
             parse_error("0.6"),
@@ -101,10 +101,10 @@ mod tests {
     #[test]
     fn foot_offsets_are_in_servo_order_and_unique() {
         let foot_offset = |leg, offset_mm| FootOffset { leg, offset_mm };
-        let offsets_mm = order_by_leg(&[foot_offset(3, 0.5), foot_offset(1, -1.0)])
+        let offsets_mm = list_in_servo_order(&[foot_offset(3, 0.5), foot_offset(1, -1.0)])
             .expect("each foot is given once");
         assert_eq!(offsets_mm, [0.0, -1.0, 0.0, 0.5]);
-        let refusal = order_by_leg(&[foot_offset(0, 0.0), foot_offset(0, 1.0)])
+        let refusal = list_in_servo_order(&[foot_offset(0, 0.0), foot_offset(0, 1.0)])
             .expect_err("a foot that is given twice must be refused");
         assert_eq!(refusal.to_string(), "--long-foot LF is given twice");
     }

@@ -6,12 +6,12 @@ mod long_foot;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use lizard_parts::{Assembly, Course, Pieces, Scene};
+use lizard_parts::{Assembly, Pieces, Scene, Trajectory};
 use lizard_robot::Robot;
 
 use crate::shared::files;
 use crate::{Failure, RobotFile};
-use format::Format;
+use format::ModelFormat;
 use long_foot::FootOffset;
 
 /// Write a model for MuJoCo (.xml), ROS (.urdf) or Gazebo (.sdf): bodies, masses, joints, meshes
@@ -59,10 +59,10 @@ pub struct Args {
 /// Builds the model and writes it.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a robot that cannot be built, an unknown file extension or gait, a firmware that
-/// is missing or contains another robot, or a file that cannot be written.
+/// Fails if robot.toml is invalid, if the robot cannot be built, if the file extension or the gait is unknown, if the
+/// firmware is missing or contains another robot, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
-    let format = Format::from_path(&args.file)?;
+    let format = ModelFormat::from_path(&args.file)?;
     check_options(&args, format)?;
     let robot = args.robot.load()?;
     let assembly = Assembly::new(&robot);
@@ -72,11 +72,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     for (excess, error) in scene
         .excess_lengths
         .iter_mut()
-        .zip(long_foot::order_by_leg(&args.long_foot)?)
+        .zip(long_foot::list_in_servo_order(&args.long_foot)?)
     {
         *excess += error;
     }
-    scene.course = record_drive(&args, &robot)?;
+    scene.trajectory = record_drive(&args, &robot)?;
     let pieces = Pieces::compute(&assembly, &scene)?;
     let folder = mesh_folder_name(&args.file);
     let address = match &args.mesh_address {
@@ -85,17 +85,21 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let address = format!("{address}/");
     let text = match format {
-        Format::Mjcf => pieces.format_mjcf(&neutral, &scene),
-        Format::Urdf => pieces.format_urdf(&neutral, &scene, &address),
-        Format::Sdf => pieces.format_sdf(&neutral, &scene, &address),
+        ModelFormat::Mjcf => pieces.format_mjcf(&neutral, &scene),
+        ModelFormat::Urdf => pieces.format_urdf(&neutral, &scene, &address),
+        ModelFormat::Sdf => pieces.format_sdf(&neutral, &scene, &address),
     };
     // The check comes before the meshes are written, because a later failure would leave meshes without a model.
     files::check_replaceable(&args.file)?;
     let mut summary_suffix = String::new();
-    if let Some(course) = &scene.course {
-        summary_suffix = format!(", and {} frames of `{}`", course.frames.len(), course.gait);
+    if let Some(trajectory) = &scene.trajectory {
+        summary_suffix = format!(
+            ", and {} frames of `{}`",
+            trajectory.frames.len(),
+            trajectory.gait_name
+        );
     }
-    if format != Format::Mjcf {
+    if format != ModelFormat::Mjcf {
         let meshes = pieces.make_meshes(&scene);
         let folder = args.file.with_file_name(folder);
         for mesh in &meshes {
@@ -114,12 +118,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
 }
 
 /// Refuses options that the format cannot use.
-fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
+fn check_options(args: &Args, format: ModelFormat) -> Result<(), Failure> {
     let message = match (format, &args.drive, &args.mesh_address) {
-        (Format::Mjcf, _, Some(_)) => {
+        (ModelFormat::Mjcf, _, Some(_)) => {
             "--mesh-address requires .urdf or .sdf; a MuJoCo file contains the meshes"
         }
-        (Format::Urdf | Format::Sdf, Some(_), _) => {
+        (ModelFormat::Urdf | ModelFormat::Sdf, Some(_), _) => {
             "--drive requires a MuJoCo file (.xml); URDF and SDF have no keyframes"
         }
         _ => return Ok(()),
@@ -127,18 +131,18 @@ fn check_options(args: &Args, format: Format) -> Result<(), Failure> {
     Err(Failure::Input(message.to_owned()))
 }
 
-/// Records the servo angles for `--drive`; `None` without this option.
+/// Records the servo angles for `--drive`; `None` if this option is not given.
 #[cfg(feature = "simulator")]
-fn record_drive(args: &Args, robot: &Robot) -> Result<Option<Course>, Failure> {
+fn record_drive(args: &Args, robot: &Robot) -> Result<Option<Trajectory>, Failure> {
     let gait = args.drive.as_deref();
-    let course = gait.map(|gait| {
-        crate::simulate::course::record_course(robot, &args.robot, gait, args.elf.as_deref())
+    let trajectory = gait.map(|gait| {
+        crate::simulate::trajectory::record(robot, &args.robot, gait, args.elf.as_deref())
     });
-    course.transpose()
+    trajectory.transpose()
 }
 
 #[cfg(not(feature = "simulator"))]
-fn record_drive(args: &Args, _: &Robot) -> Result<Option<Course>, Failure> {
+fn record_drive(args: &Args, _: &Robot) -> Result<Option<Trajectory>, Failure> {
     match args.drive {
         None => Ok(None),
         Some(_) => Err(Failure::Input(

@@ -41,48 +41,52 @@ impl Spreadable for Args {
     }
 }
 
-/// Two parts in the `--json` output; the field names are the JSON keys.
+/// Two parts in the `--json` output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
-struct Pair<'a> {
+struct PairReport<'a> {
     first: &'a str,
     second: &'a str,
     /// Proved lower bound of the distance, mm; the parts may overlap if it is negative.
-    proved: f64,
+    #[serde(rename = "proved")]
+    lower_bound: f64,
     /// The smallest distance found at an accepted pose, mm; null if none was found.
     seen: Option<f64>,
     /// The pose at which `seen` was found: A1 to A4, deg; null if `seen` is null.
     pose: Option<[f64; 4]>,
-    /// The pose (A1 to A4, deg) that limits `proved`; null if `proved` is close to `seen`.
-    doubt: Option<[f64; 4]>,
+    /// The pose (A1 to A4, deg) that limits `lower_bound`; null if `lower_bound` is close to `seen`.
+    #[serde(rename = "doubt")]
+    unproved_angles: Option<[f64; 4]>,
 }
 
-/// The proof in the `--json` output; the field names are the JSON keys.
+/// The proof in the `--json` output; the serialized field names are the JSON keys.
 #[derive(Serialize)]
-struct Report<'a> {
+struct FitReport<'a> {
     fits: bool,
     /// The reason for a misfit; null if the parts fit.
     reason: Option<String>,
     /// The closest pairs of parts that must stay apart.
-    apart: Vec<Pair<'a>>,
+    apart: Vec<PairReport<'a>>,
     /// The closest pairs of parts that are designed to touch.
-    meeting: Vec<Pair<'a>>,
+    meeting: Vec<PairReport<'a>>,
     /// The ranges of A1 to A4 over all accepted poses, deg.
     ranges: [[f64; 2]; 4],
     /// The number of pairs of shapes in the proof.
-    pairs: usize,
+    #[serde(rename = "pairs")]
+    shape_pair_count: usize,
     /// The number of pose regions in the proof.
-    regions: u64,
+    #[serde(rename = "regions")]
+    region_count: u64,
 }
 
-impl<'a> From<&'a NearestPair> for Pair<'a> {
+impl<'a> From<&'a NearestPair> for PairReport<'a> {
     fn from(pair: &'a NearestPair) -> Self {
         Self {
             first: &pair.first,
             second: &pair.second,
-            proved: pair.lower_bound,
+            lower_bound: pair.lower_bound,
             seen: pair.witness.as_ref().map(|clearance| clearance.mm),
             pose: pair.witness.as_ref().map(|clearance| clearance.pose),
-            doubt: pair.unproved_angles,
+            unproved_angles: pair.unproved_angles,
         }
     }
 }
@@ -109,7 +113,7 @@ fn complete_proof(tasks: &ProofTasks, results: Option<Vec<TaskResult>>) -> Proof
 /// Proves that the parts fit and prints the clearances.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, contradictory dimensions, or parts that come too close.
+/// Fails if robot.toml is invalid, if its dimensions contradict each other, or if parts come too close.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.spread.robot.load()?;
     let assembly = Assembly::new(&robot);
@@ -130,14 +134,14 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let verdict = proof.judge();
     let mut out = io::stdout().lock();
     if args.json {
-        let report = Report {
+        let report = FitReport {
             fits: verdict.is_ok(),
             reason: verdict.as_ref().err().map(ToString::to_string),
-            apart: proof.separate_pairs.iter().map(Pair::from).collect(),
-            meeting: proof.touching_pairs.iter().map(Pair::from).collect(),
+            apart: proof.separate_pairs.iter().map(PairReport::from).collect(),
+            meeting: proof.touching_pairs.iter().map(PairReport::from).collect(),
             ranges: proof.ranges,
-            pairs: proof.shape_pair_count,
-            regions: proof.region_count,
+            shape_pair_count: proof.shape_pair_count,
+            region_count: proof.region_count,
         };
         serde_json::to_writer(&mut out, &report)?;
         writeln!(out)?;
@@ -178,8 +182,8 @@ fn print_proof(proof: &Proof, prints_all: bool, out: &mut impl Write) -> io::Res
     writeln!(out, "\ndesigned to touch: gap between the parts")?;
     print_list(&proof.touching_pairs, out)?;
     writeln!(out, "\nranges of the servo angles that the guard accepts")?;
-    for (name, [low, high]) in SERVO_NAMES.iter().zip(proof.ranges) {
-        writeln!(out, "  {name} {low:7.2} to {high:7.2} deg")?;
+    for (name, [min, max]) in SERVO_NAMES.iter().zip(proof.ranges) {
+        writeln!(out, "  {name} {min:7.2} to {max:7.2} deg")?;
     }
     writeln!(
         out,

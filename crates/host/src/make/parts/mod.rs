@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use lizard_parts::{
-    Assembly, Bill, BuildError, File, build_coupon, make_documents, make_part_files,
+    Assembly, Bill, BuildError, OutputFile, build_coupon, make_documents, make_part_files,
 };
 use lizard_robot::{Body, Robot};
 use serde::Serialize;
@@ -72,8 +72,8 @@ impl From<BuildError> for Failure {
 /// Builds all files and writes them.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, parts that do not fit, or a file that cannot be written.
-/// Writes nothing before all files are built.
+/// Fails if robot.toml is invalid, if the parts do not fit, or if a file cannot be written. Writes nothing before all
+/// files are built.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let kerf = robot.parts().kerf;
@@ -100,7 +100,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         entries.push(PartEntry {
             part: part.name.clone(),
             count: part.count(),
-            instead_of: part.instead_of.clone(),
+            instead_of: part.replaces.clone(),
             bodies: part.body_names.clone(),
             volume: part.volume(),
             files: new_files.iter().map(|file| file.path.clone()).collect(),
@@ -109,12 +109,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let mut weight_text = None;
+    let mut weight_note = None;
     if is_whole_robot {
         let pose = robot.lizard().solve(&robot.neutral_pose())?;
         let bill = Bill::compute(&assembly, &assembly.collect_parts(), &pose);
         files.extend(make_documents(&assembly, &bill, &pose)?);
-        weight_text = bill
+        weight_note = bill
             .differs_from(&robot.ground().body)
             .then(|| format_weight_note(&bill, &robot));
     }
@@ -133,8 +133,8 @@ pub fn run(args: Args) -> Result<(), Failure> {
             files.len(),
             args.folder.display()
         )?;
-        if let Some(weight_text) = weight_text {
-            write!(out, "\n{weight_text}")?;
+        if let Some(weight_note) = weight_note {
+            write!(out, "\n{weight_note}")?;
         }
     }
     Ok(out.flush()?)
@@ -156,7 +156,7 @@ fn format_weight_note(bill: &Bill, robot: &Robot) -> String {
 }
 
 /// Writes all files below `folder`.
-fn write_files(folder: &Path, files: &[File]) -> Result<(), Failure> {
+fn write_files(folder: &Path, files: &[OutputFile]) -> Result<(), Failure> {
     for file in files {
         let path = folder.join(&file.path);
         files::write(&path, &file.bytes)?;

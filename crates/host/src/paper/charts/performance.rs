@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use lizard_paper::design::{ChartPoint, PROPORTION_SUM, Proportions};
 use svg::node::element::Group;
 
-use crate::shared::ink::{add_outline, add_title, circle, line, render_svg, text_start};
 use crate::shared::plot::{Axis, ColourScale, Plot, VIRIDIS};
+use crate::shared::shapes::{add_outline, add_title, circle, line, render_svg, text_start};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1530.0, 570.0);

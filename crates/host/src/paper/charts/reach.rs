@@ -10,10 +10,10 @@ use lizard_kinematics::{End, Pose, Side, Solution, Vector, Workspace};
 use lizard_robot::Robot;
 use svg::node::element::Group;
 
-use crate::shared::ink::{
+use crate::shared::plot::{Axis, Plot, draw_legend_entry};
+use crate::shared::shapes::{
     DARK, GREY, add_outline, add_title, circle, rectangle, render_svg, text_start,
 };
-use crate::shared::plot::{Axis, Plot, draw_legend_entry};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
@@ -120,37 +120,17 @@ fn draw_legend(mut group: Group) -> Group {
             .add(rectangle((legend_x + 17.0, y), (17.0, 17.0), dark_colour))
             .add(text_start(label, (legend_x + 44.0, y + 14.0), 15.0));
     }
+    let legend_text = |text: &str, y: f64| text_start(text, (legend_x + 44.0, y), 15.0);
     group = draw_legend_entry(group, (legend_x, 190.0), GREY, "5 4", "circle of a foot");
-    group = draw_legend_entry(
-        group,
-        (legend_x, 218.0),
-        LEG_COLOUR,
-        "",
-        "what the guard accepts,",
-    );
-    group = group.add(text_start(
-        "the other servos at neutral",
-        (legend_x + 44.0, 242.0),
-        15.0,
-    ));
-    group = draw_legend_entry(
-        group,
-        (legend_x, 268.0),
-        DARK,
-        "",
-        "where walk has the foot",
-    );
+    let accepted_text = "what the guard accepts,";
+    group = draw_legend_entry(group, (legend_x, 218.0), LEG_COLOUR, "", accepted_text);
+    group = group.add(legend_text("the other servos at neutral", 242.0));
+    let walk_text = "where walk has the foot";
+    group = draw_legend_entry(group, (legend_x, 268.0), DARK, "", walk_text);
+    let shaft = circle((legend_x + 17.0, 300.0), 6.0, "white");
     group
-        .add(add_outline(
-            circle((legend_x + 17.0, 300.0), 6.0, "white"),
-            DARK,
-            2.0,
-        ))
-        .add(text_start(
-            "shaft of a servo",
-            (legend_x + 44.0, 305.0),
-            15.0,
-        ))
+        .add(add_outline(shaft, DARK, 2.0))
+        .add(legend_text("shaft of a servo", 305.0))
 }
 
 /// Returns the neutral servo angles plus `turns`, deg.
@@ -206,7 +186,7 @@ fn find_linkage_slider_cells(robot: &Robot) -> Cells {
     for side in Side::ALL {
         let slider = robot.lizard().side(side);
         let shaft = Vector::new(slider.front_offset, slider.base);
-        let directions = || (0..180).map(|step| Vector::direction(2.0 * f64::from(step)));
+        let directions = || (0..180).map(|step| Vector::from_angle(2.0 * f64::from(step)));
         for (front, rear) in
             directions().flat_map(|front| directions().map(move |rear| (front, rear)))
         {
@@ -272,13 +252,9 @@ mod tests {
     use super::*;
     use crate::shared::robot_file::built_in_robot;
 
-    fn paper_robot() -> Robot {
-        built_in_robot("paper")
-    }
-
     #[test]
     fn accepted_points_are_within_reach_of_the_links() {
-        let robot = paper_robot();
+        let robot = built_in_robot("paper");
         let solutions = find_accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(solutions.len() > 300, "{}", solutions.len());
         for solution in solutions {
@@ -300,7 +276,7 @@ mod tests {
 
     #[test]
     fn areas_and_arcs_agree_with_geometry() {
-        let robot = paper_robot();
+        let robot = built_in_robot("paper");
         // The half behind the tail's base has the same area as the head's upper half in `lizard design`.
         let coordinate = |i: i32| f64::from(i) - 160.5;
         let points =

@@ -4,10 +4,10 @@ use lizard_kinematics::{Check, End, FiveBar, Pose, SingularPose, Singularity, wr
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::ink::{
+use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
+use crate::shared::shapes::{
     DARK, add_outline, add_title, circle, cross, line, rectangle, render_svg, text_start,
 };
-use crate::shared::plot::{Axis, BLUES, ColourScale, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1500.0, 860.0);
@@ -32,7 +32,7 @@ const A1_COLOUR: &str = "#882255";
 /// Colour of the curves where A2's arm is singular.
 const A2_COLOUR: &str = "#b58900";
 
-/// Draws the head's least margin over theta1 and theta4, with the gaits' paths.
+/// Draws the head's smallest margin over theta1 and theta4, with the gaits' paths.
 pub fn draw_singularities(robot: &Robot) -> String {
     let scale = ColourScale {
         min: 0.3,
@@ -62,7 +62,7 @@ pub fn draw_singularities(robot: &Robot) -> String {
     for (plot, cell_count) in [(&left_plot, 360), (&right_plot, 200)] {
         group = plot.draw_map(group, (cell_count, cell_count), |x, y| {
             Some(
-                compute_least_margin(robot, x, y)
+                compute_min_margin(robot, x, y)
                     .map_or(IMPOSSIBLE_COLOUR, |margin| scale.colour(margin)),
             )
         });
@@ -157,9 +157,9 @@ pub fn draw_singularities(robot: &Robot) -> String {
     render_svg(PAGE_SIZE, group)
 }
 
-/// Returns the least margin of the head and the front legs, with the tail at neutral. `None` if the pose is impossible
-/// or violates a limit other than a slider's stroke.
-fn compute_least_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
+/// Returns the smallest margin of the head and the front legs, with the tail at neutral. `None` if the pose is
+/// impossible or violates a limit other than a slider's stroke.
+fn compute_min_margin(robot: &Robot, theta1: f64, theta4: f64) -> Option<f64> {
     let pose = Pose {
         theta1,
         theta4,
@@ -203,15 +203,15 @@ fn compute_gait_paths(robot: &Robot) -> Vec<(String, Vec<(f64, f64)>)> {
 
 /// Returns a gait's path in the plane of theta1 and theta4; a single point if neither angle changes.
 fn compute_gait_path(gait: &CheckedGait) -> Vec<(f64, f64)> {
-    let angles_at_step = |i: i32| {
+    let point_at_step = |i: i32| {
         let [theta1, theta4, ..] = gait.angles(f64::from(i) / 500.0);
         (theta1, theta4)
     };
-    let start = angles_at_step(0);
-    let is_moving = (1..500)
-        .any(|i| (angles_at_step(i).0 - start.0).hypot(angles_at_step(i).1 - start.1) > 1e-6);
+    let start = point_at_step(0);
+    let is_moving =
+        (1..500).any(|i| (point_at_step(i).0 - start.0).hypot(point_at_step(i).1 - start.1) > 1e-6);
     if is_moving {
-        (0..=500).map(angles_at_step).collect()
+        (0..=500).map(point_at_step).collect()
     } else {
         vec![start]
     }
@@ -230,14 +230,16 @@ fn are_same_path(first: &[(f64, f64)], second: &[(f64, f64)]) -> bool {
 /// Returns a square plot that contains all paths.
 fn enclose_paths(paths: &[(String, Vec<(f64, f64)>)]) -> Plot {
     let all_points = || paths.iter().flat_map(|(_, path)| path);
-    let compute_range = |coordinate: fn(&(f64, f64)) -> f64| {
-        let min_value = all_points().map(coordinate).fold(f64::INFINITY, f64::min);
-        let max_value = all_points()
-            .map(coordinate)
-            .fold(f64::NEG_INFINITY, f64::max);
-        ((min_value + max_value) / 2.0, (max_value - min_value) / 2.0)
+    let middle_and_half_range = |coordinate: fn(&(f64, f64)) -> f64| {
+        let values = || all_points().map(coordinate);
+        let (min, max) = (
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        );
+        ((min + max) / 2.0, (max - min) / 2.0)
     };
-    let ((x, half_width), (y, half_height)) = (compute_range(|p| p.0), compute_range(|p| p.1));
+    let (x, half_width) = middle_and_half_range(|point| point.0);
+    let (y, half_height) = middle_and_half_range(|point| point.1);
     let half_size = (half_width.max(half_height) + 5.0).ceil();
     Plot {
         corner: (0.0, 0.0),
@@ -254,7 +256,7 @@ fn draw_singular_curves(mut group: Group, plot: &Plot, robot: &Robot) -> Group {
         five_bar.find_singular_poses(theta1).collect()
     });
     // A sweep over theta1 has few points on steep curves, so a sweep over theta4 follows. The second sweep uses the
-    // mirrored five-bar, in which left and right are exchanged.
+    // mirrored five-bar, in which left and right are swapped.
     let mirrored_five_bar = FiveBar {
         base: five_bar.base,
         left_crank_length: five_bar.right_crank_length,

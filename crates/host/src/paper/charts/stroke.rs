@@ -3,9 +3,9 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::ink::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 use crate::shared::number::round_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
+use crate::shared::shapes::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 
 const COLUMN_COUNT: usize = 4;
 /// Width and height of a panel, px.
@@ -30,20 +30,12 @@ pub fn draw_stroke(robot: &Robot) -> String {
         "Slider travel over a cycle of each gait",
         "s in mm from nominal; grey: beyond the stroke that robot.toml allows",
     );
-    group = draw_legend_entry(
-        group,
-        (size.0 - 300.0, 36.0),
-        LEFT_COLOUR,
-        "",
-        "left slider (A1, A4)",
-    );
-    group = draw_legend_entry(
-        group,
-        (size.0 - 300.0, 62.0),
-        RIGHT_COLOUR,
-        "7 4",
-        "right slider (A2, A3)",
-    );
+    for (y, colour, dashes, meaning) in [
+        (36.0, LEFT_COLOUR, "", "left slider (A1, A4)"),
+        (62.0, RIGHT_COLOUR, "7 4", "right slider (A2, A3)"),
+    ] {
+        group = draw_legend_entry(group, (size.0 - 300.0, y), colour, dashes, meaning);
+    }
     for (i, gait) in robot.gaits().iter().enumerate() {
         let plot = Plot {
             corner: (
@@ -72,11 +64,11 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
         ),
     );
     group = plot.draw_grid(group, &x_axis, &y_axis);
-    for (low, high) in [
+    for (min, max) in [
         (plot.y_range.0, robot.limits().stroke_min),
         (robot.limits().stroke_max, plot.y_range.1),
     ] {
-        let (top_left, bottom_left) = (plot.to_page_point(0.0, high), plot.to_page_point(0.0, low));
+        let (top_left, bottom_left) = (plot.to_page_point(0.0, max), plot.to_page_point(0.0, min));
         group = group.add(rectangle(
             top_left,
             (plot.size.0, bottom_left.1 - top_left.1),

@@ -5,8 +5,8 @@ use lizard_paper::design::{CLAIMED_LCI, Performance, lci};
 use lizard_robot::Robot;
 use svg::node::element::{Circle as Ring, Group};
 
-use crate::shared::ink::{DARK, GREY, add_outline, add_title, circle, render_svg, text_start};
 use crate::shared::plot::{Axis, ColourScale, IMPOSSIBLE_COLOUR, Plot, VIRIDIS, draw_legend_entry};
+use crate::shared::shapes::{DARK, GREY, add_outline, add_title, circle, render_svg, text_start};
 
 /// Width and height of the page, px.
 const PAGE_SIZE: (f64, f64) = (1120.0, 900.0);
@@ -55,22 +55,14 @@ pub fn draw_workspace(robot: &Robot) -> String {
     );
     let performance = Performance::compute(&five_bar, 32);
     let legend_x = 840.0;
-    group = draw_legend_entry(group, (legend_x, 120.0), GREY, "5 4", "limits of each arm");
-    group = draw_legend_entry(
-        group,
-        (legend_x, 148.0),
-        CIRCLE_COLOUR,
-        "",
-        "maximal inscribed circle",
-    );
-    group = draw_legend_entry(
-        group,
-        (legend_x, 176.0),
-        LOOK_COLOUR,
-        "",
-        "path of the gesture \"look\"",
-    );
-    group = draw_legend_entry(group, (legend_x, 204.0), DARK, "", "five-bar at neutral");
+    for (y, colour, dashes, meaning) in [
+        (120.0, GREY, "5 4", "limits of each arm"),
+        (148.0, CIRCLE_COLOUR, "", "maximal inscribed circle"),
+        (176.0, LOOK_COLOUR, "", "path of the gesture \"look\""),
+        (204.0, DARK, "", "five-bar at neutral"),
+    ] {
+        group = draw_legend_entry(group, (legend_x, y), colour, dashes, meaning);
+    }
     let facts = [
         format!("area {:.1} mm²", performance.area),
         format!("upper half {:.1} mm² (blue)", performance.area / 2.0),
@@ -129,25 +121,17 @@ pub fn draw_conditioning(robot: &Robot) -> String {
                 draw_ring(&plot, lci_circle.centre, lci_circle.radius, DARK, 2.0)
                     .set("stroke-dasharray", "7 4"),
             );
-        let legend_x = 850.0;
-        group = draw_legend_entry(
-            group,
-            (legend_x - 10.0, 530.0),
-            CIRCLE_COLOUR,
-            "",
-            "maximal inscribed circle",
+        let radius_text = format!(
+            "all ≥ {CLAIMED_LCI} within {:.2} mm",
+            lci_stats.radius_above
         );
-        group = draw_legend_entry(
-            group,
-            (legend_x - 10.0, 558.0),
-            DARK,
-            "7 4",
-            &format!(
-                "all ≥ {CLAIMED_LCI} within {:.2} mm",
-                lci_stats.radius_above
-            ),
-        );
-        group = group.add(text_start(&format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1} % of its area", lci_stats.mean, lci_stats.least, lci_stats.most, 100.0 * lci_stats.share_above), (90.0, 690.0), 16.0));
+        for (y, colour, dashes, meaning) in [
+            (530.0, CIRCLE_COLOUR, "", "maximal inscribed circle"),
+            (558.0, DARK, "7 4", &radius_text),
+        ] {
+            group = draw_legend_entry(group, (840.0, y), colour, dashes, meaning);
+        }
+        group = group.add(text_start(&format!("in the circle: mean {:.3}, least {:.3}, most {:.3}; above {CLAIMED_LCI} on {:.1} % of its area", lci_stats.mean, lci_stats.min, lci_stats.max, 100.0 * lci_stats.share_above), (90.0, 690.0), 16.0));
     }
     group = plot.draw_axes(group, &X_AXIS, &Y_AXIS);
     group = scale.draw_key(group, (870.0, 120.0), 360.0, "LCI", 1);

@@ -17,11 +17,12 @@ pub enum Bound {
     None,
 }
 
-/// A measurement and its budget; the field names are the JSON keys.
+/// A measurement and its budget; the serialized field names are the JSON keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct BudgetRow {
     /// The measurement's name.
-    pub what: &'static str,
+    #[serde(rename = "what")]
+    pub name: &'static str,
     /// The measurement's unit.
     pub unit: &'static str,
     /// The measured value; `None` if it could not be measured.
@@ -31,10 +32,11 @@ pub struct Row {
     /// The same value for the Arduino Servo library, measured as in `SERVO_LIBRARY`; `None` if it is not known.
     pub servo_library: Option<&'static str>,
     /// True if the value depends on the machine that runs the measurement.
-    pub wall_clock: bool,
+    #[serde(rename = "wall_clock")]
+    pub is_machine_dependent: bool,
 }
 
-impl Row {
+impl BudgetRow {
     /// True if the value is within its budget; a missing value passes.
     pub fn is_within_budget(&self) -> bool {
         self.measured.is_none_or(|measured| match self.budget {
@@ -53,9 +55,9 @@ pub const SERVO_LIBRARY: &str = "Arduino Servo 1.3.0 (core 1.8.8, ATmega328P at 
 const TICK_DEADLINE_CYCLES: f64 = 63_000.0;
 /// The fraction of all cycles that interrupts leave to main while the serial line is saturated in both directions.
 const MAIN_FRACTION: f64 = 0.87;
-/// Budgets of the mean and worst control tick, cycles.
+/// Budgets of the mean and longest control tick, cycles.
 const TICK_BUDGET_CYCLES: [f64; 2] = [5_000.0, 10_000.0];
-/// Budgets of the mean and worst control tick, cycles, for a robot without maps of certified cells, so that the guard
+/// Budgets of the mean and longest control tick, cycles, for a robot without maps of certified cells, so that the guard
 /// checks every pose.
 const TICK_BUDGET_WITHOUT_MAPS_CYCLES: [f64; 2] = [20_000.0, 20_000.0];
 /// Longest interrupt that does not delay a servo's edge, cycles: the servo interrupts start 220 cycles early and need
@@ -67,19 +69,19 @@ const MAX_WALL_S: f64 = 60.0;
 const LONG_RUN_S: f64 = 600.0;
 
 /// Lists all measurements with their budgets.
-pub fn list_rows(measurements: &Measurements) -> Vec<Row> {
+pub fn list_rows(measurements: &Measurements) -> Vec<BudgetRow> {
     use Bound::{AtLeast, AtMost};
-    let row = |what, unit, measured, budget, servo_library| Row {
-        what,
+    let row = |name, unit, measured, budget, servo_library| BudgetRow {
+        name,
         unit,
         measured,
         budget,
         servo_library,
-        wall_clock: false,
+        is_machine_dependent: false,
     };
-    let wall_row = |what, unit, measured, budget| Row {
-        wall_clock: true,
-        ..row(what, unit, Some(measured), budget, None)
+    let wall_row = |name, unit, measured, budget| BudgetRow {
+        is_machine_dependent: true,
+        ..row(name, unit, Some(measured), budget, None)
     };
     let measured_if_known = |value: Option<u64>| value.map(|value| value as f64);
     let always_measured = |value: u64| Some(value as f64);
@@ -95,7 +97,7 @@ pub fn list_rows(measurements: &Measurements) -> Vec<Row> {
         row("width minus command, worst", "cycles", measured_if_known(measurements.max_width_error), AtMost(0.0), None),
         row("width resolution", "cycles", measured_if_known(measurements.width_resolution), AtMost(1.0), Some("16")),
         row("period minus 20 ms, worst", "cycles", always_measured(measurements.max_period_error), AtMost(0.0), None),
-        row("servo pins high at once", "", always_measured(measurements.most_pins_high.into()), AtMost(1.0), None),
+        row("servo pins high at once", "", always_measured(measurements.max_pins_high.into()), AtMost(1.0), None),
         row("late edges counted", "", always_measured(measurements.late_edges), AtMost(0.0), None),
         row("bytes lost, sender waits", "bytes", always_measured(measurements.lost_bytes), AtMost(0.0), None),
         row("control tick, mean in any gait", "cycles", measurements.mean_tick_cycles, AtMost(mean_tick_budget), None),
@@ -112,8 +114,8 @@ pub fn list_rows(measurements: &Measurements) -> Vec<Row> {
         row("flash, code", "bytes", always_measured(measurements.code_bytes.into()), AtMost(START_ADDRESS.into()), Some("5 994")),
         row("flash, the robot's section", "bytes", always_measured(measurements.section_bytes.into()), AtMost(REGION_BYTES.into()), None),
         row("static RAM", "bytes", always_measured(measurements.static_ram.into()), AtMost(900.0), Some("365")),
-        row("between stack and static RAM", "bytes", always_measured(measurements.stack_spare.into()), AtLeast(400.0), None),
-        row("  with the deepest stack", "bytes", Some(measurements.stack_margin.into()), AtLeast(400.0), None),
+        row("between stack and static RAM", "bytes", always_measured(measurements.measured_stack_margin.into()), AtLeast(400.0), None),
+        row("  with the deepest stack", "bytes", Some(measurements.predicted_stack_margin.into()), AtLeast(400.0), None),
         wall_row("ten simulated minutes", "s", measurements.wall_s, AtMost(MAX_WALL_S)),
         wall_row("  times faster than a board", "", LONG_RUN_S / measurements.wall_s, Bound::None),
     ];
@@ -125,14 +127,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn value_is_over_budget_only_beyond_its_bound() {
-        let row = |measured: Option<f64>, budget| Row {
-            what: "",
+    fn a_value_is_over_budget_only_beyond_its_bound() {
+        let row = |measured: Option<f64>, budget| BudgetRow {
+            name: "",
             unit: "",
             measured,
             budget,
             servo_library: None,
-            wall_clock: false,
+            is_machine_dependent: false,
         };
         for (measured, budget, is_within_budget) in [
             (Some(3.0), Bound::AtMost(3.0), true),

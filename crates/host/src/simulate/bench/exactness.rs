@@ -1,6 +1,6 @@
 //! The exactness of the servo pulses: errors of widths and periods in cycles.
 
-use simulated_uno::most_pins_high;
+use simulated_uno::max_pins_high;
 
 use lizard_robot::CoreRobot;
 
@@ -17,7 +17,7 @@ pub struct Exactness {
     /// Largest deviation of a servo's pulse period from 20 ms, cycles.
     pub max_period_error: u64,
     /// Largest number of servo pins that are high at the same time.
-    pub most_pins_high: u32,
+    pub max_pins_high: u32,
     /// The greatest common divisor of all width changes, cycles; `None` if the widths do not change.
     pub width_step: Option<u64>,
 }
@@ -72,7 +72,7 @@ impl Exactness {
         Ok(Self {
             width_error_range: are_commands_known.then_some(error_range),
             max_period_error,
-            most_pins_high: most_pins_high(&edges),
+            max_pins_high: max_pins_high(&edges),
             width_step: (width_step > 0).then_some(width_step),
         })
     }

@@ -14,7 +14,7 @@ use crate::shared::firmware;
 use crate::simulate::board::{BoardError, SimulatedBoard};
 use crate::simulate::patrol::PATROL;
 use crate::simulate::sim::frame::FRAME_CYCLES;
-use crate::simulate::sim::tour;
+use crate::simulate::sim::gait_choice;
 
 /// The firmware's costs and exactness. A cycle is 62.5 ns. A value that could not be measured is `None`: the values of
 /// a gait if the robot has no moving gait, and the width errors if the firmware was built from another source, because
@@ -32,17 +32,19 @@ pub struct Measurements {
     /// Bytes of static data in RAM.
     pub static_ram: u16,
     /// Smallest measured number of bytes between the stack and static data.
-    pub stack_spare: u16,
+    pub measured_stack_margin: u16,
     /// Number of bytes between static data and the deepest possible stack, computed by [`StackDepth`]; negative if they
     /// collide.
-    pub stack_margin: i32,
+    pub predicted_stack_margin: i32,
     /// Mean cycles of the control tick, without interrupts, in the gait with the largest mean.
     pub mean_tick_cycles: Option<f64>,
     /// Cycles of the longest control tick in any motion, without interrupts.
     pub max_tick_cycles: u64,
-    /// Mean cycles of the control tick in a routine with inputs, without interrupts; `None` without such a routine.
+    /// Mean cycles of the control tick in a routine with inputs, without interrupts; `None` if there is no such
+    /// routine.
     pub mean_routine_tick_cycles: Option<f64>,
-    /// Cycles of the longest control tick in a routine with inputs, without interrupts; `None` without such a routine.
+    /// Cycles of the longest control tick in a routine with inputs, without interrupts; `None` if there is no such
+    /// routine.
     pub max_routine_tick_cycles: Option<u64>,
     /// Most cycles from a control tick to the end of its computation while the serial line is saturated in both
     /// directions, including interrupts and answers.
@@ -69,7 +71,7 @@ pub struct Measurements {
     /// Largest deviation of a servo's period from 20 ms, on the idle and the saturated line, cycles.
     pub max_period_error: u64,
     /// Largest number of servo pins high at the same time, on the idle and the saturated line.
-    pub most_pins_high: u32,
+    pub max_pins_high: u32,
     /// The greatest common divisor of all width changes in the gait, cycles.
     pub width_resolution: Option<u64>,
     /// Edges that the firmware counts as late.
@@ -136,7 +138,7 @@ impl Measurements {
         patrol_robot: Option<&Robot>,
         report_progress: impl Fn(&'static str),
     ) -> Result<Self, Failure> {
-        let gaits: Vec<String> = tour::choose_demonstration_gaits(robot)
+        let gaits: Vec<String> = gait_choice::choose_demonstration_gaits(robot)
             .into_iter()
             .map(to_command)
             .collect();
@@ -199,19 +201,19 @@ impl Measurements {
             section_bytes,
             has_maps: robot.has_room_for_maps(),
             static_ram: long_run.board.uno.image().static_ram(),
-            stack_spare: session_board
+            measured_stack_margin: session_board
                 .uno
                 .stack_spare()
                 .min(saturated_board.uno.stack_spare()),
-            stack_margin: stack.margin(),
+            predicted_stack_margin: stack.margin(),
             mean_tick_cycles: some_if_moving(
                 gait_calls
                     .map(|calls| compute_mean_cycles(calls))
                     .fold(0.0, f64::max),
             ),
-            max_tick_cycles: find_max_cycles(&tick_calls.concat()),
+            max_tick_cycles: compute_max_cycles(&tick_calls.concat()),
             mean_routine_tick_cycles: routine_calls.as_deref().map(compute_mean_cycles),
-            max_routine_tick_cycles: routine_calls.as_deref().map(find_max_cycles),
+            max_routine_tick_cycles: routine_calls.as_deref().map(compute_max_cycles),
             max_tick_latency,
             max_step_cycles,
             mean_guard_cycles: some_if_moving(mean_guard_cycles),
@@ -229,9 +231,9 @@ impl Measurements {
             max_period_error: idle_exactness
                 .max_period_error
                 .max(saturated_exactness.max_period_error),
-            most_pins_high: idle_exactness
-                .most_pins_high
-                .max(saturated_exactness.most_pins_high),
+            max_pins_high: idle_exactness
+                .max_pins_high
+                .max(saturated_exactness.max_pins_high),
             width_resolution: idle_exactness.width_step,
             late_edges: session_board.read_counter("late")?
                 + saturated_board.read_counter("late")?,
@@ -247,7 +249,7 @@ impl Measurements {
 /// # Errors
 /// See [`Measurements::measure`].
 pub fn measure_longest_step(elf: &Path, robot: &Robot) -> Result<u64, BoardError> {
-    let gait = tour::choose_demonstration_gaits(robot)
+    let gait = gait_choice::choose_demonstration_gaits(robot)
         .first()
         .map_or("stand".into(), |gait| to_command(gait));
     let mut max_cycles = 0;
@@ -352,7 +354,7 @@ fn run_all_commands(
     board.say("watch 1")?;
     let mut commands = list_motion_commands(robot);
     commands.extend(["help", "?", "status", "speed 55"].map(str::to_owned));
-    let gait = tour::choose_demonstration_gaits(robot)
+    let gait = gait_choice::choose_demonstration_gaits(robot)
         .first()
         .copied()
         .map(to_command);
@@ -421,7 +423,7 @@ fn measure_longest_call(
         board.uno.send(line.as_bytes());
         board.uno.send(b"\n");
         let calls = board.time_calls(function, 400)?;
-        max_cycles = max_cycles.max(find_max_cycles(&calls));
+        max_cycles = max_cycles.max(compute_max_cycles(&calls));
     }
     Ok(max_cycles)
 }
@@ -443,7 +445,7 @@ fn time_patrol(elf: &Path, robot: &Robot) -> Result<Vec<Call>, BoardError> {
     Ok(calls)
 }
 
-fn find_max_cycles(calls: &[Call]) -> u64 {
+fn compute_max_cycles(calls: &[Call]) -> u64 {
     calls.iter().map(Call::own_cycles).max().unwrap_or(0)
 }
 

@@ -15,7 +15,7 @@ use crate::shared::progress::create_progress_bar;
 use crate::simulate::patrol::add_patrol;
 use crate::{Failure, RobotFile};
 
-pub use budget::{Bound, Row, list_rows};
+pub use budget::{Bound, BudgetRow, list_rows};
 pub use measurements::{Measurements, measure_longest_step};
 pub use stack::{StackDepth, StackError};
 
@@ -42,13 +42,13 @@ pub struct Args {
 #[derive(serde::Serialize)]
 struct JudgedRow<'a> {
     #[serde(flatten)]
-    row: &'a Row,
+    row: &'a BudgetRow,
     /// True if the value is within its budget.
     met: bool,
 }
 
 impl<'a> JudgedRow<'a> {
-    fn new(row: &'a Row) -> Self {
+    fn new(row: &'a BudgetRow) -> Self {
         let met = row.is_within_budget();
         Self { row, met }
     }
@@ -57,7 +57,7 @@ impl<'a> JudgedRow<'a> {
 /// Measures the firmware and prints the table.
 ///
 /// # Errors
-/// Fails without a usable ELF, if the firmware stops or does not answer, or if a value exceeds its budget.
+/// Fails if there is no usable ELF, if the firmware stops or does not answer, or if a value exceeds its budget.
 pub fn run(args: Args) -> Result<(), Failure> {
     let Some(elf) = args.elf else {
         return Err(Failure::Input(
@@ -89,7 +89,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let names_over_budget: Vec<&str> = rows
         .iter()
         .filter(|row| !row.is_within_budget())
-        .map(|row| row.what)
+        .map(|row| row.name)
         .collect();
     if names_over_budget.is_empty() {
         Ok(())

@@ -2,14 +2,14 @@
 
 use std::io::{self, Write};
 
-use super::budget::{Bound, Row, SERVO_LIBRARY};
+use super::budget::{Bound, BudgetRow, SERVO_LIBRARY};
 use crate::shared::number::format_grouped;
 
 /// Prints a row for each measurement, then notes about the measured `gait` and missing values.
 ///
 /// # Errors
 /// Fails if writing fails.
-pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Result<()> {
+pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "{:<30} {:>10} {:<7} {:>16}   Arduino Servo",
@@ -28,7 +28,7 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
         };
         let line = format!(
             "{:<30} {:>10} {:<7} {:>16}   {}{}",
-            row.what,
+            row.name,
             row.measured
                 .map_or("-".to_owned(), |measured| format_grouped(
                     measured, decimals
@@ -50,7 +50,7 @@ pub fn print(rows: &[Row], gait: Option<&str>, out: &mut impl Write) -> io::Resu
     };
     if rows
         .iter()
-        .any(|row| row.what == "width minus command, worst" && row.measured.is_none())
+        .any(|row| row.name == "width minus command, worst" && row.measured.is_none())
     {
         writeln!(
             out,
@@ -66,14 +66,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn value_over_its_budget_is_marked() {
-        let row = Row {
-            what: "flash",
+    fn a_value_over_its_budget_is_marked() {
+        let row = BudgetRow {
+            name: "flash",
             unit: "bytes",
             measured: Some(20_000.0),
             budget: Bound::AtMost(16_384.0),
             servo_library: Some("5 994"),
-            wall_clock: false,
+            is_machine_dependent: false,
         };
         let mut text = Vec::new();
         print(&[row], None, &mut text).expect("writing to a vector succeeds");

@@ -10,7 +10,7 @@ use simulated_uno::{CYCLES_PER_US, FREQUENCY};
 use super::frame::{FRAME_CYCLES, Frame};
 use super::frame_log::FrameLog;
 use super::spans::Span;
-use crate::shared::ink::pin_name;
+use crate::shared::shapes::pin_name;
 
 /// The servo angles of one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -24,7 +24,7 @@ pub struct ServoFrame {
     pub sweeps: Option<[f64; 4]>,
 }
 
-/// The pulses of one servo; the field names are the JSON keys.
+/// The pulses of one servo; the serialized field names are the JSON keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ServoReport {
     /// The servo's name, `A1` to `A4`.
@@ -34,10 +34,11 @@ pub struct ServoReport {
     /// The servo's pin, such as `D9` or `A0`.
     pub pin: String,
     /// Number of pulses.
-    pub pulses: usize,
-    /// Shortest pulse, us; 0 without pulses.
+    #[serde(rename = "pulses")]
+    pub pulse_count: usize,
+    /// Shortest pulse, us; 0 if there is no pulse.
     pub min_us: f64,
-    /// Longest pulse, us; 0 without pulses.
+    /// Longest pulse, us; 0 if there is no pulse.
     pub max_us: f64,
     /// Largest deviation of a width from its command, cycles; `None` if the commands are not known.
     pub width_error: Option<u64>,
@@ -49,7 +50,7 @@ pub struct ServoReport {
 
 /// The smallest margin in a run, and its time.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SmallestMargin {
+pub struct MinMargin {
     /// The margin's name.
     pub margin: String,
     /// The margin's value.
@@ -62,24 +63,29 @@ pub struct SmallestMargin {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Safety {
     /// The smallest margin; `None` if the run has no feasible pose.
-    pub least: Option<SmallestMargin>,
+    #[serde(rename = "least")]
+    pub min_margin: Option<MinMargin>,
     /// Smallest and largest slider travel, mm; infinite if the run has no feasible pose.
     pub stroke: [f64; 2],
     /// Number of frames whose pose is infeasible or violates a limit of robot.toml.
-    pub violations: usize,
-    /// The reason for the first violation; `None` without violations.
+    #[serde(rename = "violations")]
+    pub violation_count: usize,
+    /// The reason for the first violation; `None` if there is none.
     pub first_violation: Option<String>,
 }
 
-/// The robot's displacement during one command, according to the contact model; the field names are the JSON keys.
+/// The robot's displacement during one command, according to the contact model; the serialized field names are the
+/// JSON keys.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CommandPath {
     /// The command in effect.
     pub command: String,
-    /// Start of the command, seconds since power-on.
-    pub from: f64,
-    /// End of the command, seconds since power-on.
-    pub to: f64,
+    /// Start of the command, s since power-on.
+    #[serde(rename = "from")]
+    pub start_s: f64,
+    /// End of the command, s since power-on.
+    #[serde(rename = "to")]
+    pub end_s: f64,
     /// Displacement forward, mm; `None` if the contact model cannot determine it because two feet balance the other two
     /// (a tie).
     pub forward: Option<f64>,
@@ -182,7 +188,7 @@ pub fn compute_servo_reports(
             servo: SERVO_NAMES[i],
             leg: LEG_NAMES[i],
             pin: pin_name(run.robot.servos()[i].pin),
-            pulses: widths().count(),
+            pulse_count: widths().count(),
             min_us: to_us(widths().min()),
             max_us: to_us(widths().max()),
             width_error,
@@ -196,9 +202,9 @@ pub fn compute_servo_reports(
 /// Solves every pose of the run and collects the smallest margin, the stroke and the violations.
 pub fn check_safety(run: Run<'_>) -> Safety {
     let mut safety = Safety {
-        least: None,
+        min_margin: None,
         stroke: [f64::INFINITY, f64::NEG_INFINITY],
-        violations: 0,
+        violation_count: 0,
         first_violation: None,
     };
     // A standing robot repeats its pose; consecutive equal poses are solved only once.
@@ -212,7 +218,7 @@ pub fn check_safety(run: Run<'_>) -> Safety {
             _ => safety.add_pose(run.robot, angles, servo_frame.seconds),
         };
         if let Some(reason) = &violation {
-            safety.violations += 1;
+            safety.violation_count += 1;
             safety.first_violation.get_or_insert_with(|| reason.clone());
         }
         latest_pose = Some((angles, violation));
@@ -228,8 +234,9 @@ impl Safety {
             Ok(solution) => solution,
         };
         let (margin, value) = solution.margins.min();
-        if self.least.as_ref().is_none_or(|min| value < min.value) {
-            self.least = Some(SmallestMargin {
+        let min_margin = self.min_margin.as_ref();
+        if min_margin.is_none_or(|min| value < min.value) {
+            self.min_margin = Some(MinMargin {
                 margin: margin.to_string(),
                 value,
                 seconds,
@@ -245,7 +252,7 @@ impl Safety {
 
 /// Computes the displacement during each command with the contact model; the last entry is the complete run. Legs are
 /// rigid here, so that repeated pairs of frames are computed only once; in `lizard twin`, legs lag. Feet are never
-/// lifted; see [`lizard_robot::Ground`].
+/// lifted; see [`lizard_robot::GroundContact`].
 pub fn compute_command_paths(run: Run<'_>, spans: &[Span]) -> Vec<CommandPath> {
     let mut travel_cache = TravelCache {
         run,
@@ -293,15 +300,15 @@ fn find_determined_components(robot: &Robot, command: &str) -> [bool; 3] {
 }
 
 impl CommandPath {
-    fn new(command: &str, [from, to]: [f64; 2], travel: Travel, are_determined: [bool; 3]) -> Self {
-        let [forward, left, turn] = are_determined;
+    fn new(command: &str, times_s: [f64; 2], travel: Travel, are_determined: [bool; 3]) -> Self {
+        let keep_determined = |index: usize, value| are_determined[index].then_some(value);
         Self {
             command: command.to_owned(),
-            from,
-            to,
-            forward: forward.then_some(travel.forward),
-            left: left.then_some(travel.left),
-            turn: turn.then_some(travel.turn),
+            start_s: times_s[0],
+            end_s: times_s[1],
+            forward: keep_determined(0, travel.forward),
+            left: keep_determined(1, travel.left),
+            turn: keep_determined(2, travel.turn),
         }
     }
 }

@@ -96,7 +96,7 @@ pub struct CoreOutput {
 
 /// Runs a robot's core on a recording: `received` are the bytes that reached the UNO, `first_pulse_cycle` is the cycle
 /// of A1's first pulse, and `frame_count` is the number of frames from this pulse on. The result is exact except for
-/// the effects of the lines that [`find_undecided_lines`] returns.
+/// the effects of the lines that [`find_undetermined_lines`] returns.
 pub fn play(
     robot: Robot<'static>,
     received: &[SerialByte],
@@ -162,7 +162,7 @@ pub fn play_with_contacts(
 
 /// Returns the indices of received lines that end so shortly before a control tick that main may read them before or
 /// after the tick.
-pub fn find_undecided_lines(
+pub fn find_undetermined_lines(
     received: &[SerialByte],
     first_pulse_cycle: u64,
 ) -> impl Iterator<Item = usize> {

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::session::{DialogueLine, Sender};
-use crate::shared::plain::escape_controls;
+use crate::shared::escape::escape_controls;
 
 /// Number of printed lines in each run of consecutive `# t=` lines; the remaining lines are only counted.
 const MAX_SHOWN_LINES: usize = 3;
@@ -11,14 +11,14 @@ const MAX_SHOWN_LINES: usize = 3;
 /// Prints the lines of a dialogue. A run of consecutive `# t=` lines, which `watch` causes, is shortened to three lines
 /// and the number of further lines, unless `shows_all` is true.
 #[derive(Debug)]
-pub struct Printer {
+pub struct DialoguePrinter {
     /// True if runs of `# t=` lines are printed completely.
     shows_all: bool,
     /// Number of lines in the current run of `# t=` lines.
     run_length: usize,
 }
 
-impl Printer {
+impl DialoguePrinter {
     /// Creates a printer that prints all lines, or shortens runs of `# t=` lines.
     pub fn new(shows_all: bool) -> Self {
         Self {
@@ -76,7 +76,7 @@ mod tests {
 
     fn print_lines(shows_all: bool, lines: &[(Sender, &str)]) -> String {
         let mut out = Vec::new();
-        let mut printer = Printer::new(shows_all);
+        let mut printer = DialoguePrinter::new(shows_all);
         for (from, text) in lines {
             let (ms, from, text) = (1500.0, *from, (*text).to_owned());
             let line = DialogueLine { ms, from, text };

@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn standing_foot_is_still_and_resting_foot_has_no_phase() {
+    fn a_standing_foot_is_still_and_a_resting_foot_has_no_phase() {
         assert_eq!(find_phase("stand", 0, 2.0), Some(Phase::Still));
         assert_eq!(find_phase("walk", 0, 5.5), None);
     }

@@ -15,9 +15,9 @@ pub(super) const SLOT_CYCLES: u64 = FRAME_CYCLES / 5;
 pub struct Frame {
     /// Nominal start cycle of A1's pulse.
     pub start: u64,
-    /// Start cycle of each servo's pulse; `None` without a pulse.
+    /// Start cycle of each servo's pulse; `None` if it has no pulse.
     pub starts: [Option<u64>; 4],
-    /// Width of each servo's pulse, cycles of 62.5 ns; `None` without a pulse.
+    /// Width of each servo's pulse, cycles of 62.5 ns; `None` if it has no pulse.
     pub widths: [Option<u64>; 4],
 }
 
@@ -32,7 +32,7 @@ impl Frame {
     ///
     /// # Panics
     /// Panics if a servo has no pulse in this frame.
-    pub fn widths(&self) -> [u64; 4] {
+    pub fn expect_all_widths(&self) -> [u64; 4] {
         self.all_widths()
             .unwrap_or_else(|| panic!("a servo has no pulse: {self:?}"))
     }
@@ -64,12 +64,12 @@ pub fn next_start(anchor: u64, current_cycle: u64) -> u64 {
             * FRAME_CYCLES
 }
 
-/// Returns the cycle of the last rising edge of A1, the first of `pins`; `None` without such an edge.
-pub fn latest_start(edges: &[Edge], pins: [Pin; 4]) -> Option<u64> {
+/// Returns the cycle of the latest rising edge at A1's pin; `None` if there is none.
+pub fn latest_frame_start(edges: &[Edge], a1_pin: Pin) -> Option<u64> {
     edges
         .iter()
         .rev()
-        .find(|edge| edge.is_rising && edge.pin == pins[0])
+        .find(|edge| edge.is_rising && edge.pin == a1_pin)
         .map(|edge| edge.cycle)
 }
 
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn slightly_early_pulse_belongs_to_the_next_frame() {
+    fn a_slightly_early_pulse_belongs_to_the_next_frame() {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse_edges(start, 24_000, PINS[0]));

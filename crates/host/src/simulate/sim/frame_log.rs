@@ -9,12 +9,12 @@ use super::frame::{FRAME_CYCLES, first_cycle};
 pub struct FrameLog {
     /// Start cycle of A1's pulse in the first frame.
     pub first_start: u64,
-    /// Widths of each frame's pulses, cycles, in servo order; 0 without a pulse, 65535 for a longer pulse.
+    /// Widths of each frame's pulses, cycles, in servo order; 0 if there is no pulse, 65535 for a longer pulse.
     pub widths: Vec<[u16; 4]>,
     /// Each servo's largest deviation of a pulse period from 20 ms, cycles.
     pub max_period_error: [u64; 4],
     /// Largest number of servo pins that are high at the same time.
-    pub most_pins_high: u32,
+    pub max_pins_high: u32,
 }
 
 impl FrameLog {
@@ -76,7 +76,7 @@ impl FrameReader {
                 }
                 self.rise_cycles[servo] = Some(edge.cycle);
                 let high_count = self.rise_cycles.iter().flatten().count() as u32;
-                self.log.most_pins_high = self.log.most_pins_high.max(high_count);
+                self.log.max_pins_high = self.log.max_pins_high.max(high_count);
             } else if let Some(start) = self.rise_cycles[servo].take() {
                 self.record_pulse(servo, start, edge.cycle - start);
             }
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn log_does_not_depend_on_the_batches() {
+    fn the_log_does_not_depend_on_the_batches() {
         let start = 1_000_000;
         let mut edges = Vec::new();
         edges.extend(pulse_edges(PINS[3], 500_000, 20_000)); // before A1's first pulse
@@ -162,21 +162,18 @@ mod tests {
                 "{split_index}"
             );
             assert_eq!(log.max_period_error, [7, 0, 0, 0], "a gap is not a period");
-            assert_eq!(log.most_pins_high, 1);
+            assert_eq!(log.max_pins_high, 1);
         }
     }
 
     #[test]
     fn only_overlapping_pulses_count_as_high_at_once() {
-        let most_pins_high = |second_start: u64| {
+        let max_pins_high = |second_start: u64| {
             let mut edges = Vec::from(pulse_edges(PINS[0], 1_000_000, 100));
             edges.extend(pulse_edges(PINS[1], second_start, 100));
-            read_in_two_batches(&edges, 0, 3_000_000).most_pins_high
+            read_in_two_batches(&edges, 0, 3_000_000).max_pins_high
         };
-        assert_eq!(
-            (most_pins_high(1_000_099), most_pins_high(1_000_100)),
-            (2, 1)
-        );
+        assert_eq!((max_pins_high(1_000_099), max_pins_high(1_000_100)), (2, 1));
     }
 
     #[test]

@@ -7,6 +7,7 @@ pub(crate) mod dialogue;
 pub mod footfall;
 pub mod frame;
 pub mod frame_log;
+pub mod gait_choice;
 pub mod lines;
 pub mod press;
 mod report;
@@ -17,7 +18,6 @@ pub mod session;
 pub mod spans;
 pub mod supplies;
 pub(crate) mod timeline;
-pub mod tour;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -30,13 +30,13 @@ use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
 use crate::shared::progress::{Spinner, create_progress_bar};
-use crate::shared::suggestion::format_suggestion;
+use crate::shared::robot_file::unknown_gait_failure;
 use crate::shared::{files, json};
 use crate::{Failure, RobotFile};
 use analysis::Run;
-use dialogue::Printer;
+use dialogue::DialoguePrinter;
 use press::{ContactChange, Press};
-use report::{Ram, Report};
+use report::{RamUse, Report};
 use script::Script;
 use session::{DialogueLine, Event, Recording};
 
@@ -125,8 +125,8 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// Runs the firmware and prints the results.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a firmware that is missing or contains another robot, an unknown gait or input, an
-/// invalid script, a firmware that crashes, or a file that cannot be written.
+/// Fails if robot.toml or the script is invalid, if the firmware is missing, contains another robot or crashes, if a
+/// gait or an input is unknown, or if a file cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let fidelity = match args.fidelity {
         FidelityArg::DataSheet => Fidelity::DataSheet,
@@ -173,7 +173,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let picture = timeline::draw(run, &spans, &timeline::SIMULATED_CAPTION);
     files::write(&args.svg, picture.as_bytes())?;
     let report = Report {
-        elf: name,
+        firmware_name: name,
         fidelity: match fidelity {
             Fidelity::DataSheet => "data-sheet",
             Fidelity::Stock => "stock",
@@ -182,12 +182,12 @@ pub fn run(args: Args) -> Result<(), Failure> {
         wall_seconds: recording.wall_time.as_secs_f64(),
         servos: analysis::compute_servo_reports(run, commanded_widths.as_deref()),
         safety: analysis::check_safety(run),
-        way: analysis::compute_command_paths(run, &spans),
-        most_pins_high: log.most_pins_high,
+        paths: analysis::compute_command_paths(run, &spans),
+        max_pins_high: log.max_pins_high,
         asleep_percent: 100.0 * uno.sleep_cycles() as f64 / uno.cycle().max(1) as f64,
         flash: firmware::count_code_bytes(uno.image(), robot) + robot.section().len() as u32,
-        ram: Ram::measure(&uno),
-        overruns: uno.overruns(),
+        ram: RamUse::measure(&uno),
+        overruns: uno.overrun_count(),
         resets: uno.watchdog_resets(),
         ended: describe_end(&recording.state),
         svg: Some(args.svg.display().to_string()),
@@ -216,7 +216,7 @@ fn record(
     dialogue_lines: &mut Vec<DialogueLine>,
 ) -> io::Result<Recording> {
     let time_bar = create_time_bar(script.end_ms);
-    let mut printer = Printer::new(args.all);
+    let mut printer = DialoguePrinter::new(args.all);
     let mut out = io::stdout();
     let pins = frame::servo_pins(robot);
     let recording = session::play(uno, pins, script, |event| {
@@ -284,12 +284,8 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     if let Some(gait) = &args.gait
         && robot.gait(gait).is_none()
     {
-        let names: Vec<&str> = robot.gaits().iter().map(|gait| gait.name()).collect();
-        return Err(Failure::Input(format!(
-            "robot.toml has no gait `{gait}`; allowed values: {}{}",
-            names.join(", "),
-            format_suggestion(gait, names)
-        )));
+        let problem = format!("robot.toml has no gait `{gait}`");
+        return Err(unknown_gait_failure(&problem, gait, robot.gaits().iter()));
     }
     let ms = duration_ms.unwrap_or(12_000);
     if ms < Script::MIN_MS {
@@ -299,7 +295,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         )));
     }
     Ok(args.gait.as_deref().map_or_else(
-        || Script::from_gaits(&tour::choose_demonstration_gaits(robot), ms),
+        || Script::from_gaits(&gait_choice::choose_demonstration_gaits(robot), ms),
         |gait| Script::from_gaits(&[gait], ms),
     ))
 }

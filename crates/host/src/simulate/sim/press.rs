@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn press_is_parsed_from_a_name_and_a_time_or_time_span() {
+    fn a_press_is_parsed_from_a_name_and_a_time_or_time_span() {
         assert_eq!("button@2".parse(), Ok(press("button", 2_000, 2_200)));
         assert_eq!("nose@5.5-8".parse(), Ok(press("nose", 5_500, 8_000)));
         for (invalid_text, reason) in [

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::UNDECIDED_NOTE;
+use lizard_robot::UNDETERMINED_NOTE;
 use serde::Serialize;
 use simulated_uno::Uno;
 
@@ -10,11 +10,11 @@ use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
 use crate::shared::number::round_decimals;
 
-/// All results of a run; the field names are the JSON keys.
+/// All results of a run; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
 pub struct Report<'a> {
-    /// The firmware's name.
-    pub elf: String,
+    #[serde(rename = "elf")]
+    pub firmware_name: String,
     /// The fidelity of the simulated chip: `data-sheet` or `stock`.
     pub fidelity: &'static str,
     /// Simulated time, s.
@@ -28,9 +28,11 @@ pub struct Report<'a> {
     /// The smallest margin, the stroke and the violations over all poses.
     pub safety: Safety,
     /// The predicted displacement during each command; the last entry is the complete run.
-    pub way: Vec<CommandPath>,
+    #[serde(rename = "way")]
+    pub paths: Vec<CommandPath>,
     /// Largest number of servo pins that are high at the same time.
-    pub most_pins_high: u32,
+    #[serde(rename = "most_pins_high")]
+    pub max_pins_high: u32,
     /// Cycles in which the CPU was asleep, percent.
     pub asleep_percent: f64,
     /// Flash size of the firmware, bytes.
@@ -38,7 +40,7 @@ pub struct Report<'a> {
     /// The RAM in use; `None` for an image that is not an ELF, because such an image does not contain the end of the
     /// data.
     #[serde(flatten)]
-    pub ram: Option<Ram>,
+    pub ram: Option<RamUse>,
     /// Number of received bytes lost because the firmware read them too late.
     pub overruns: u64,
     /// The number of watchdog resets.
@@ -81,7 +83,7 @@ impl Report<'_> {
                 row.servo,
                 row.leg,
                 row.pin,
-                row.pulses,
+                row.pulse_count,
                 row.min_us,
                 row.max_us,
                 error_text,
@@ -103,7 +105,7 @@ impl Report<'_> {
             out,
             "predicted path       from      to   forward      left      turn"
         )?;
-        for path in &self.way {
+        for path in &self.paths {
             let format_cell = |value: Option<f64>, digits: usize| {
                 let format_value =
                     |value| format!("{:.digits$}", round_decimals(value, digits as i32));
@@ -113,8 +115,8 @@ impl Report<'_> {
                 out,
                 "{:<16} {:>6.2} s {:>5.2} s {:>6} mm {:>6} mm {:>6} deg",
                 path.command,
-                path.from,
-                path.to,
+                path.start_s,
+                path.end_s,
                 format_cell(path.forward, 1),
                 format_cell(path.left, 1),
                 format_cell(path.turn, 2)
@@ -128,26 +130,26 @@ impl Report<'_> {
         }
         let is_undetermined =
             |path: &CommandPath| [path.forward, path.left, path.turn].contains(&None);
-        if self.way.iter().any(is_undetermined) {
-            write!(out, "{UNDECIDED_NOTE}")?;
+        if self.paths.iter().any(is_undetermined) {
+            write!(out, "{UNDETERMINED_NOTE}")?;
         }
         writeln!(out)
     }
 
     fn print_summary(&self, out: &mut impl Write) -> io::Result<()> {
-        if let Some(least_margin) = &self.safety.least {
+        if let Some(min_margin) = &self.safety.min_margin {
             writeln!(
                 out,
                 "smallest margin {:.3} ({}) at {:.2} s; slider travel {:+.1} to {:+.1} mm",
-                least_margin.value,
-                least_margin.margin,
-                least_margin.seconds,
+                min_margin.value,
+                min_margin.margin,
+                min_margin.seconds,
                 round_decimals(self.safety.stroke[0], 1),
                 round_decimals(self.safety.stroke[1], 1)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {
-            let frame_count = self.safety.violations;
+            let frame_count = self.safety.violation_count;
             writeln!(
                 out,
                 "{frame_count} frames violate a limit of robot.toml; first violation: {reason}"
@@ -160,7 +162,7 @@ impl Report<'_> {
         writeln!(
             out,
             "CPU asleep {:.1} %, flash {} B, {ram_text}bytes lost {}, resets {}, pins high at once {}",
-            self.asleep_percent, self.flash, self.overruns, self.resets, self.most_pins_high
+            self.asleep_percent, self.flash, self.overruns, self.resets, self.max_pins_high
         )?;
         writeln!(
             out,
@@ -176,14 +178,14 @@ impl Report<'_> {
 
 /// A program's RAM use.
 #[derive(Debug, Serialize)]
-pub struct Ram {
+pub struct RamUse {
     /// Bytes of static data.
     pub static_ram: u16,
     /// Smallest number of bytes between the stack and static data.
     pub stack_spare: u16,
 }
 
-impl Ram {
+impl RamUse {
     /// Measures the RAM of a UNO's program; `None` if the image does not contain the end of its data.
     pub fn measure(uno: &Uno) -> Option<Self> {
         let static_ram = uno.image().static_ram();

@@ -13,6 +13,14 @@ pub struct Step {
     pub command: String,
 }
 
+impl Step {
+    /// Creates a step with a command at `ms` milliseconds since power-on.
+    pub fn new(ms: u64, command: impl Into<String>) -> Self {
+        let command = command.into();
+        Self { ms, command }
+    }
+}
+
 /// The commands of a run, the changes of the robot's contacts, and the end of the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Script {
@@ -65,11 +73,11 @@ impl Script {
         let mut steps: Vec<Step> = gaits
             .iter()
             .enumerate()
-            .map(|(index, gait)| step(compute_start(index), &to_command(gait)))
+            .map(|(index, gait)| Step::new(compute_start(index), to_command(gait)))
             .collect();
-        steps.push(step(ms - CLOSING_MS, "stop"));
-        steps.push(step(ms - CLOSING_MS / 2 - 200, "status"));
-        steps.push(step(ms - CLOSING_MS / 2, "rest"));
+        steps.push(Step::new(ms - CLOSING_MS, "stop"));
+        steps.push(Step::new(ms - CLOSING_MS / 2 - 200, "status"));
+        steps.push(Step::new(ms - CLOSING_MS / 2, "rest"));
         Self {
             steps,
             end_ms: ms,
@@ -106,7 +114,7 @@ impl Script {
                     previous_ms: previous_step.ms,
                 });
             }
-            steps.push(step(ms, command));
+            steps.push(Step::new(ms, command));
         }
         let end_ms = steps.last().map_or(0, |last_step| last_step.ms) + 1000;
         Ok(Self {
@@ -117,25 +125,18 @@ impl Script {
     }
 }
 
-fn step(ms: u64, command: &str) -> Step {
-    Step {
-        ms,
-        command: command.to_owned(),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn script_is_parsed_into_timed_commands() {
+    fn a_script_is_parsed_into_timed_commands() {
         let text = "\u{feff}500 walk\r\n# a comment\n\n 1500\tspeed 50\r\n1500 stop";
         let script = Script::parse(text);
         let steps = vec![
-            step(500, "walk"),
-            step(1500, "speed 50"),
-            step(1500, "stop"),
+            Step::new(500, "walk"),
+            Step::new(1500, "speed 50"),
+            Step::new(1500, "stop"),
         ];
         assert_eq!(
             script,
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn error_names_its_line() {
+    fn an_error_names_its_line() {
         let parse_error = |text| {
             Script::parse(text)
                 .expect_err("the script must be refused")

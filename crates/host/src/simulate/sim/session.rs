@@ -43,7 +43,7 @@ pub enum Event<'a> {
 /// The result of a run.
 #[derive(Debug)]
 pub struct Recording {
-    /// The firmware's first line; `None` without any line.
+    /// The firmware's first line; `None` if it has sent no line.
     pub banner: Option<String>,
     /// The answer to each command of the script; `None` if no answer arrived before the end of the run.
     pub answers: Vec<Option<String>>,

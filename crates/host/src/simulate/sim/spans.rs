@@ -20,7 +20,7 @@ pub struct Span {
 fn changes_motion(command: &str) -> bool {
     let word = command.split_whitespace().next().unwrap_or_default();
     Word::find(word.as_bytes())
-        .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::Calibrates))
+        .is_none_or(|word| !matches!(word.effect(), Effect::None | Effect::CalibrationChange))
 }
 
 /// Lists the initial `stand` and the commands that changed the motion, in order of time. After a refused command, the
@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn refused_command_and_command_without_motion_have_no_span() {
+    fn a_refused_command_and_a_command_without_motion_have_no_span() {
         let script = Script::parse("1000 walk\n2000 pose 0 0 0 0\n3000 watch 5\n4000 rest")
             .expect("the script is valid");
         let answers = ["ok walk", "err 4 beyond travel", "ok watch 5", "ok rest"];

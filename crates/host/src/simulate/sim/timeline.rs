@@ -6,9 +6,9 @@ use svg::node::element::Group;
 use super::analysis::Run;
 use super::footfall::{FootSpan, Phase, list_foot_spans};
 use super::spans::Span;
-use crate::shared::ink::{
-    Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_PLACES, add_title, curve,
-    line, pin_name, rectangle, render_svg, text, text_middle, text_start,
+use crate::shared::shapes::{
+    Anchor, DARK, GREY, GRID_COLOUR, PANEL_COLOUR, SERVO_COLOURS, SERVO_POSITIONS, add_title,
+    curve, line, pin_name, rectangle, render_svg, text, text_middle, text_start,
 };
 
 /// Width of the picture, px.
@@ -147,7 +147,7 @@ impl Chart<'_> {
         let to_y =
             |angle: f64| top + STRIP_HEIGHT / 2.0 * (1.0 - (angle - neutral) / half_range_deg);
         let (start_x, end_x) = (self.to_x(0.0), self.to_x(self.end_s));
-        let name = format!("{} {}", SERVO_NAMES[servo], SERVO_PLACES[servo]);
+        let name = format!("{} {}", SERVO_NAMES[servo], SERVO_POSITIONS[servo]);
         let pin = pin_name(self.run.robot.servos()[servo].pin);
         group = group
             .add(rectangle(
@@ -242,7 +242,7 @@ impl Chart<'_> {
                 PANEL_COLOUR,
             ))
             .add(text(
-                SERVO_PLACES[servo],
+                SERVO_POSITIONS[servo],
                 (LEFT_MARGIN - 12.0, top + FOOT_HEIGHT / 2.0 + 5.0),
                 15.0,
                 SERVO_COLOURS[servo],
@@ -251,7 +251,7 @@ impl Chart<'_> {
         let foot_spans = list_foot_spans(self.run.servo_frames(), servo);
         if foot_spans.len() as f64 > (end_x - start_x) / 2.0 {
             let position = ((start_x + end_x) / 2.0, top + FOOT_HEIGHT / 2.0 + 5.0);
-            let note = "steps shorter than a pixel: simulate less to see them";
+            let note = "steps are narrower than a pixel; simulate a shorter time to see them";
             return group.add(text(note, position, 13.0, GREY, Anchor::Middle));
         }
         for FootSpan {
@@ -261,7 +261,7 @@ impl Chart<'_> {
         } in foot_spans
         {
             let (x, width) = (self.to_x(start_s), self.to_x(end_s) - self.to_x(start_s));
-            group = group.add(draw_foot_span(
+            group = group.add(foot_span_rectangle(
                 phase,
                 SERVO_COLOURS[servo],
                 (x, top),
@@ -281,7 +281,7 @@ impl Chart<'_> {
         let mut x = LEFT_MARGIN;
         for (phase, label) in entries {
             group = group
-                .add(draw_foot_span(
+                .add(foot_span_rectangle(
                     phase,
                     "#444444",
                     (x, FEET_Y - 25.0),
@@ -335,9 +335,9 @@ impl Chart<'_> {
     }
 }
 
-/// Draws one time span of a footfall row: filled for stance, pale for still, outlined for swing, so that the picture is
-/// readable without colour. `corner` is the upper left corner.
-fn draw_foot_span(
+/// Returns a time span of a footfall row as a rectangle: filled for stance, pale for still, outlined for swing, so that
+/// the picture is readable without colour. `corner` is the upper left corner.
+fn foot_span_rectangle(
     phase: Phase,
     colour: &str,
     corner: (f64, f64),
@@ -381,15 +381,15 @@ impl Curve {
             return;
         }
         if let [.., first, last] = self.points.as_mut_slice() {
-            let (low, high) = if first.1 <= last.1 {
+            let (min, max) = if first.1 <= last.1 {
                 (first, last)
             } else {
                 (last, first)
             };
-            if point.1 < low.1 {
-                *low = point;
-            } else if point.1 > high.1 {
-                *high = point;
+            if point.1 < min.1 {
+                *min = point;
+            } else if point.1 > max.1 {
+                *max = point;
             }
         }
     }
@@ -402,13 +402,13 @@ mod tests {
 
     fn draw_picture(
         frame_count: usize,
-        compute_width: impl Fn(usize) -> u16,
+        pulse_width: impl Fn(usize) -> u16,
         spans: &[Span],
     ) -> String {
         let robot = crate::shared::robot_file::built_in_robot("paper");
         let log = FrameLog {
             widths: (0..frame_count)
-                .map(|index| [compute_width(index); 4])
+                .map(|index| [pulse_width(index); 4])
                 .collect(),
             ..FrameLog::default()
         };
@@ -438,13 +438,13 @@ mod tests {
     }
 
     #[test]
-    fn picture_of_a_long_run_is_small_and_keeps_the_extremes() {
+    fn a_picture_of_a_long_run_is_small_and_keeps_the_extremes() {
         // One frame out of 10 000 is an extreme.
-        let compute_width = |n| match n {
+        let pulse_width = |n| match n {
             5000 => 24_800,
             _ => 24_000 + 10 * (n as u16 % 3),
         };
-        let picture = draw_picture(10_000, compute_width, &[span("stand", 0.0, 200.0)]);
+        let picture = draw_picture(10_000, pulse_width, &[span("stand", 0.0, 200.0)]);
         assert!(picture.len() < 300_000, "{} bytes", picture.len());
         // 50 us are 5 degrees or 10.4 pixels: half a strip has 52 pixels for 25 degrees.
         let first_curve = picture
@@ -457,9 +457,9 @@ mod tests {
             .expect("the curve has points")
             .split_whitespace();
         let ys = point_texts.filter_map(|point| point.split_once(',')?.1.parse::<f64>().ok());
-        let [low, high] = ys.fold([f64::MAX, f64::MIN], |[low, high], y| {
-            [low.min(y), high.max(y)]
+        let [min, max] = ys.fold([f64::MAX, f64::MIN], |[min, max], y| {
+            [min.min(y), max.max(y)]
         });
-        assert!((high - low - 10.4).abs() < 0.2, "{low} to {high}");
+        assert!((max - min - 10.4).abs() < 0.2, "{min} to {max}");
     }
 }

@@ -17,7 +17,7 @@ use crate::shared::progress::Spinner;
 use crate::shared::robot_file::find_moving_gait;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
-use crate::simulate::sim::{create_time_bar, frame, read_script, spans, supplies, tour};
+use crate::simulate::sim::{create_time_bar, frame, gait_choice, read_script, spans, supplies};
 use crate::{Failure, RobotFile};
 use replay::Replay;
 use report::Report;
@@ -73,8 +73,8 @@ enum ServoArg {
 /// Runs the firmware, simulates the robot and prints the report.
 ///
 /// # Errors
-/// Fails for an invalid robot.toml, a firmware that is missing or contains another robot, an unknown gait, an invalid
-/// script, a firmware that crashes, or an output that cannot be written.
+/// Fails if robot.toml or the script is invalid, if the firmware is missing, contains another robot or crashes, if the
+/// gait is unknown, or if the output cannot be written.
 pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let script = choose_script(&args, &robot)?;
@@ -144,7 +144,7 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
         return read_script(path);
     }
     Ok(match &args.gait {
-        None => build_walk_script(robot, &tour::list_moving_gaits(robot)),
+        None => build_walk_script(robot, &gait_choice::list_moving_gaits(robot)),
         Some(name) => match robot.routine(name) {
             Some(routine) => build_round_script(robot, routine),
             None => build_walk_script(robot, &[find_moving_gait(robot, name)?.name()]),
@@ -152,21 +152,18 @@ fn choose_script(args: &Args, robot: &Robot) -> Result<Script, Failure> {
     })
 }
 
+/// Standing time before and after the motion of a built-in script, ms.
+const STAND_MS: u64 = 1000;
+
 /// Builds a script for one round of a routine. The round starts after a second of standing, and the script ends two
 /// seconds after the round.
 fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
-    const STAND_MS: u64 = 1000;
     let round = RoutineRow::simulate(robot, routine);
-    let name = routine.command();
     let round_end_ms = STAND_MS + (1000.0 * round.seconds).ceil() as u64;
-    let new_step = |ms, command: &str| Step {
-        ms,
-        command: command.to_owned(),
-    };
     Script {
         steps: vec![
-            new_step(STAND_MS, &format!("{name} 1")),
-            new_step(round_end_ms + STAND_MS, "stop"),
+            Step::new(STAND_MS, format!("{} 1", routine.command())),
+            Step::new(round_end_ms + STAND_MS, "stop"),
         ],
         end_ms: round_end_ms + 2 * STAND_MS,
         ..Script::default()
@@ -177,21 +174,14 @@ fn build_round_script(robot: &Robot, routine: &Routine) -> Script {
 /// for a second before the first gait and after the last gait.
 pub(crate) fn build_walk_script(robot: &Robot, gaits: &[&str]) -> Script {
     const CYCLES_PER_GAIT: f64 = 3.0;
-    const STAND_MS: u64 = 1000;
     let mut ms = STAND_MS;
     let mut steps = Vec::new();
     for name in gaits {
-        steps.push(Step {
-            ms,
-            command: to_command(name),
-        });
+        steps.push(Step::new(ms, to_command(name)));
         let period = robot.gait(name).map_or(1.0, |gait| gait.period());
         ms += STAND_MS + (1000.0 * CYCLES_PER_GAIT * period).ceil() as u64;
     }
-    steps.push(Step {
-        ms,
-        command: "stop".to_owned(),
-    });
+    steps.push(Step::new(ms, "stop"));
     Script {
         steps,
         end_ms: ms + STAND_MS,

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use lizard_robot::{CheckedGait, Place, Robot};
-use lizard_twin::{FRAME_S, ServoModel, State, Tally, Twin};
+use lizard_robot::{BodyPose, CheckedGait, Robot};
+use lizard_twin::{FRAME_PERIOD_S, ServoModel, State, Totals, Twin};
 use simulated_uno::CYCLES_PER_US;
 
 use crate::simulate::sim::frame_log::FrameLog;
@@ -50,17 +50,17 @@ impl Replay {
         }
     }
 
-    /// Summarises a range of frames.
-    pub fn tally(&self, frames: Range<usize>) -> Tally {
-        let start_place = match frames.start {
-            0 => Place::START,
-            first_frame => self.states[first_frame - 1].place,
+    /// Computes the totals of a range of frames.
+    pub fn compute_totals(&self, frames: Range<usize>) -> Totals {
+        let start_pose = match frames.start {
+            0 => BodyPose::START,
+            first_frame => self.states[first_frame - 1].body_pose,
         };
-        let mut tally = Tally::new(start_place);
+        let mut totals = Totals::new(start_pose);
         for state in &self.states[frames] {
-            tally.add(state);
+            totals.add(state);
         }
-        tally
+        totals
     }
 
     /// Returns a stage's gait and the frame indices of the gait's last complete cycle. `None` unless the stage's
@@ -70,7 +70,7 @@ impl Replay {
             .robot
             .gait(&stage.command)
             .filter(|gait| gait.has_movement())?;
-        let frames_per_cycle = (gait.period() / FRAME_S).round() as usize;
+        let frames_per_cycle = (gait.period() / FRAME_PERIOD_S).round() as usize;
         let start_frame = stage.frames.end.checked_sub(frames_per_cycle)?;
         (start_frame >= stage.frames.start + frames_per_cycle)
             .then_some((gait, start_frame..stage.frames.end))

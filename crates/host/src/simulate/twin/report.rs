@@ -2,29 +2,31 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{DriveEffect, Prediction, Robot, RoutineRow, Travel, UNDECIDED_NOTE};
-use lizard_twin::{ServoModel, Tally};
+use lizard_robot::{DriveEffect, Prediction, Robot, RoutineRow, Travel, UNDETERMINED_NOTE};
+use lizard_twin::{FRAME_PERIOD_S, ServoModel};
 use serde::Serialize;
 
 use super::replay::Replay;
+use crate::shared::displacement::Displacement;
 use crate::shared::json;
 use crate::shared::number::round_decimals;
 
 /// The report of a run: a row for each command.
 pub struct Report {
     /// The rows in order of time.
-    pub rows: Vec<Row>,
+    pub rows: Vec<CommandReport>,
 }
 
-/// The result of one command; the field names are the JSON keys.
+/// The result of one command; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
-pub struct Row {
+pub struct CommandReport {
     /// The command as it was sent.
     pub command: String,
     /// Times of the command's first frame and of the first frame after the command, s since power-on.
     pub seconds: [f64; 2],
     /// Displacement of the body over the complete command.
-    pub way: Displacement,
+    #[serde(rename = "way")]
+    pub displacement: Displacement,
     /// The gait's last complete cycle, and its prediction.
     pub cycle: Option<Cycle>,
     /// Displacement that `lizard gaits` predicts for one round of a routine with these servos; null for a routine with
@@ -45,41 +47,21 @@ pub struct Row {
     pub servo_error: f64,
 }
 
-/// A displacement of the body. A component is null if the contact model cannot determine it because two feet balance
-/// the other two (a tie).
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct Displacement {
-    /// Distance forward, mm.
-    pub forward: Option<f64>,
-    /// Distance to the left, mm.
-    pub left: Option<f64>,
-    /// Turn, deg counter-clockwise.
-    pub turn: Option<f64>,
-}
-
 /// One cycle of a gait.
 #[derive(Debug, Serialize)]
 pub struct Cycle {
     /// Displacement of the body during the cycle.
-    pub way: Displacement,
+    #[serde(rename = "way")]
+    pub displacement: Displacement,
     /// Displacement predicted by the contact model with ideal servos.
-    pub predicted: Displacement,
+    #[serde(rename = "predicted")]
+    pub ideal_displacement: Displacement,
     /// Mean speed over the cycle, mm/s; null if the displacement is undetermined.
     pub speed: Option<f64>,
     /// Predicted displacement divided by the displacement with rigid legs; null if the legs are rigid, or if the
     /// displacement with rigid legs is almost zero or undetermined.
     #[serde(rename = "share_of_rigid")]
     pub fraction_of_rigid: Option<f64>,
-}
-
-impl From<Prediction> for Displacement {
-    fn from(prediction: Prediction) -> Self {
-        Self {
-            forward: prediction.forward,
-            left: prediction.left,
-            turn: prediction.turn,
-        }
-    }
 }
 
 /// Predicts one round of a routine with the servo model `model`; `None` unless the command runs exactly one round of a
@@ -123,50 +105,50 @@ impl Report {
             .iter()
             .filter(|stage| !stage.frames.is_empty());
         let compute_row = |stage: &super::replay::Stage| {
-            let stage_tally = replay.tally(stage.frames.clone());
+            let stage_totals = replay.compute_totals(stage.frames.clone());
             let gait = robot.find_gait_in_line(&stage.command);
             let gait_prediction = gait.map(|gait| robot.predict(gait));
             let cycle = replay.find_last_cycle(stage).filter(|_| !changes_speed);
-            let cycle_tally = cycle
+            let cycle_totals = cycle
                 .as_ref()
-                .map(|(_, frames)| replay.tally(frames.clone()));
+                .map(|(_, frames)| replay.compute_totals(frames.clone()));
             let round = predict_round(robot, &stage.command, model).filter(|_| !changes_speed);
             let prediction = gait_prediction
                 .as_ref()
                 .or(round.as_ref().map(|(_, prediction)| prediction));
-            let seconds_at = |frame: usize| replay.start_s + frame as f64 * lizard_twin::FRAME_S;
-            let reported_tally: &Tally = cycle_tally.as_ref().unwrap_or(&stage_tally);
-            Row {
+            let seconds_at = |frame: usize| replay.start_s + frame as f64 * FRAME_PERIOD_S;
+            let reported_totals = cycle_totals.as_ref().unwrap_or(&stage_totals);
+            CommandReport {
                 command: stage.command.clone(),
                 seconds: [seconds_at(stage.frames.start), seconds_at(stage.frames.end)],
-                way: Displacement::from_travel(stage_tally.travel(), prediction),
-                cycle: cycle_tally.zip(cycle).map(|(tally, (gait, _))| Cycle {
-                    way: Displacement::from_travel(tally.travel(), prediction),
-                    predicted: prediction.map_or(
-                        Displacement::from_travel(tally.travel(), None),
+                displacement: Displacement::from_travel(stage_totals.travel(), prediction),
+                cycle: cycle_totals.zip(cycle).map(|(totals, (gait, _))| Cycle {
+                    displacement: Displacement::from_travel(totals.travel(), prediction),
+                    ideal_displacement: prediction.map_or(
+                        Displacement::from_travel(totals.travel(), None),
                         |prediction| (*prediction).into(),
                     ),
                     speed: prediction
                         .and_then(|prediction| prediction.forward)
                         .map(|_| {
-                            let travel = tally.travel();
-                            travel.forward.hypot(travel.left) / tally.duration_s()
+                            let travel = totals.travel();
+                            travel.forward.hypot(travel.left) / totals.duration_s()
                         }),
                     fraction_of_rigid: DriveEffect::compute(gait, robot.ground())
-                        .and_then(|cost| cost.fraction_of_rigid),
+                        .and_then(|effect| effect.fraction_of_rigid),
                 }),
                 // An input may end a step of the routine earlier or later than the prediction assumes.
                 round: round
                     .filter(|(round, _)| !round.has_inputs)
                     .map(|(_, prediction)| prediction.into()),
-                foot_slip: reported_tally.slips,
-                lag: reported_tally.max_lag,
-                margin: reported_tally
+                foot_slip: reported_totals.slips,
+                lag: reported_totals.max_lag,
+                margin: reported_totals
                     .min_margin
                     .map(|(check, value)| (check.name(), value)),
-                stroke: reported_tally.stroke_range,
-                servo_rate: reported_tally.max_rate,
-                servo_error: reported_tally.max_error,
+                stroke: reported_totals.stroke_range,
+                servo_rate: reported_totals.max_rate,
+                servo_error: reported_totals.max_error,
             }
         };
         Self {
@@ -215,13 +197,9 @@ impl Report {
         for row in &self.rows {
             let Some(cycle) = &row.cycle else { continue };
             write!(out, "{:name_width$}  ", row.command)?;
-            for displacement in [&cycle.way, &cycle.predicted] {
-                for (component, decimals) in [
-                    (displacement.forward, 1),
-                    (displacement.left, 1),
-                    (displacement.turn, 1),
-                ] {
-                    write!(out, "{:>8}", format_component(component, decimals))?;
+            for displacement in [&cycle.displacement, &cycle.ideal_displacement] {
+                for component in [displacement.forward, displacement.left, displacement.turn] {
+                    write!(out, "{:>8}", format_component(component, 1))?;
                 }
             }
             write!(
@@ -252,7 +230,7 @@ impl Report {
         }
         for row in self.rows.iter().filter(|row| row.cycle.is_none()) {
             let [start_s, end_s] = row.seconds;
-            let displacement = &row.way;
+            let displacement = &row.displacement;
             if [displacement.forward, displacement.left, displacement.turn]
                 .map(|component| component.is_some_and(|component| component.abs() > 0.05))
                 == [false; 3]
@@ -269,13 +247,12 @@ impl Report {
                 writeln!(out, "predicted: {}", describe_displacement(round))?;
             }
         }
-        let is_undetermined = |displacement: &Displacement| {
-            displacement.forward.is_none()
-                || displacement.left.is_none()
-                || displacement.turn.is_none()
+        let is_undetermined = |row: &CommandReport| {
+            let displacement = &row.displacement;
+            [displacement.forward, displacement.left, displacement.turn].contains(&None)
         };
-        if self.rows.iter().any(|row| is_undetermined(&row.way)) {
-            write!(out, "\n{UNDECIDED_NOTE}")?;
+        if self.rows.iter().any(is_undetermined) {
+            write!(out, "\n{UNDETERMINED_NOTE}")?;
         }
         Ok(())
     }

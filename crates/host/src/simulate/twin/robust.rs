@@ -2,7 +2,9 @@
 
 use std::io::{self, Write};
 
-use lizard_robot::{CheckedGait, Effort, Ground, HIGH_UTILISATION, PACES_PERCENT, Robot, Travel};
+use lizard_robot::{
+    CheckedGait, Effort, GroundContact, HIGH_UTILISATION, PACES_PERCENT, Robot, Travel,
+};
 use lizard_tune::{FRICTION_FACTORS, PLAY_SPREAD_TEXT, SPREAD_TEXT, Variation, compute_quantiles};
 use lizard_twin::ServoModel;
 use serde::Serialize;
@@ -13,13 +15,13 @@ use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
 
-/// The spread of a gait's displacement per cycle; the field names are the JSON keys.
+/// The spread of a gait's displacement per cycle; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
 struct Spread {
     /// The gait's name.
     gait: String,
-    /// Number of simulated variations.
-    times: usize,
+    #[serde(rename = "times")]
+    variation_count: usize,
     /// The 5th, 50th and 95th percentile of the displacement forward, mm.
     forward: [f64; 3],
     /// The same percentiles of the displacement to the left, mm.
@@ -27,7 +29,8 @@ struct Spread {
     /// The same percentiles of the turn, deg counter-clockwise.
     turn: [f64; 3],
     /// The utilisation of the servos at each pace on each supply.
-    lines: Vec<Utilisation>,
+    #[serde(rename = "lines")]
+    utilisations: Vec<Utilisation>,
 }
 
 /// A gait's highest utilisation of a servo's torque-speed line at one pace on one supply.
@@ -39,14 +42,15 @@ struct Utilisation {
     volts: f64,
     /// The utilisation on the robot's own floor, and on a floor with the highest friction of the variations; 1 is the
     /// complete line.
-    share: [f64; 2],
+    #[serde(rename = "share")]
+    by_floor: [f64; 2],
 }
 
 impl Utilisation {
     /// Computes a gait's utilisation at each of the [`PACES_PERCENT`] on every supply.
     fn compute_all(robot: &Robot, gait: &CheckedGait) -> Vec<Self> {
         let efforts = [1.0, FRICTION_FACTORS.1].map(|factor| {
-            let ground = Ground {
+            let ground = GroundContact {
                 friction_coefficient: robot.ground().friction_coefficient * factor,
                 ..*robot.ground()
             };
@@ -55,7 +59,7 @@ impl Utilisation {
         let compute_one = |pace: f64, volts: f64| Self {
             pace,
             volts,
-            share: efforts.each_ref().map(|effort| {
+            by_floor: efforts.each_ref().map(|effort| {
                 effort.utilisation(pace / 100.0, volts / robot.servo_type().supply_volts)
             }),
         };
@@ -100,7 +104,7 @@ pub fn run(
         }
         let simulate = |seed: u64| {
             bar.inc(1);
-            Variation::draw(robot.ground(), seed)
+            Variation::sample(robot.ground(), seed)
                 .with_play(seed)
                 .simulate_cycle(robot, gait, model)
         };
@@ -117,30 +121,30 @@ pub fn run(
             json::write_line(out, spread)?;
         }
     } else {
-        print(&spreads, variation_count, out)?;
+        print_tables(&spreads, variation_count, out)?;
     }
     Ok(())
 }
 
 impl Spread {
     /// Computes a gait's spread over the displacements of its variations.
-    fn from_paths(gait: &str, paths: &[Travel], lines: Vec<Utilisation>) -> Self {
+    fn from_paths(gait: &str, paths: &[Travel], utilisations: Vec<Utilisation>) -> Self {
         let component_quantiles = |component: fn(&Travel) -> f64| {
             compute_quantiles(paths.iter().map(component).collect(), [0.05, 0.5, 0.95])
         };
         Self {
             gait: gait.to_owned(),
-            times: paths.len(),
+            variation_count: paths.len(),
             forward: component_quantiles(|path| path.forward),
             left: component_quantiles(|path| path.left),
             turn: component_quantiles(|path| path.turn),
-            lines,
+            utilisations,
         }
     }
 }
 
 /// Prints a table of the spreads and a table of the utilisation.
-fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
+fn print_tables(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::Result<()> {
     writeln!(
         out,
         "\n{variation_count} robots and floors: {SPREAD_TEXT}, {PLAY_SPREAD_TEXT}; a cycle, mm and deg:\n"
@@ -178,14 +182,14 @@ fn print(spreads: &[Spread], variation_count: u32, out: &mut impl Write) -> io::
         return Ok(());
     };
     write!(out, "{:<12}", "gait")?;
-    for Utilisation { pace, volts, .. } in &first_spread.lines {
+    for Utilisation { pace, volts, .. } in &first_spread.utilisations {
         write!(out, "{:>18}", format!("{pace:.0} %, {volts:.2} V"))?;
     }
     writeln!(out)?;
     for spread in spreads {
         write!(out, "{:<12}", spread.gait)?;
-        for line in &spread.lines {
-            let [own_floor, rough_floor] = line.share.map(format_utilisation);
+        for utilisation in &spread.utilisations {
+            let [own_floor, rough_floor] = utilisation.by_floor.map(format_utilisation);
             write!(out, "{:>18}", format!("{own_floor} {rough_floor}"))?;
         }
         writeln!(out)?;

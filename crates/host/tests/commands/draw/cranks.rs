@@ -1,39 +1,30 @@
 //! Tests of the crank and spline drawing.
 
-use lizard_host::draw::draw_horns;
+use lizard_host::draw::draw_cranks;
+use lizard_robot::servo::SERVO_NAMES;
 
 use super::drawing::Point;
-use super::files::{SERVOS, draw_robot, paper_toml, read_neutral_angle, read_robot_files};
+use super::robot_files::{draw_robot, paper_toml, read_neutral_angle, read_robot_files};
+use crate::program::read_length;
 
 #[test]
 fn each_crank_is_drawn_and_labelled_at_its_neutral_angle() {
     for (name, text) in read_robot_files() {
-        let drawing = draw_robot(draw_horns, &text);
+        let drawing = draw_robot(draw_cranks, &text);
         // All four cranks are drawn to the same scale.
-        let read_length = |key: &str| -> f64 {
-            let mut values = text
-                .lines()
-                .filter_map(|line| line.strip_prefix(key)?.trim().strip_prefix('='));
-            let value = values.next().and_then(|value| value.split('#').next());
-            value
-                .expect(key)
-                .trim()
-                .parse()
-                .expect("the value is a number")
-        };
-        let find_crank = |servo: &str| drawing.points_by_id(&format!("crank-{servo}"));
-        let cranks = SERVOS.iter().zip(["l1", "l4", "l9", "l6"]);
+        let crank_points = |servo: &str| drawing.points_by_id(&format!("crank-{servo}"));
+        let cranks = SERVO_NAMES.iter().zip(["l1", "l4", "l9", "l6"]);
         let scales = cranks.map(|(servo, key)| {
-            let crank = find_crank(servo);
-            (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / read_length(key)
+            let crank = crank_points(servo);
+            (crank[1].0 - crank[0].0).hypot(crank[1].1 - crank[0].1) / read_length(&text, key)
         });
         let scales: Vec<f64> = scales.collect();
         for scale in &scales {
             assert!((scale / scales[0] - 1.0).abs() < 1e-3, "{name}: {scales:?}");
         }
-        for servo in SERVOS {
+        for servo in SERVO_NAMES {
             let neutral = read_neutral_angle(&text, servo);
-            let error = angle_difference(neutral, compute_direction(&find_crank(servo)));
+            let error = angle_difference(neutral, compute_direction(&crank_points(servo)));
             assert!(error.abs() < 0.02, "{name} {servo}: {error} deg");
             let label = &drawing.element_by_id(&format!("angle-{servo}")).content;
             assert_eq!(*label, format!("{neutral:.2}°"), "{name} {servo}");
@@ -49,7 +40,7 @@ fn compute_direction(line: &[Point]) -> f64 {
     y.atan2(x).to_degrees()
 }
 
-/// The counter-clockwise angle from one direction to another, degrees from -180 to 180.
+/// Returns the counter-clockwise angle from one direction to another, degrees from -180 to 180.
 fn angle_difference(from: f64, to: f64) -> f64 {
     (to - from + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -57,7 +48,7 @@ fn angle_difference(from: f64, to: f64) -> f64 {
 #[test]
 fn the_example_trim_turns_the_mounted_crank_to_its_neutral_angle() {
     for (name, text) in read_robot_files() {
-        let drawing = draw_robot(draw_horns, &text);
+        let drawing = draw_robot(draw_cranks, &text);
         let [mounted_crank, exact_crank] =
             ["fitted-crank", "exact-crank"].map(|id| drawing.points_by_id(id));
         let exact_direction = compute_direction(&exact_crank);
@@ -75,7 +66,7 @@ fn the_example_trim_turns_the_mounted_crank_to_its_neutral_angle() {
 
 #[test]
 fn the_spline_has_25_teeth_and_a_crank_is_at_most_half_a_tooth_off() {
-    let drawing = draw_robot(draw_horns, &paper_toml());
+    let drawing = draw_robot(draw_cranks, &paper_toml());
     let corners = drawing.points_by_id("spline");
     let corner_count = corners.len() as f64;
     let mean = |axis: fn(&Point) -> f64| corners.iter().map(axis).sum::<f64>() / corner_count;

@@ -16,7 +16,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// The value of an attribute; empty if the attribute is missing.
+    /// Returns the value of an attribute; empty if the attribute is missing.
     pub fn attribute(&self, key: &str) -> &str {
         self.attributes.get(key).map_or("", String::as_str)
     }
@@ -99,7 +99,7 @@ impl Drawing {
         elements.any(|element| element.attribute("id") == id)
     }
 
-    /// The texts of all elements.
+    /// Returns the texts of all elements.
     pub fn texts(&self) -> impl Iterator<Item = &str> {
         self.elements.iter().map(|element| element.content.as_str())
     }
@@ -108,7 +108,7 @@ impl Drawing {
         self.element_by_id(id).points()
     }
 
-    /// The names and points of all wires and rails.
+    /// Returns the names and points of all wires.
     pub fn wires(&self) -> Vec<(&str, Vec<Point>)> {
         self.elements
             .iter()

@@ -2,21 +2,21 @@
 
 mod cranks;
 mod drawing;
-mod files;
+mod robot_files;
 mod wires;
 
-use lizard_host::draw::{draw_horns, draw_top_view, draw_wiring};
+use lizard_host::draw::{draw_cranks, draw_top_view, draw_wiring};
 use lizard_robot::Robot;
 
 use crate::program::read_file;
 use drawing::Drawing;
-use files::{paper_toml, read_robot_files};
+use robot_files::{paper_toml, read_robot_files};
 
 #[test]
 fn every_element_is_on_the_page_and_large_enough_to_read() {
     for (name, text) in read_robot_files() {
         let robot = Robot::parse(&text).expect("the robot file is valid");
-        for svg in [draw_wiring(&robot), draw_horns(&robot)] {
+        for svg in [draw_wiring(&robot), draw_cranks(&robot)] {
             let drawing = Drawing::parse(&svg);
             let page = &drawing.elements[0];
             let [width, height] = ["width", "height"].map(|key| page.parse_number(key));
@@ -57,7 +57,7 @@ fn the_drawings_in_docs_are_up_to_date() {
     let view = draw_top_view(&robot, &neutral, true);
     for (name, svg) in [
         ("wiring", draw_wiring(&robot)),
-        ("horns", draw_horns(&robot)),
+        ("horns", draw_cranks(&robot)),
         ("lizard", view.clone()),
         ("charts/top-view", view),
     ] {

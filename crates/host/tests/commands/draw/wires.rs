@@ -3,23 +3,24 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::drawing::{Drawing, Point};
-use super::files::{SERVOS, draw_robot, paper_toml, read_robot_files, read_servo_value};
+use super::robot_files::{draw_robot, paper_toml, read_robot_files, read_servo_value};
 use lizard_host::draw::draw_wiring;
+use lizard_robot::servo::SERVO_NAMES;
 
 /// Draws the wiring of a robot file.
 fn draw_robot_wiring(robot_toml: &str) -> Drawing {
     draw_robot(draw_wiring, robot_toml)
 }
 
-/// The colour of a pin.
+/// Returns the colour of a pin.
 fn pin_fill<'a>(drawing: &'a Drawing, pin: &str) -> &'a str {
     drawing.element_by_id(pin).attribute("fill")
 }
 
-/// Changes the servo pins in the paper's robot file.
-fn change_pins(pins: [&str; 4]) -> String {
+/// Returns the paper's robot file with other servo pins.
+fn with_servo_pins(pins: [&str; 4]) -> String {
     let mut text = paper_toml();
-    for (servo, pin) in SERVOS.into_iter().zip(pins) {
+    for (servo, pin) in SERVO_NAMES.into_iter().zip(pins) {
         let format_entry = |pin: &str| format!("[servo.{servo}]\npin = \"{pin}\"");
         let old_entry = format_entry(read_servo_value(&text, servo, "pin"));
         assert!(text.contains(&old_entry));
@@ -28,9 +29,9 @@ fn change_pins(pins: [&str; 4]) -> String {
     text
 }
 
-/// Returns copies of the paper's robot file with many sets and orders of servo pins; each copy with the pins' names.
-/// Since 17 is prime, four pins at equal steps are always distinct.
-fn files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
+/// Returns copies of the paper's robot file with many sets and orders of servo pins, each after its pins' names. Since
+/// 17 is prime, four pins at equal steps are always distinct.
+fn robot_files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
     let pin_name = |number: usize| match number % 17 {
         index @ 0..11 => format!("D{}", index + 2),
         index => format!("A{}", index - 11),
@@ -41,7 +42,7 @@ fn files_with_many_pin_sets() -> impl Iterator<Item = (String, String)> {
         .map(|pins| {
             (
                 format!("{pins:?}"),
-                change_pins(pins.each_ref().map(String::as_str)),
+                with_servo_pins(pins.each_ref().map(String::as_str)),
             )
         })
 }
@@ -141,11 +142,11 @@ impl<'a> Nets<'a> {
 fn every_component_is_joined_to_the_nets_that_it_needs() {
     for (name, text) in read_robot_files()
         .into_iter()
-        .chain(files_with_many_pin_sets())
+        .chain(robot_files_with_many_pin_sets())
     {
         let drawing = draw_robot_wiring(&text);
         let nets = Nets::from_drawing(&drawing);
-        let servo_grounds = SERVOS.map(|servo| format!("end-{servo}-ground"));
+        let servo_grounds = SERVO_NAMES.map(|servo| format!("end-{servo}-ground"));
         let grounds = [
             "end-battery-minus",
             "end-converter-in-minus",
@@ -179,7 +180,7 @@ fn every_component_is_joined_to_the_nets_that_it_needs() {
             "end-battery-minus",
         ];
         let mut net_roots = ends.map(|end| nets.find_root(end)).to_vec();
-        for servo in SERVOS {
+        for servo in SERVO_NAMES {
             let pin = read_servo_value(&text, servo, "pin");
             let signal = format!("end-{servo}-signal");
             nets.assert_joined(&[&signal, &format!("pin-{pin}")]);
@@ -230,7 +231,7 @@ fn the_removal_of_any_link_splits_its_strip() {
 fn wires_may_cross_but_never_touch_or_overlap() {
     for (_, text) in read_robot_files()
         .into_iter()
-        .chain(files_with_many_pin_sets())
+        .chain(robot_files_with_many_pin_sets())
     {
         let drawing = draw_robot_wiring(&text);
         // The wires in the radio's panel may touch each other, so they are ignored.
@@ -314,13 +315,13 @@ fn inputs_are_drawn_as_options_between_their_pins_and_ground() {
     let (button, nose) = ("[input.button]\npin = \"A1\"", "[input.nose]\npin = \"D7\"");
     let (no_inputs, button_only) = (draw_with_tables(""), draw_with_tables(button));
     let both_inputs = draw_with_tables(&format!("{button}\n{nose}"));
-    let find_element =
+    let are_drawn =
         |id: &str| [&no_inputs, &button_only, &both_inputs].map(|drawing| drawing.has_element(id));
     for name in ["input-button-A1", "input-button-GND"] {
-        assert_eq!(find_element(name), [false, true, true]);
+        assert_eq!(are_drawn(name), [false, true, true]);
     }
     for name in ["input-nose-D7", "input-nose-GND", "input-nose-5V"] {
-        assert_eq!(find_element(name), [false, false, true]);
+        assert_eq!(are_drawn(name), [false, false, true]);
         let terminal = name.replace("input-", "end-");
         let [wire, terminal] = [name, &terminal].map(|id| both_inputs.points_by_id(id));
         assert_eq!(wire[0], terminal[0]);

@@ -1,4 +1,4 @@
-//! Tests of `lizard measure keys` with hand-written results of `lizard measure`.
+//! Tests of `lizard measure keys` with hand-written outputs of `lizard measure --json`.
 
 use std::fs;
 use std::path::PathBuf;
@@ -17,8 +17,8 @@ fn format_gait(gait: &str, [forward, left, turn]: [f64; 3]) -> String {
 }
 
 /// Formats the movements of several gaits as `lizard measure --json` does.
-fn format_gaits(objects: &[String]) -> String {
-    format!(r#"{{"gaits":[{}]}}"#, objects.join(","))
+fn format_measurement(gaits: &[String]) -> String {
+    format!(r#"{{"gaits":[{}]}}"#, gaits.join(","))
 }
 
 /// Writes a file to the scratch folder.
@@ -36,21 +36,21 @@ fn run_measure_keys(files: &[&PathBuf], options: &[&str]) -> Outcome {
 }
 
 #[test]
-fn files_without_usable_movements_are_rejected_with_advice() {
-    let foreign_file = r#"{"gaits":[{"gait":"walk","speed":100}]}"#.to_owned();
-    let file_with_gait = |gait: &str| format_gaits(&[format_gait(gait, [30.0, 0.0, 0.0])]);
-    let file_without_motion = format_gaits(&[format_gait("stand", [0.0; 3])]);
-    let file_of_other_robot =
-        file_with_gait("walk").replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
+fn files_without_usable_movements_are_refused_with_advice() {
+    let foreign_json = r#"{"gaits":[{"gait":"walk","speed":100}]}"#.to_owned();
+    let json_with_gait = |gait: &str| format_measurement(&[format_gait(gait, [30.0, 0.0, 0.0])]);
+    let json_without_motion = format_measurement(&[format_gait("stand", [0.0; 3])]);
+    let json_of_other_robot =
+        json_with_gait("walk").replace(r#""speed":100"#, r#""speed":100,"period_expected":1.25"#);
     for (text, expected) in [
-        (&foreign_file, "refused.json: expected the output of"),
-        (&foreign_file, "missing field `forward`"),
+        (&foreign_json, "refused.json: expected the output of"),
+        (&foreign_json, "missing field `forward`"),
         (&String::new(), "refused.json: expected the output of"),
-        (&format_gaits(&[]), "none of these gaits"),
-        (&file_with_gait("wakl"), "no gait `wakl`"),
-        (&file_without_motion, "moves no servo"),
+        (&format_measurement(&[]), "none of these gaits"),
+        (&json_with_gait("wakl"), "no gait `wakl`"),
+        (&json_without_motion, "moves no servo"),
         (
-            &file_of_other_robot,
+            &json_of_other_robot,
             "1.00 s in this robot.toml, but 1.25 s",
         ),
     ] {
@@ -61,7 +61,7 @@ fn files_without_usable_movements_are_rejected_with_advice() {
 
 #[test]
 fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
-    let movements = format_gaits(&[format_gait("walk", [30.0, 0.0, 0.0])]);
+    let movements = format_measurement(&[format_gait("walk", [30.0, 0.0, 0.0])]);
     let movement_file = write_file("movement.json", &movements);
     let text = read_file("robots/grain.toml");
     let robot_file = write_file("other-robot.toml", &text);
@@ -78,7 +78,7 @@ fn measure_keys_never_overwrites_a_robot_file_or_its_input() {
 
 #[test]
 fn the_written_robot_file_differs_only_in_measured_lines() {
-    // The model's movements with a friction ratio of 1.1, extrapolated from the file's ratio of 1.
+    // The movements that the model predicts for a friction ratio of 1.1, extrapolated from the ratio of 1 in the file.
     let gaits = [
         format_gait("walk", [33.57, 0.07, 0.0]),
         format_gait("trot", [25.63, -0.02, 0.0]),
@@ -86,7 +86,7 @@ fn the_written_robot_file_differs_only_in_measured_lines() {
         format_gait("back", [-32.91, 0.08, 0.0]),
         format_gait("left", [1.09, 0.29, 14.53]),
     ];
-    let measured_file = write_file("movements.json", &format_gaits(&gaits));
+    let measured_file = write_file("movements.json", &format_measurement(&gaits));
     let output = scratch_folder().join("measured.toml");
     let _ = fs::remove_file(&output);
     let output_name = output.to_str().expect("the path is UTF-8");

@@ -1,7 +1,7 @@
 //! Tests of `lizard measure` with rendered videos whose true values are known, and of the printed sheet in the videos.
 
-mod jig;
 mod keys;
+mod servo_and_slope;
 mod sheet;
 
 use std::fs;
@@ -107,7 +107,7 @@ fn find_stable_words(table: &str) -> Vec<&str> {
 }
 
 #[test]
-fn a_video_of_a_walk_agrees_with_the_prediction_and_is_rejected_as_another_gait() {
+fn a_video_of_a_walk_agrees_with_the_prediction_and_is_refused_as_another_gait() {
     let folder = render_walk("walk video", |i| format!("walk-{}ms.jpg", i * 125));
     let robot = robot_path("paper");
     let measure_walk = |robot: &str, options: &[&str]| {
@@ -185,7 +185,7 @@ fn a_video_of_a_walk_agrees_with_the_prediction_and_is_rejected_as_another_gait(
         Some(csv.lines().count() as u64 - 1),
         video["frames"].as_u64()
     );
-    // A path that does not match the named gait is rejected; the message names the gait that matches.
+    // A path that does not match the named gait is refused; the message names the gait that matches.
     let message = measure(&folder, &["--gait", "left"]).expect_refusal();
     assert!(message.contains("was it another gait"), "{message}");
     assert!(message.ends_with("; it resembles walk"), "{message}");
@@ -246,7 +246,7 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
     for label in ["walk, ", "left, ", "measured", "predicted", "turn, deg"] {
         assert!(svg.contains(label), "{label}: {svg}");
     }
-    // A gait that is not in the video and gaits in the wrong order are rejected.
+    // A gait that is not in the video and gaits in the wrong order are refused.
     let refusal = measure_gaits(&["--gait", "walk,left,walk,back"]).expect_refusal();
     assert!(
         refusal.starts_with("lizard: found 3 walks between rests of")
@@ -264,7 +264,7 @@ fn measure_identifies_gaits_by_given_names_or_by_their_paths() {
 }
 
 #[test]
-fn impossible_measurements_are_rejected_with_a_message() {
+fn impossible_measurements_are_refused_with_a_message() {
     let folder = new_folder("measure refusals");
     for name in ["empty", "text", "untimed"] {
         fs::create_dir(folder.join(name)).expect("the folder is created");

@@ -60,8 +60,8 @@ fn rasterize(text: &str, [page_width, page_height]: [f64; 2]) -> (Frame, [[f64; 
         };
         let [x, y, width, height] = [0, 1, 2, 3].map(|i| rectangle[i] * MM_PER_POINT);
         for (axis, (start, length)) in [(x, width), (y, height)].into_iter().enumerate() {
-            let [low, high] = ink_extent[axis];
-            ink_extent[axis] = [low.min(start), high.max(start + length)];
+            let [min, max] = ink_extent[axis];
+            ink_extent[axis] = [min.min(start), max.max(start + length)];
         }
         if lines.peek() != Some(&"f") {
             continue;
@@ -85,10 +85,10 @@ fn a_printed_sheet_shows_all_tags_at_actual_size() {
     for (paper, paper_mm) in [("a4", [297.0_f64, 210.0]), ("letter", [279.4, 215.9])] {
         let (text, page_mm) = write_sheet(paper);
         let (frame, ink_extent) = rasterize(&text, page_mm);
-        for (axis, [low, high]) in ink_extent.into_iter().enumerate() {
+        for (axis, [min, max]) in ink_extent.into_iter().enumerate() {
             assert!((page_mm[axis] - paper_mm[axis]).abs() < 0.1, "{page_mm:?}");
             assert!(
-                low > 5.0 && high < page_mm[axis] - 5.0,
+                min > 5.0 && max < page_mm[axis] - 5.0,
                 "ink outside the printable area: {ink_extent:?}"
             );
         }

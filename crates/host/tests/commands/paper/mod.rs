@@ -3,5 +3,5 @@
 
 mod bad_input;
 mod documents;
-mod solve;
+mod pose;
 mod values;

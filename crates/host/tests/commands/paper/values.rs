@@ -119,12 +119,12 @@ fn the_determinant_matches_its_factors_and_the_nearest_poses_are_singular() {
     assert!((eliminated / factored - 1.0).abs() < 1e-9);
     let start_angles = [120.0, 70.0, 310.0, 230.0];
     let mut previous_distance = 0.0;
-    for near_pose in elements(&report["nearest"]) {
-        let distance = to_number(&near_pose["distance"]);
+    for singular_pose in elements(&report["nearest"]) {
+        let distance = to_number(&singular_pose["distance"]);
         assert!(distance >= previous_distance);
         previous_distance = distance;
         let [a1, a2, a3, a4] =
-            [0, 1, 2, 3].map(|i| start_angles[i] + to_number(&near_pose["turn"][i]));
+            [0, 1, 2, 3].map(|i| start_angles[i] + to_number(&singular_pose["turn"][i]));
         let pose = format!("theta1,theta4,theta8,theta5\n{a1},{a2},{a3},{a4}\n");
         let solution = run_line(&with_paper("pose --json"), pose).expect_json();
         let min_margin = solution["margins"].as_object().map_or(0.0, |margins| {
@@ -134,7 +134,7 @@ fn the_determinant_matches_its_factors_and_the_nearest_poses_are_singular() {
         assert!(
             min_margin < 1e-4,
             "{}: margin {min_margin}",
-            near_pose["what"]
+            singular_pose["what"]
         );
     }
 }

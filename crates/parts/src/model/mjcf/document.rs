@@ -12,7 +12,7 @@ const TIME_STEP_S: f64 = 0.0002;
 const CONSTRAINT_SOLREF: &str = "0.002 1";
 /// `solref` of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's excess length.
 pub(super) const CONTACT_SOLREF: &str = "0.001 1";
-/// `solimp` of constraints and limits: least and largest impedance, and the width of the transition, m or rad.
+/// `solimp` of constraints and limits: smallest and largest impedance, and the width of the transition, m or rad.
 const CONSTRAINT_SOLIMP: &str = "0.99 0.999 0.0001";
 
 impl Writer<'_> {
@@ -24,16 +24,16 @@ impl Writer<'_> {
         self.xml.open("custom");
         let ratio = round(self.scene.friction_ratio);
         let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
-        self.xml.write_empty_element(data);
+        self.xml.write_empty(data);
         if self.scene.drives_in_bursts {
             let data = r#"numeric name="bursts" data="1""#;
-            self.xml.write_empty_element(data);
+            self.xml.write_empty(data);
         }
-        if let Some(course) = &self.scene.course {
-            let (start, period) = (round(course.measure_start), round(course.period));
-            let measured_cycles = course.measured_cycles;
-            let data = format!(r#"numeric name="cycle" data="{start} {period} {measured_cycles}""#);
-            self.xml.write_empty_element(data);
+        if let Some(trajectory) = &self.scene.trajectory {
+            let (start, period) = (round(trajectory.measure_start), round(trajectory.period));
+            let cycle_count = trajectory.measured_cycle_count;
+            let data = format!(r#"numeric name="cycle" data="{start} {period} {cycle_count}""#);
+            self.xml.write_empty(data);
         }
         self.xml.close();
         self.write_assets();
@@ -46,21 +46,21 @@ impl Writer<'_> {
 
     fn write_options(&mut self) {
         let xml = &mut self.xml;
-        xml.write_empty_element(r#"compiler angle="radian" autolimits="true""#);
+        xml.write_empty(r#"compiler angle="radian" autolimits="true""#);
         // Feet of a few grams chatter with MuJoCo's default contact settings.
-        xml.write_empty_element(format!(
+        xml.write_empty(format!(
             r#"option timestep="{TIME_STEP_S}" gravity="{}" integrator="implicitfast" cone="elliptic" impratio="100" noslip_iterations="20""#,
             self.scene.floor.format_gravity()
         ));
         xml.open("visual");
-        xml.write_empty_element(r#"map znear="0.01""#);
-        xml.write_empty_element(r#"global offwidth="1280" offheight="960""#);
+        xml.write_empty(r#"map znear="0.01""#);
+        xml.write_empty(r#"global offwidth="1280" offheight="960""#);
         xml.close();
-        xml.write_empty_element(r#"statistic extent="0.3" center="0 0 0.03""#);
+        xml.write_empty(r#"statistic extent="0.3" center="0 0 0.03""#);
         xml.open("default");
-        xml.write_empty_element(r#"geom contype="0" conaffinity="0""#);
-        xml.write_empty_element(r#"mesh scale="0.001 0.001 0.001""#);
-        xml.write_empty_element(format!(
+        xml.write_empty(r#"geom contype="0" conaffinity="0""#);
+        xml.write_empty(r#"mesh scale="0.001 0.001 0.001""#);
+        xml.write_empty(format!(
             r#"equality solref="{CONSTRAINT_SOLREF}" solimp="{CONSTRAINT_SOLIMP}""#
         ));
         xml.close();
@@ -71,14 +71,14 @@ impl Writer<'_> {
         let pieces = self.visible_pieces();
         let xml = &mut self.xml;
         xml.open("asset");
-        xml.write_empty_element(format!(
+        xml.write_empty(format!(
             r#"texture name="sky" type="skybox" builtin="gradient" rgb1="0.9 0.95 1" rgb2="0.6 0.7 0.8" {TEXTURE_SIZE}"#
         ));
-        xml.write_empty_element(format!(
+        xml.write_empty(format!(
             r#"texture name="floor" type="2d" builtin="checker" rgb1="0.75 0.75 0.72" rgb2="0.82 0.82 0.8" {TEXTURE_SIZE}"#
         ));
         // Each square of the checker pattern becomes 5 cm wide.
-        xml.write_empty_element(
+        xml.write_empty(
             r#"material name="floor" texture="floor" texrepeat="10 10" texuniform="true""#,
         );
         for Piece { name, mesh, .. } in pieces {
@@ -86,7 +86,7 @@ impl Writer<'_> {
             let vertex = corners.map(|coordinate| (coordinate * 1e5).round() / 1e5 + 0.0);
             let face = mesh.triangles.as_flattened().iter();
             let (vertex, face) = (join_numbers(vertex), join_numbers(face));
-            xml.write_empty_element(format!(
+            xml.write_empty(format!(
                 r#"mesh name="{name}" vertex="{vertex}" face="{face}""#
             ));
         }
@@ -96,7 +96,7 @@ impl Writer<'_> {
     fn write_world(&mut self) {
         self.xml.open("worldbody");
         self.xml
-            .write_empty_element(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
+            .write_empty(r#"light pos="0.3 -0.3 1" dir="-0.3 0.3 -1" type="directional""#);
         self.write_floor();
         self.write_body(Node::OnMount(Mount::Chassis));
         self.xml.close();

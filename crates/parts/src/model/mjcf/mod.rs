@@ -3,7 +3,7 @@
 //! MuJoCo requires a tree of bodies, so each closed loop is cut, and a constraint closes it again.
 
 mod document;
-mod drives;
-mod footing;
+mod floor_and_pads;
+mod loops_and_motors;
 mod sensors;
 mod tree;

@@ -15,24 +15,23 @@ impl Writer<'_> {
         self.xml.open("sensor");
         for name in SERVO_NAMES {
             for (quantity, kind) in [("angle", "pos"), ("rate", "vel"), ("torque", "frc")] {
-                self.xml.write_empty_element(format!(
+                self.xml.write_empty(format!(
                     r#"actuator{kind} name="{name} {quantity}" actuator="{name}""#
                 ));
             }
         }
         for leg in LEG_NAMES {
             self.xml
-                .write_empty_element(format!(r#"touch name="load {leg}" site="pad {leg}""#));
+                .write_empty(format!(r#"touch name="load {leg}" site="pad {leg}""#));
         }
         let chassis = r#"objtype="xbody" objname="chassis""#;
         self.xml
-            .write_empty_element(format!(r#"framepos name="place" {chassis}"#));
+            .write_empty(format!(r#"framepos name="place" {chassis}"#));
         self.xml
-            .write_empty_element(format!(r#"framequat name="direction" {chassis}"#));
+            .write_empty(format!(r#"framequat name="direction" {chassis}"#));
         self.xml
-            .write_empty_element(r#"velocimeter name="velocity" site="chassis""#);
-        self.xml
-            .write_empty_element(r#"gyro name="gyro" site="chassis""#);
+            .write_empty(r#"velocimeter name="velocity" site="chassis""#);
+        self.xml.write_empty(r#"gyro name="gyro" site="chassis""#);
         self.xml.close();
     }
 
@@ -41,7 +40,7 @@ impl Writer<'_> {
         let radius = self.assembly.robot().parts().pad.radius;
         let (leg, position) = (LEG_NAMES[servo], format_metres(self.dome_centre(servo)));
         let size = round(SITE_RADIUS_RATIO * radius * MILLI);
-        self.xml.write_empty_element(format!(
+        self.xml.write_empty(format!(
             r#"site name="pad {leg}" type="sphere" size="{size}" pos="{position}" group="3""#
         ));
     }

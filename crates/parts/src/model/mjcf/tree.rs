@@ -30,23 +30,22 @@ impl Writer<'_> {
         let centre = format_metres(inertia.centre_of_mass());
         let kilograms = round(inertia.mass * MILLI);
         let tensor = join_numbers(inertia.format_tensor());
-        self.xml.write_empty_element(format!(
+        self.xml.write_empty(format!(
             r#"inertial pos="{centre}" mass="{kilograms}" fullinertia="{tensor}""#
         ));
         let pieces = self.visible_pieces().iter();
         for piece in pieces.filter(|piece| piece.node == node) {
             let (name, colour) = (&piece.name, Material::for_kind(piece.kind).colour);
             self.xml
-                .write_empty_element(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
+                .write_empty(format!(r#"geom type="mesh" mesh="{name}" rgba="{colour}""#));
         }
         if let Node::Pad(servo) = node {
             self.write_pad(servo);
             self.write_pad_site(servo);
         }
         if is_chassis {
-            self.xml
-                .write_empty_element(r#"site name="chassis" group="3""#);
-            self.xml.write_empty_element(
+            self.xml.write_empty(r#"site name="chassis" group="3""#);
+            self.xml.write_empty(
                 r#"camera name="beside" mode="trackcom" pos="0.24 -0.21 0.2" xyaxes="0.66 0.75 0 -0.39 0.34 0.86""#,
             );
         }
@@ -63,8 +62,7 @@ impl Writer<'_> {
         let name = node.name();
         let (kind, axis) = match node.freedom() {
             Freedom::Free => {
-                self.xml
-                    .write_empty_element(format!(r#"freejoint name="{name}""#));
+                self.xml.write_empty(format!(r#"freejoint name="{name}""#));
                 return;
             }
             Freedom::TurnsAboutZ => ("hinge", "0 0 1"),
@@ -94,7 +92,7 @@ impl Writer<'_> {
                 joint += &format!(r#" range="{} {play}" {limits} damping="0.00001""#, -play);
             }
             (Node::Pad(_), _) => {
-                let [stiffness, damping] = self.leaf_spring();
+                let (stiffness, damping) = (self.leaf_stiffness(), self.leaf_damping());
                 joint += &format!(r#" stiffness="{stiffness}" damping="{damping}""#);
             }
             (Node::SlotPin(_), Some(StrutSpring { preload, rate })) => {
@@ -107,11 +105,11 @@ impl Writer<'_> {
             }
             _ => {}
         }
-        self.xml.write_empty_element(joint);
+        self.xml.write_empty(joint);
     }
 }
 
-/// Formats the attributes for a joint's dry friction, N or N m; empty for a joint without friction.
+/// Formats the attributes for a joint's dry friction, N or N m; empty if the joint has no friction.
 fn format_friction(friction: f64) -> String {
     match friction > 0.0 {
         // MuJoCo's default friction constraint is soft, so a servo that hardly moves would have less friction.

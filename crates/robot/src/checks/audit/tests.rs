@@ -1,5 +1,6 @@
 //! Tests of the audit with gaits at their limits and just beyond their limits.
 
+use crate::robot::STAND;
 use crate::testing::{all_robots, robot, robot_with, text_before_gaits};
 use crate::{CheckedGait, Robot};
 use lizard_core::guard::hazard::{Hazard, Margin};
@@ -7,7 +8,7 @@ use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
-/// Finds the smallest and largest slider travel on each side over a gait, mm.
+/// Finds the smallest and the largest slider travel on each side over a gait, mm.
 fn find_slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     let mut travels = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
@@ -20,9 +21,6 @@ fn find_slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
     }
     travels
 }
-
-/// The gait without movement that every robot needs.
-const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 
 /// Reads the robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`,
 /// moves the legs of one side, so that only this side's slider moves.
@@ -161,18 +159,12 @@ fn a_backward_swing_has_the_same_peak_speed_as_a_forward_swing() {
 fn a_gait_may_be_as_fast_as_the_limit_but_no_faster() {
     let unequal = robot("unequal");
     let peak_speed = |gait: &CheckedGait| gait.audit().peak_speed.speed;
-    let largest_speed = unequal.gaits().iter().map(peak_speed).fold(0.0, f64::max);
+    let max_speed = unequal.gaits().iter().map(peak_speed).fold(0.0, f64::max);
     let limit_line = |speed: f64| format!("gait_slew = {speed:?}");
-    assert!(
-        robot_with(
-            "unequal",
-            &[("gait_slew = 330.0", &limit_line(largest_speed))]
-        )
-        .is_ok()
-    );
+    assert!(robot_with("unequal", &[("gait_slew = 330.0", &limit_line(max_speed))]).is_ok());
     let result = robot_with(
         "unequal",
-        &[("gait_slew = 330.0", &limit_line(largest_speed - 1e-6))],
+        &[("gait_slew = 330.0", &limit_line(max_speed - 1e-6))],
     );
     let message = result.expect_err("the gait is too fast").to_string();
     assert!(message.contains("limits.gait_slew is"), "{message}");
@@ -241,29 +233,29 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         ("leg = 0.38 ", &Check::LEG),
     ] {
         let name = key.split(' ').next().expect("the text begins with a key");
-        let find_least_margin = |gait: &CheckedGait| {
+        let min_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
-            let [least_margin] = [audit.type2, audit.type1, audit.leg]
+            let [min_margin] = [audit.type2, audit.type1, audit.leg]
                 .into_iter()
                 .filter(|margin| checks.contains(&margin.check))
                 .collect::<Vec<_>>()[..]
             else {
                 panic!("{audit:?}")
             };
-            least_margin.value
+            min_margin.value
         };
-        let least_margin = unequal
+        let min_margin = unequal
             .gaits()
             .iter()
-            .map(find_least_margin)
+            .map(min_margin_of)
             .fold(1.0, f64::min);
         let limit_line = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is accurate to one or two thousandths.
         assert!(
-            robot_with("unequal", &[(key, &limit_line(least_margin - 0.003))]).is_ok(),
+            robot_with("unequal", &[(key, &limit_line(min_margin - 0.003))]).is_ok(),
             "{name}"
         );
-        let result = robot_with("unequal", &[(key, &limit_line(least_margin + 1e-6))]);
+        let result = robot_with("unequal", &[(key, &limit_line(min_margin + 1e-6))]);
         let message = result.expect_err(name).to_string();
         assert!(message.contains(&format!("margin {name}_")), "{message}");
     }
@@ -281,21 +273,17 @@ fn gaits_that_only_the_firmwares_guard_rejects_are_rejected() {
         ("unequal", "type1 = 0.27 "),
     ] {
         let robot = robot(name);
-        let find_least_margin = |gait: &CheckedGait| {
+        let min_margin_of = |gait: &CheckedGait| {
             if key.starts_with("leg") {
                 gait.audit().leg.value
             } else {
                 gait.audit().type1.value
             }
         };
-        let least_margin = robot
-            .gaits()
-            .iter()
-            .map(find_least_margin)
-            .fold(1.0, f64::min);
+        let min_margin = robot.gaits().iter().map(min_margin_of).fold(1.0, f64::min);
         let limit_name = key.split(' ').next().expect("the text begins with a key");
         for i in 1..10 {
-            let limit_line = format!("{limit_name} = {:?} ", least_margin - f64::from(i) * 1e-5);
+            let limit_line = format!("{limit_name} = {:?} ", min_margin - f64::from(i) * 1e-5);
             let error = robot_with(name, &[(key, &limit_line)]).err();
             messages.extend(error.map(|error| error.to_string()));
         }
@@ -314,12 +302,12 @@ fn gaits_that_only_the_firmwares_guard_rejects_are_rejected() {
 }
 
 #[test]
-fn each_least_margin_occurs_at_its_reported_phase() {
+fn each_smallest_margin_occurs_at_its_reported_phase() {
     for (name, robot) in all_robots() {
         for gait in robot.gaits() {
             let audit = gait.audit();
-            for least_margin in [audit.type2, audit.type1, audit.leg] {
-                let phase = (least_margin.phase * 65536.0) as u16;
+            for min_margin in [audit.type2, audit.type1, audit.leg] {
+                let phase = (min_margin.phase * 65536.0) as u16;
                 let pose = gait.table_angles(phase).into();
                 let solution = robot
                     .lizard()
@@ -327,9 +315,9 @@ fn each_least_margin_occurs_at_its_reported_phase() {
                     .expect("a checked gait closes its loops");
                 let (_, value) = solution
                     .conditions()
-                    .find(|(check, _)| *check == least_margin.check)
+                    .find(|(check, _)| *check == min_margin.check)
                     .expect("the solution has this condition");
-                assert_eq!(value, least_margin.value, "{name} {}", gait.name());
+                assert_eq!(value, min_margin.value, "{name} {}", gait.name());
             }
         }
     }

@@ -1,16 +1,16 @@
 //! Tests of valid and invalid gait definitions in robot.toml.
 
+use crate::robot::STAND;
 use crate::testing::{robot, text_before_gaits};
 use crate::{Error, Robot};
 use lizard_core::console::word::Word;
+use lizard_kinematics::{End, Vector};
 
 /// Parses the paper's robot with these gaits instead of its own.
 fn paper_with_gaits(gaits: &str) -> Result<Robot, Error> {
     Robot::parse(&format!("{}{gaits}", text_before_gaits("paper")))
 }
 
-/// The first gait of every robot.
-const STAND: &str = "[gait.stand]\nperiod = 1.0\nwaveform = \"still\"\n";
 /// A gait with its own waveform.
 const WALK: &str = "[gait.walk]\nperiod = 1.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 10.0\nstart = { LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }\n";
 
@@ -40,7 +40,7 @@ fn a_gait_reversed_twice_runs_forward() {
 }
 
 #[test]
-fn a_mirrored_gait_exchanges_left_and_right_before_the_gains_apply() {
+fn a_mirrored_gait_swaps_left_and_right_before_the_gains_apply() {
     let robot = robot("own-gaits");
     let amplitudes_and_starts = |name| {
         let strides = robot.gait(name).expect(name).strides();
@@ -91,34 +91,25 @@ fn a_path_moves_only_the_end_that_it_names() {
     for i in 0..64 {
         let phase = f64::from(i) / 64.0;
         let cycle_angle = std::f64::consts::TAU * phase;
-        let solution = robot
-            .lizard()
-            .solve(&wag.pose(phase))
-            .expect("a checked gait closes its loops");
-        let tail = solution.tail.end_point;
-        let (expected_x, expected_y) = (
+        let tail_point = Vector::new(
             9.0 * cycle_angle.sin(),
             54.0 + 3.0 * (2.0 * cycle_angle + 0.5 * std::f64::consts::PI).sin(),
         );
-        assert!(
-            (tail.x - expected_x).hypot(tail.y - expected_y) < 1e-9,
-            "{tail:?}"
-        );
-        assert_eq!(wag.angles(phase)[..2], neutral[..2]);
-        let solution = robot
-            .lizard()
-            .solve(&nod.pose(phase))
-            .expect("a checked gait closes its loops");
-        let head = solution.head.end_point;
-        let (expected_x, expected_y) = (
+        let head_point = Vector::new(
             4.0 + 2.0 * cycle_angle.sin(),
             56.0 + 5.0 * cycle_angle.sin(),
         );
-        assert!(
-            (head.x - expected_x).hypot(head.y - expected_y) < 1e-9,
-            "{head:?}"
-        );
-        assert_eq!(nod.angles(phase)[2..], neutral[2..]);
+        for (gait, end, expected, still_servos) in [
+            (wag, End::Tail, tail_point, 0..2),
+            (nod, End::Head, head_point, 2..4),
+        ] {
+            let solution = robot.lizard().solve(&gait.pose(phase));
+            let solution = solution.expect("a checked gait closes its loops");
+            let point = solution.end(end).end_point;
+            assert!((point - expected).length() < 1e-9, "{end}: {point:?}");
+            let angles = &gait.angles(phase)[still_servos.clone()];
+            assert_eq!(angles, &neutral[still_servos]);
+        }
     }
 }
 
@@ -170,7 +161,7 @@ fn a_name_may_have_48_characters_but_not_49() {
     );
 }
 
-/// The end of the message for a robot whose gaits do not fit into the section.
+/// The end of the message about a robot whose gaits do not fit into the flash section.
 const NO_ROOM_ADVICE: &str = "remove gaits, starting with those whose waveform no other gait uses";
 
 #[test]

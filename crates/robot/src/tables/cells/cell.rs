@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use lizard_core::numbers::units::STEPS_PER_TURN;
 use lizard_kinematics::Vector;
 
-/// Largest number of divisions of a cell into four before it counts as undecided. The excess width of a bound over a
+/// Largest number of divisions of a cell into four before it counts as undetermined. The excess width of a bound over a
 /// cell is roughly proportional to the cell's size, so each division proves cells that are half as far from a limit.
 const MAX_DIVISIONS: u32 = 4;
 
@@ -16,8 +16,8 @@ pub(super) const ROUNDING_ALLOWANCE: f64 = 1e-9;
 /// A range of one servo's angles in the chassis frame, in 1/65536 turn.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
-    pub low: f64,
-    pub high: f64,
+    pub min: f64,
+    pub max: f64,
 }
 
 /// The ranges of two servos' angles: first the servo of a map's rows, then the servo of its columns.
@@ -32,7 +32,7 @@ pub(super) enum Verdict {
     /// The centre of the cell violates the condition.
     Violated,
     /// The bounds over the cell are too wide for a decision.
-    Undecided,
+    Undetermined,
 }
 
 /// A condition of the guard that depends on two servos.
@@ -47,32 +47,23 @@ pub(super) trait Condition {
 impl Span {
     /// The middle of the span, degrees.
     pub fn centre_deg(&self) -> f64 {
-        (self.low + self.high) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN)
+        (self.min + self.max) / 2.0 * 360.0 / f64::from(STEPS_PER_TURN)
     }
 
     /// Half the width of the span, radians.
     pub fn half_width_rad(&self) -> f64 {
-        (self.high - self.low) / 2.0 * TAU / f64::from(STEPS_PER_TURN)
+        (self.max - self.min) / 2.0 * TAU / f64::from(STEPS_PER_TURN)
     }
 
     /// Unit vector at the middle of the span.
     pub fn direction(&self) -> Vector {
-        Vector::direction(self.centre_deg())
+        Vector::from_angle(self.centre_deg())
     }
 
     /// The lower and the upper half of the span.
     fn halves(self) -> [Self; 2] {
-        let middle = (self.low + self.high) / 2.0;
-        [
-            Self {
-                high: middle,
-                ..self
-            },
-            Self {
-                low: middle,
-                ..self
-            },
-        ]
+        let middle = (self.min + self.max) / 2.0;
+        [[self.min, middle], [middle, self.max]].map(|[min, max]| Self { min, max })
     }
 }
 
@@ -87,7 +78,7 @@ impl Cell {
         match condition.evaluate(self) {
             Verdict::Proven => true,
             Verdict::Violated => false,
-            Verdict::Undecided => {
+            Verdict::Undetermined => {
                 let [rows, columns] = self.0.map(Span::halves);
                 divisions > 0
                     && rows.into_iter().all(|row| {

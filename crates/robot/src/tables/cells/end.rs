@@ -110,7 +110,7 @@ impl Condition for EndConditions {
             bounds::EndErrors::over_range(&self.five_bar, self.rounded_bars, tip_distance_range);
         let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
         if !(errors.are_margins_known && is_uncrossed) {
-            return Verdict::Undecided;
+            return Verdict::Undetermined;
         }
         let coupler_rotation = |coupler: f64| crank_movement / (coupler * errors.min_type2);
         let type1_losses = [
@@ -131,7 +131,7 @@ impl Condition for EndConditions {
             });
         match is_proven {
             true => Verdict::Proven,
-            false => Verdict::Undecided,
+            false => Verdict::Undetermined,
         }
     }
 }
@@ -144,8 +144,8 @@ mod tests {
     /// Creates a span of a single angle.
     fn single_angle(angle: f64) -> Span {
         Span {
-            low: angle,
-            high: angle,
+            min: angle,
+            max: angle,
         }
     }
 
@@ -205,8 +205,8 @@ mod tests {
             let unlimited = *select_limit(&mut conditions);
             for (clearance, verdict) in [
                 (1.01 * bound, Verdict::Proven),
-                (0.99 * bound, Verdict::Undecided),
-                (0.01 * bound, Verdict::Undecided),
+                (0.99 * bound, Verdict::Undetermined),
+                (0.01 * bound, Verdict::Undetermined),
                 (-0.01 * bound, Verdict::Violated),
             ] {
                 *select_limit(&mut conditions) = value - clearance;
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn crank_tips_that_may_be_crossed_leave_a_cell_undecided() {
+    fn crank_tips_that_may_be_crossed_leave_a_cell_undetermined() {
         let (conditions, _) = create_neutral_cell();
         let mm_per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
         let span_at = |degrees: f64| single_angle(degrees * 65536.0 / 360.0);
@@ -253,7 +253,7 @@ mod tests {
             conditions.evaluate(&Cell([left, right]))
         };
         assert_eq!(evaluate_at(-mm_per_step), Verdict::Violated);
-        assert_eq!(evaluate_at(mm_per_step), Verdict::Undecided);
+        assert_eq!(evaluate_at(mm_per_step), Verdict::Undetermined);
         assert_eq!(evaluate_at(20.0 * mm_per_step), Verdict::Proven);
     }
 }

@@ -118,8 +118,8 @@ impl DividedServo {
     fn cell_span(&self, cell: i32, bits: u32) -> Span {
         let first = f64::from(i32::from(self.neutral.0) + (cell << bits));
         Span {
-            low: first,
-            high: first + f64::from((1 << bits) - 1),
+            min: first,
+            max: first + f64::from((1 << bits) - 1),
         }
     }
 }

@@ -63,7 +63,7 @@ impl Condition for StrokeCondition {
         if clearance - arm_movement - self.error_bound >= ROUNDING_ALLOWANCE {
             Verdict::Proven
         } else {
-            Verdict::Undecided
+            Verdict::Undetermined
         }
     }
 }
@@ -83,8 +83,8 @@ mod tests {
             let spans = side.servos().map(|servo| {
                 let angle = f64::from(numbers.neutral_angles[servo].0);
                 Span {
-                    low: angle,
-                    high: angle,
+                    min: angle,
+                    max: angle,
                 }
             });
             let cell = Cell(spans);
@@ -92,8 +92,8 @@ mod tests {
             let length = condition.length(&cell);
             for (clearance, verdict) in [
                 (1.01, Verdict::Proven),
-                (0.99, Verdict::Undecided),
-                (0.01, Verdict::Undecided),
+                (0.99, Verdict::Undetermined),
+                (0.01, Verdict::Undetermined),
                 (-0.01, Verdict::Violated),
             ] {
                 let (min, max) = (condition.min_length, condition.max_length);

@@ -17,23 +17,6 @@ use crate::tables::table::Tables;
 use crate::testing::{all_robots, robot};
 use crate::{Robot, Servo};
 
-/// Collects the configuration of a robot, so that a test can change it.
-fn to_config(robot: &Robot) -> RobotConfig {
-    RobotConfig {
-        lizard: *robot.lizard(),
-        servos: *robot.servos(),
-        servo_type: *robot.servo_type(),
-        joint_friction: robot.motors().joint_friction,
-        limits: *robot.limits(),
-        speed_limits: *robot.speed_limits(),
-        ground: *robot.ground(),
-        supplies: *robot.supplies(),
-        parts: *robot.parts(),
-        inputs: *robot.inputs(),
-        legs: *robot.legs(),
-    }
-}
-
 /// Random asymmetrical robots, with various links, limits and servos.
 fn random_configs() -> impl Strategy<Value = RobotConfig> {
     let paper = robot("paper");
@@ -86,7 +69,7 @@ fn random_configs() -> impl Strategy<Value = RobotConfig> {
                     ..paper.servos()[i]
                 }
             }),
-            ..to_config(&paper)
+            ..paper.config.clone()
         }
     })
 }
@@ -287,7 +270,7 @@ fn cells_of_the_old_maps_violate_a_stricter_limit() {
         |limits| limits.stroke_max -= 1.0,
     ];
     for (index, change) in changes.into_iter().enumerate() {
-        let mut stricter_config = to_config(&robot);
+        let mut stricter_config = robot.config.clone();
         change(&mut stricter_config.limits);
         let stricter_robot = RobotWithMaps::from_config("stricter", &stricter_config);
         let maps = robot.cell_maps();

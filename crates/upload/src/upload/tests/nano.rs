@@ -11,7 +11,7 @@ fn an_upload_to_an_old_nano_finds_its_baud_rate_and_keeps_its_boot_loader() {
     assert_eq!(
         (run.board.reset_count, run.retry_count),
         (2, 1),
-        "called at both baud rates"
+        "tried at both baud rates"
     );
     assert_eq!(
         run.reported_contents,

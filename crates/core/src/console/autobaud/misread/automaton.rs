@@ -9,7 +9,7 @@ use std::{format, fs, vec};
 
 use crate::console::word::Word;
 
-/// The names of all gaits in robots/ and of a routine, as they are sent.
+/// The names of all gaits in robots/ and of a routine, spelled as on the serial line, with spaces instead of hyphens.
 pub static GAIT_NAMES: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
     let files = fs::read_dir(folder).expect("the folder robots/ is readable");
@@ -56,7 +56,7 @@ impl LineAutomaton {
     }
 
     /// Adds a state, with a transition to it from each of these states for each of these bytes; returns the state.
-    fn add_transition(
+    fn add_successor(
         &mut self,
         from: &[usize],
         bytes: impl IntoIterator<Item = u8> + Clone,
@@ -74,7 +74,7 @@ impl LineAutomaton {
             self.transitions[state]
                 .get(&byte)
                 .copied()
-                .unwrap_or_else(|| self.add_transition(&[state], [byte]))
+                .unwrap_or_else(|| self.add_successor(&[state], [byte]))
         })
     }
 
@@ -83,7 +83,7 @@ impl LineAutomaton {
         let mut states = from.to_vec();
         let mut end_states = Vec::new();
         for _ in 0..max_digits {
-            states = vec![self.add_transition(&states, b'0'..=b'9')];
+            states = vec![self.add_successor(&states, b'0'..=b'9')];
             end_states.extend(&states);
         }
         end_states
@@ -91,10 +91,10 @@ impl LineAutomaton {
 
     /// Adds a number with an optional sign, one to three digits, and at most two decimals after a point. Returns the
     /// states in which the number may end.
-    fn add_decimal(&mut self, blank_state: usize) -> Vec<usize> {
-        let sign_state = self.add_transition(&[blank_state], *b"+-");
-        let mut end_states = self.add_digits(&[blank_state, sign_state], 3);
-        let point_state = self.add_transition(&end_states, *b".");
+    fn add_decimal(&mut self, separator_state: usize) -> Vec<usize> {
+        let sign_state = self.add_successor(&[separator_state], *b"+-");
+        let mut end_states = self.add_digits(&[separator_state, sign_state], 3);
+        let point_state = self.add_successor(&end_states, *b".");
         end_states.extend(self.add_digits(&[point_state], 2));
         end_states
     }
@@ -108,13 +108,13 @@ impl LineAutomaton {
         previous_states.next().is_none().then_some(first_state)
     }
 
-    /// Creates an automaton that accepts all commands in their usual notation.
-    pub fn for_usual_commands() -> Self {
+    /// Creates an automaton that accepts all commands in their canonical notation, with single spaces.
+    pub fn for_canonical_commands() -> Self {
         let mut automaton = Self::new();
         for gait in &*GAIT_NAMES {
             let name_end = automaton.add_word(gait);
-            let blank_state = automaton.add_transition(&[name_end], *b" ");
-            let count_end_states = automaton.add_digits(&[blank_state], 3);
+            let separator_state = automaton.add_successor(&[name_end], *b" ");
+            let count_end_states = automaton.add_digits(&[separator_state], 3);
             automaton.accepting_states.insert(name_end);
             automaton.accepting_states.extend(count_end_states);
         }
@@ -130,17 +130,17 @@ impl LineAutomaton {
             let mut end_states = vec![word_end];
             // The example has as many arguments as the command takes.
             for (index, example) in word.example().split(' ').skip(1).enumerate() {
-                let blank_state = automaton.add_transition(&end_states, *b" ");
+                let separator_state = automaton.add_successor(&end_states, *b" ");
                 let is_whole_number = matches!(word, Word::Speed | Word::Watch | Word::Deadman);
                 end_states = match (word, index) {
                     (Word::Trim | Word::Limit | Word::Dir | Word::Scale, 0) => {
-                        vec![automaton.add_transition(&[blank_state], *b"1234")]
+                        vec![automaton.add_successor(&[separator_state], *b"1234")]
                     }
                     _ if matches!(example, "+" | "-") => {
-                        vec![automaton.add_transition(&[blank_state], *b"+-")]
+                        vec![automaton.add_successor(&[separator_state], *b"+-")]
                     }
-                    _ if is_whole_number => automaton.add_digits(&[blank_state], 5),
-                    _ => automaton.add_decimal(blank_state),
+                    _ if is_whole_number => automaton.add_digits(&[separator_state], 5),
+                    _ => automaton.add_decimal(separator_state),
                 };
             }
             automaton.accepting_states.extend(end_states);
@@ -158,20 +158,22 @@ impl LineAutomaton {
             .chain(Word::ALL.iter().map(|word| word.text()))
         {
             let word_end = automaton.add_word(word);
-            let blank_state = automaton.add_transition(&[word_end], *b" \t\x0c");
+            let separator_state = automaton.add_successor(&[word_end], *b" \t\x0c");
             let argument_bytes: Vec<u8> = match word {
                 "boot" => (b' '..=b'~').collect(),
                 _ => b"0123456789.+- \t\x0c".to_vec(),
             };
             for byte in argument_bytes {
-                automaton.transitions[blank_state]
+                automaton.transitions[separator_state]
                     .entry(byte)
-                    .or_insert(blank_state);
+                    .or_insert(separator_state);
             }
-            automaton.accepting_states.extend([word_end, blank_state]);
+            automaton
+                .accepting_states
+                .extend([word_end, separator_state]);
         }
-        for blank in *b" \t\x0c" {
-            automaton.transitions[Self::START].insert(blank, Self::START);
+        for separator in *b" \t\x0c" {
+            automaton.transitions[Self::START].insert(separator, Self::START);
         }
         automaton
     }

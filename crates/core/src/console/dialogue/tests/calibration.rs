@@ -318,10 +318,10 @@ fn after_a_calibration_a_gait_accelerates_gradually_to_full_pace() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway left");
     dialogue.run_frames(150);
-    let full_advance = run_frame_and_measure_advance(&mut dialogue);
+    let full_advance = measure_phase_advance(&mut dialogue, 1);
     dialogue.send_line("trim 2 3");
     let advances: Vec<u32> = (0..100)
-        .map(|_| run_frame_and_measure_advance(&mut dialogue))
+        .map(|_| measure_phase_advance(&mut dialogue, 1))
         .collect();
     let first_moving_frame = advances
         .iter()
@@ -332,11 +332,4 @@ fn after_a_calibration_a_gait_accelerates_gradually_to_full_pace() {
         "{advances:?}"
     );
     assert_eq!(advances.last(), Some(&full_advance));
-}
-
-/// Runs a frame. Returns the advance of the phase, 1/2^24 cycle.
-fn run_frame_and_measure_advance(dialogue: &mut Dialogue) -> u32 {
-    let phase_before = dialogue.motion().phase();
-    dialogue.run_frame();
-    dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
 }

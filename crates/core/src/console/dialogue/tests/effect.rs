@@ -38,16 +38,16 @@ fn observe_effect(line: &str) -> Effect {
     .map(run_frames_and_read_widths);
     let is_constant = |frames: &[[u16; 4]]| frames[1..].iter().all(|frame| *frame == frames[1]);
     if walking_widths[FRAME_COUNT - 1] == [0; 4] {
-        Effect::Rests
+        Effect::Rest
     } else if walking_dialogue.motion().calibration() != undisturbed_dialogue.motion().calibration()
     {
-        Effect::Calibrates
+        Effect::CalibrationChange
     } else if !is_constant(&standing_widths) {
-        Effect::Moves
+        Effect::Motion
     } else if is_constant(&walking_widths) {
-        Effect::Freezes
+        Effect::Freeze
     } else if walking_widths != undisturbed_widths {
-        Effect::Paces
+        Effect::SpeedChange
     } else {
         Effect::None
     }
@@ -62,8 +62,8 @@ fn every_word_and_every_gait_has_its_declared_effect() {
         assert_eq!(observe_effect(line), word.effect(), "{line}");
     }
     for gait in GAIT_NAMES {
-        assert_eq!(command::effect(gait, &robot), Effect::Moves, "{gait}");
-        assert_eq!(observe_effect(gait), Effect::Moves, "{gait}");
+        assert_eq!(command::effect(gait, &robot), Effect::Motion, "{gait}");
+        assert_eq!(observe_effect(gait), Effect::Motion, "{gait}");
     }
     for line in ["", "pose", "pose 1", "nonsense", "sway now", "rest 1"] {
         assert_eq!(command::effect(line, &robot), Effect::None, "{line}");

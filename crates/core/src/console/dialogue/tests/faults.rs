@@ -1,5 +1,7 @@
 //! Tests of faults, which stop the robot, and of resets, after which it starts in a safe state.
 
+use lizard_avr::Region;
+
 use super::*;
 
 #[test]
@@ -26,6 +28,15 @@ fn boot_is_executed_three_seconds_after_power_on_unless_a_byte_arrives() {
         interrupted_dialogue.run_frames(400);
         assert_eq!(interrupted_dialogue.status_value("gait"), "stand");
     }
+}
+
+#[test]
+fn without_a_robot_commands_that_need_one_are_refused_with_code_10() {
+    let mut dialogue = Dialogue::with_flash(Region::new(&[]), VirtualBoard::default());
+    for line in ["stand", "pose 90 90 270 270", "cal", "walk 3"] {
+        assert_eq!(dialogue.send_line(line), "err 10 no robot in the flash");
+    }
+    assert_eq!(dialogue.status_value("fault"), "robot");
 }
 
 #[test]
@@ -104,12 +115,7 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
     let mut dialogue = wake_asymmetric_robot();
     dialogue.send_line("sway");
     dialogue.run_frames(150);
-    let measure_advance = |dialogue: &mut Dialogue| {
-        let phase_before = dialogue.motion().phase();
-        dialogue.run_frames(10);
-        dialogue.motion().phase().wrapping_sub(phase_before) & 0xff_ffff
-    };
-    let full_advance = measure_advance(&mut dialogue);
+    let full_advance = measure_phase_advance(&mut dialogue, 10);
     set_supply(&mut dialogue, 4_400);
     let printed_lines = dialogue.run_frames(40);
     assert!(
@@ -117,7 +123,8 @@ fn a_falling_supply_slows_the_gait_then_stops_it_then_ends_the_pulses() {
             && printed_lines[0].ends_with(&format!("V, low: no saving, speed at most {SLOW_PACE}")),
         "{printed_lines:?}"
     );
-    let slow_ratio = f64::from(measure_advance(&mut dialogue)) / f64::from(full_advance);
+    let slow_advance = measure_phase_advance(&mut dialogue, 10);
+    let slow_ratio = f64::from(slow_advance) / f64::from(full_advance);
     let expected_ratio = f64::from(SLOW_PACE) / 100.0;
     assert!((slow_ratio - expected_ratio).abs() < 0.02, "{slow_ratio}");
     dialogue.expect_refused("save", "8 the supply is too low");

@@ -24,7 +24,7 @@ fn status_reports_each_value_under_its_key() {
         })
         .collect();
     let margin = Clearance::measure(motion.robot(), motion.pose())
-        .smallest_margin()
+        .min_margin()
         .thousandths();
     let expected = format!(
         "ok gait=sway-left phase=0.{phase:03} pose={} margin=0.{margin:03} speed=42 frames={} \

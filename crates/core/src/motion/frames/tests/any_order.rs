@@ -54,15 +54,15 @@ proptest! {
             }
             for _ in 0..frames {
                 let (pose_before, was_cycling) = (*motion.pose(), motion.is_cycling());
-                let pulses = motion.tick();
+                let pulses = motion.advance_frame();
                 let clearance = Clearance::measure(&motion.robot, motion.pose());
                 prop_assert_eq!(clearance.first_hazard(&motion.robot), None);
                 for (actual, held_width) in pulses.0.into_iter().zip(motion.held_pulses().0) {
                     prop_assert!(actual == PulseWidth(0) || actual == held_width);
                 }
                 if !was_cycling {
-                    let largest_turn = pose_before.largest_turn_to(motion.pose());
-                    prop_assert!(largest_turn <= motion.robot.slew().per_frame, "{}", largest_turn);
+                    let max_turn = pose_before.max_turn_to(motion.pose());
+                    prop_assert!(max_turn <= motion.robot.slew().per_frame, "{}", max_turn);
                 }
             }
         }

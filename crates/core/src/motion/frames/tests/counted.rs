@@ -9,7 +9,7 @@ fn measure_cycles(motion: &mut Motion) -> (f64, u32) {
     loop {
         let phase_before = motion.phase();
         let was_cycling = motion.is_cycling();
-        motion.tick();
+        motion.advance_frame();
         frames += 1;
         assert!(frames < 200_000, "the motion never ends");
         if motion.has_come_to_standstill() {
@@ -52,7 +52,7 @@ fn every_gait_runs_for_its_count_within_two_frames_at_any_pace() {
                 assert_eq!(motion.activity(), Activity::Stop);
                 let held_pulses = motion.held_pulses();
                 for _ in 0..50 {
-                    assert_eq!(motion.tick(), held_pulses);
+                    assert_eq!(motion.advance_frame(), held_pulses);
                     assert!(
                         !motion.has_come_to_standstill(),
                         "the standstill is reported once"
@@ -92,21 +92,24 @@ fn a_counted_gait_brakes_like_a_gait_replaced_by_another() {
     endless_motion.start("sway");
     loop {
         let mut ordered_motion = endless_motion.clone();
-        let pulses = counted_motion.tick();
+        let pulses = counted_motion.advance_frame();
         if let Some(Target::Standstill) = counted_motion.next_target {
             ordered_motion.start("back");
-            assert_eq!(ordered_motion.tick(), pulses);
+            assert_eq!(ordered_motion.advance_frame(), pulses);
             endless_motion = ordered_motion;
             break;
         }
-        assert_eq!(endless_motion.tick(), pulses);
+        assert_eq!(endless_motion.advance_frame(), pulses);
     }
     while endless_motion.pace() > 0 {
-        assert_eq!(counted_motion.tick(), endless_motion.tick());
+        assert_eq!(
+            counted_motion.advance_frame(),
+            endless_motion.advance_frame()
+        );
         assert!(!counted_motion.has_come_to_standstill());
     }
     let last_pulses = counted_motion.held_pulses();
-    assert_eq!(counted_motion.tick(), last_pulses);
+    assert_eq!(counted_motion.advance_frame(), last_pulses);
     assert!(counted_motion.has_come_to_standstill());
 }
 
@@ -127,7 +130,7 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
         let mut motion = Motion::standing();
         motion.start_for("sway", 1);
         while !matches!(motion.next_target, Some(Target::Standstill)) {
-            motion.tick();
+            motion.advance_frame();
         }
         motion.run(2);
         let gait = motion.gait_name();
@@ -144,7 +147,7 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
         let mut second_motion = motion.clone();
         motion.start("sway");
         for _ in 0..2_000 {
-            motion.tick();
+            motion.advance_frame();
             assert!(!motion.has_come_to_standstill() && motion.gait_name() == Some("sway"));
         }
         second_motion.start_for("back", 2);
@@ -158,7 +161,7 @@ fn a_new_order_replaces_a_count_even_while_the_gait_brakes_at_its_end() {
         motion.rest();
         for mut motion in [stopped_motion, posed_motion, motion] {
             for _ in 0..500 {
-                motion.tick();
+                motion.advance_frame();
                 assert!(!motion.has_come_to_standstill());
             }
         }

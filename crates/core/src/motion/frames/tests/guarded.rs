@@ -7,7 +7,7 @@ fn run_until_guarded() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
     for _ in 0..200 {
-        motion.tick();
+        motion.advance_frame();
         if motion.hazard().is_some() {
             return motion;
         }
@@ -22,14 +22,17 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
     let mut last_pose = *motion.pose();
     while motion.hazard().is_none() {
         last_pose = *motion.pose();
-        motion.tick();
+        motion.advance_frame();
     }
     let hazard = motion.hazard();
     assert_eq!(motion.pose(), &last_pose);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.phase(), 0);
     for _ in 0..100 {
-        assert_eq!(motion.tick(), last_pose.pulses(&motion.calibration));
+        assert_eq!(
+            motion.advance_frame(),
+            last_pose.pulses(&motion.calibration)
+        );
         assert_eq!(motion.hazard(), hazard);
     }
     // The reported hazard occurs in the gait's poses.
@@ -62,7 +65,7 @@ fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
     let mut motion = run_until_guarded();
     motion.start("sway");
     assert!(motion.hazard().is_some());
-    motion.tick();
+    motion.advance_frame();
     assert_eq!(motion.hazard(), None);
     motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.gait_name(), Some("sway"));

@@ -1,7 +1,6 @@
 //! Tests of settling, the gradual change of the pulses to the widths of a new calibration.
 
 use super::*;
-use crate::numbers::units::PulseWidth;
 
 /// Recalibrates each servo so that its neutral pulse is 1000 cycles longer.
 fn lengthen_neutral_pulses(motion: &mut Motion) {
@@ -30,7 +29,7 @@ fn every_servo_settles_exactly_as_fast_as_its_gain_allows() {
     lengthen_neutral_pulses(&mut motion);
     motion.settle();
     for frame in 1..=1000u16 {
-        motion.tick();
+        motion.advance_frame();
         for (index, sent_width) in motion.sent_pulses().0.iter().enumerate() {
             let change = sent_width.0 - pulses_before[index].0;
             let max_change = frame.saturating_mul(max_changes[index]);
@@ -46,7 +45,7 @@ fn the_first_pulses_after_a_reset_repeat_the_last_pulses_despite_other_settings(
     let mut motion = Motion::new(*Sample::asymmetric());
     lengthen_neutral_pulses(&mut motion);
     assert!(motion.resume(&servo_state_before, false));
-    assert_eq!(motion.tick(), servo_state_before.sent_pulses);
-    let next_pulses = motion.tick();
+    assert_eq!(motion.advance_frame(), servo_state_before.sent_pulses);
+    let next_pulses = motion.advance_frame();
     assert!((0..4).all(|index| next_pulses.0[index].0 > servo_state_before.sent_pulses.0[index].0));
 }

@@ -8,7 +8,7 @@ fn at_rest_no_frame_has_a_pulse_and_the_pose_stays() {
     let pose = *motion.pose();
     motion.rest();
     for _ in 0..50 {
-        assert_eq!(motion.tick(), Pulses::default());
+        assert_eq!(motion.advance_frame(), Pulses::default());
         assert_eq!(motion.activity(), Activity::Rest);
         assert_eq!(motion.pose(), &pose);
         assert_eq!(motion.phase(), 0);
@@ -21,7 +21,7 @@ fn stop_and_rest_change_nothing_while_the_robot_rests() {
         let mut motion = make_resting_motion();
         order(&mut motion);
         assert_eq!(motion.activity(), Activity::Rest);
-        assert_eq!(motion.tick(), Pulses::default());
+        assert_eq!(motion.advance_frame(), Pulses::default());
     }
 }
 
@@ -38,10 +38,10 @@ fn a_gait_or_a_pose_first_wakes_the_servos_in_the_rest_pose() {
             assert_eq!(motion.gait_name(), Some("swing"));
         }
         for _ in 0..FRAMES_TO_WAKE {
-            motion.tick();
+            motion.advance_frame();
             assert_eq!(motion.pose(), &pose_before);
         }
-        assert_eq!(motion.tick(), motion.held_pulses());
+        assert_eq!(motion.advance_frame(), motion.held_pulses());
         assert!(motion.is_moving());
         motion.run(TRANSITION_FRAMES);
         if is_pose {
@@ -60,7 +60,7 @@ fn servos_wake_one_by_one_a_tenth_of_a_second_apart_and_stay_awake() {
         let held_pulses = motion.held_pulses();
         let mut first_frames = [0; 4];
         for frame in 1..=FRAMES_TO_WAKE {
-            for (index, width) in motion.tick().0.into_iter().enumerate() {
+            for (index, width) in motion.advance_frame().0.into_iter().enumerate() {
                 if width != PulseWidth(0) && first_frames[index] == 0 {
                     first_frames[index] = frame;
                 }
@@ -80,10 +80,10 @@ fn after_a_rest_during_waking_all_servos_wake_again() {
     let mut motion = Motion::new(*Sample::asymmetric());
     motion.run(12);
     motion.rest();
-    assert_eq!(motion.tick(), Pulses::default());
+    assert_eq!(motion.advance_frame(), Pulses::default());
     motion.start("stand");
     let pulse_flags =
-        (0..FRAMES_TO_WAKE).map(|_| motion.tick().0.map(|width| u8::from(width.0 > 0)));
+        (0..FRAMES_TO_WAKE).map(|_| motion.advance_frame().0.map(|width| u8::from(width.0 > 0)));
     let awake_counts: Vec<u8> = pulse_flags.map(|servos| servos.iter().sum()).collect();
     let expected_counts: Vec<u8> = (1..=FRAMES_TO_WAKE)
         .map(|frame| (frame / 5) as u8)
@@ -101,7 +101,7 @@ fn after_stop_during_waking_the_servos_wake_but_do_not_move() {
     motion.run(TRANSITION_FRAMES);
     assert_eq!(motion.activity(), Activity::Stop);
     assert_eq!(motion.pose(), &pose);
-    assert_eq!(motion.tick(), motion.held_pulses());
+    assert_eq!(motion.advance_frame(), motion.held_pulses());
     let widths = motion.held_pulses().0;
     assert!(widths.iter().all(|width| *width > PulseWidth(0)));
 }

@@ -11,7 +11,7 @@ use pollster::block_on;
 
 use super::super::link::{BANNER_START, Link, LinkError};
 use step::{STEPS, Step};
-pub use view::View;
+pub use view::StepView;
 
 /// A key with a meaning in the guide.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +22,7 @@ pub enum Key {
     Back,
     /// Leave the guide, and discard the changes since the last save.
     Leave,
-    /// Perform the step's action.
+    /// The space bar: perform the step's action.
     Act,
     /// Answer yes.
     Yes,
@@ -37,14 +37,14 @@ pub enum Key {
 /// A calibration in progress.
 #[derive(Debug)]
 pub struct Guide<'a, P> {
-    robot: lizard_calibrate::Guide<&'a mut Link<P>>,
+    robot: lizard_calibrate::Session<&'a mut Link<P>>,
     /// The neutral angles of A1 to A4, degrees.
     neutral_angles: [f64; 4],
     step_index: usize,
     /// The angle by which this step has moved its servo, degrees; `None` before the movement.
     moved_degrees: Option<f64>,
-    /// True if the user skips the steps for scales and limits.
-    skips_scales_and_limits: bool,
+    /// True if the user has skipped the steps for scales and limits.
+    has_skipped_scales_and_limits: bool,
     is_walking: bool,
     /// The result of the last key, in words.
     message: String,
@@ -58,14 +58,14 @@ impl<'a, P: Read + Write> Guide<'a, P> {
     /// # Errors
     /// Fails if there is no answer, or the robot cannot stand.
     pub fn new(link: &'a mut Link<P>) -> std::result::Result<Self, LinkError> {
-        let mut robot = block_on(lizard_calibrate::Guide::begin(link))?;
+        let mut robot = block_on(lizard_calibrate::Session::begin(link))?;
         let neutral_angles = block_on(robot.stand())?;
         Ok(Self {
             robot,
             neutral_angles,
             step_index: 0,
             moved_degrees: None,
-            skips_scales_and_limits: false,
+            has_skipped_scales_and_limits: false,
             is_walking: false,
             message: String::new(),
         })
@@ -93,16 +93,16 @@ impl<'a, P: Read + Write> Guide<'a, P> {
                 self.leave()?;
                 return Ok(true);
             }
-            (Key::Back, Step::Walk) if self.skips_scales_and_limits => {
+            (Key::Back, Step::Walk) if self.has_skipped_scales_and_limits => {
                 self.go_to_step(Step::OfferScales)
             }
             (Key::Back, _) => self.enter_step(self.step_index.saturating_sub(1)),
             (Key::Next, Step::OfferScales) => {
-                self.skips_scales_and_limits = true;
+                self.has_skipped_scales_and_limits = true;
                 self.go_to_step(Step::Walk)
             }
             (Key::Yes, Step::OfferScales) => {
-                self.skips_scales_and_limits = false;
+                self.has_skipped_scales_and_limits = false;
                 self.enter_step(self.step_index + 1)
             }
             (Key::Next, Step::Sign(_)) => {
@@ -126,7 +126,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             (Key::LeftRight(degrees) | Key::UpDown(degrees), Step::Trim(servo)) => {
                 block_on(self.robot.change_trim(servo, degrees))
             }
-            (Key::Act, Step::Walk) => self.set_walking(!self.is_walking),
+            (Key::Act, Step::Walk) => self.toggle_walk(),
             _ => Ok(()),
         };
         match result {
@@ -240,8 +240,8 @@ impl<'a, P: Read + Write> Guide<'a, P> {
         Ok(())
     }
 
-    fn set_walking(&mut self, is_walking: bool) -> Result<()> {
-        if !is_walking {
+    fn toggle_walk(&mut self) -> Result<()> {
+        if self.is_walking {
             return self.stand();
         }
         let gait = block_on(self.robot.start_walk())?;

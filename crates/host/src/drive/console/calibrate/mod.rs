@@ -14,7 +14,7 @@ use super::connect::ConnectionArgs;
 use super::dialogue_error::DialogueError;
 use super::terminal;
 use crate::Failure;
-use guide::{Guide, Key, View};
+use guide::{Guide, Key, StepView};
 
 /// Calibrate the robot, step by step
 ///
@@ -24,7 +24,7 @@ use guide::{Guide, Key, View};
 #[derive(clap::Args, Debug)]
 pub struct Args {
     #[command(flatten)]
-    connect: ConnectionArgs,
+    connection: ConnectionArgs,
 }
 
 /// Interval between reads from the robot while no key is pressed.
@@ -41,7 +41,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         let message = "calibrate reads single keys; run it in a terminal";
         return Err(Failure::Input(message.to_owned()));
     }
-    let finder = args.connect.into_finder("calibrate")?;
+    let finder = args.connection.into_finder("calibrate")?;
     let (mut board, _) = finder.open_and_greet()?;
     let result = Guide::new(&mut board.link).map_err(DialogueError::from);
     let result = result.and_then(|mut guide| run_guide(&mut guide));
@@ -79,13 +79,13 @@ fn run_guide<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
 }
 
 fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, DialogueError> {
-    let mut page = Page::new()?;
+    let mut screen = FullScreen::new()?;
     let mut last_view = None;
     let mut last_read = Instant::now();
     loop {
         let view = guide.view();
         if last_view.as_ref() != Some(&view) {
-            page.show(&view)?;
+            screen.show(&view)?;
             last_view = Some(view);
         }
         if !terminal::is_open() {
@@ -103,14 +103,14 @@ fn run_steps<P: io::Read + io::Write>(guide: &mut Guide<'_, P>) -> Result<bool, 
         }
         match event::read()? {
             Event::Key(key) if is_suspend_key(key) => {
-                page.leave()?;
+                screen.leave()?;
                 terminal::suspend_program()?;
-                page.enter()?;
+                screen.enter()?;
                 last_view = None;
             }
             Event::Key(key) => {
-                if let Some(key) = interpret_key(key)
-                    && guide.press_key(key)?
+                if let Some(guide_key) = interpret_key(key)
+                    && guide.press_key(guide_key)?
                 {
                     return Ok(guide.is_saved());
                 }
@@ -150,13 +150,13 @@ fn interpret_key(key: KeyEvent) -> Option<Key> {
 }
 
 /// The terminal's full screen, which shows one step at a time. Dropping it restores the terminal.
-struct Page(Stdout);
+struct FullScreen(Stdout);
 
-impl Page {
+impl FullScreen {
     fn new() -> io::Result<Self> {
-        let mut page = Self(io::stdout());
-        page.enter()?;
-        Ok(page)
+        let mut screen = Self(io::stdout());
+        screen.enter()?;
+        Ok(screen)
     }
 
     fn enter(&mut self) -> io::Result<()> {
@@ -170,7 +170,7 @@ impl Page {
         terminal_mode::disable_raw_mode()
     }
 
-    fn show(&mut self, view: &View) -> io::Result<()> {
+    fn show(&mut self, view: &StepView) -> io::Result<()> {
         let out = &mut self.0;
         queue!(
             out,
@@ -199,7 +199,7 @@ impl Page {
     }
 }
 
-impl Drop for Page {
+impl Drop for FullScreen {
     fn drop(&mut self) {
         // The terminal may be gone; then there is nothing to restore.
         let _ = self.leave();

@@ -7,13 +7,13 @@ use std::io::{self, Write};
 use std::path::PathBuf;
 
 use crate::simulate::sim::analysis::Run;
-use crate::simulate::sim::dialogue::Printer;
+use crate::simulate::sim::dialogue::DialoguePrinter;
 use crate::simulate::sim::session::{DialogueLine, Sender};
 use crate::simulate::sim::timeline::{self, Caption};
 use crate::{Failure, RobotFile};
 
 use super::recorder::Event;
-use session::Session;
+use session::RecordedSession;
 
 /// Draw a session that `lizard console --record` has recorded
 ///
@@ -44,11 +44,11 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let robot = args.robot.load()?;
     let name = args.file.display();
     let text = crate::shared::files::read_text(&args.file)?;
-    let session =
-        Session::parse(&text).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+    let session = RecordedSession::parse(&text)
+        .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
 
     let mut out = io::stdout().lock();
-    let mut printer = Printer::new(true);
+    let mut printer = DialoguePrinter::new(true);
     for entry in &session.entries {
         let (sender, text) = match &entry.event {
             Event::Sent(line) => (Sender::User, line.clone()),

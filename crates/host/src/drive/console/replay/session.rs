@@ -3,7 +3,7 @@
 use lizard_robot::Robot;
 use simulated_uno::{CYCLES_PER_MS, CYCLES_PER_US};
 
-use super::super::recorder::{Entry, Event, FORMAT};
+use super::super::recorder::{Event, FORMAT, TimedEvent};
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::spans::{self, Span};
@@ -39,15 +39,15 @@ pub(super) enum SessionError {
 
 /// A recorded session.
 #[derive(Debug)]
-pub(super) struct Session {
+pub(super) struct RecordedSession {
     /// The events in order of time.
-    pub(super) entries: Vec<Entry>,
+    pub(super) entries: Vec<TimedEvent>,
 }
 
-impl Session {
+impl RecordedSession {
     /// Parses a session's file. A partial last line, left by a killed program or a full disk, is ignored.
     pub(super) fn parse(text: &str) -> Result<Self, SessionError> {
-        let mut entries: Vec<Entry> = Vec::new();
+        let mut entries: Vec<TimedEvent> = Vec::new();
         for (index, line) in text.lines().enumerate() {
             let is_partial = !text.ends_with('\n') && index + 1 == text.lines().count();
             let to_error = |problem: String| match index {
@@ -57,7 +57,7 @@ impl Session {
                     problem,
                 },
             };
-            let entry: Entry = match serde_json::from_str(line) {
+            let entry: TimedEvent = match serde_json::from_str(line) {
                 Ok(entry) => entry,
                 Err(_) if is_partial && index > 0 => break,
                 Err(error) => return Err(to_error(format!("not an event: {error}"))),
@@ -71,7 +71,7 @@ impl Session {
             if entry.ms > MAX_SESSION_MS || entries.last().is_some_and(|last| last.ms > entry.ms) {
                 return Err(to_error(format!("{} ms is out of order", entry.ms)));
             }
-            entries.push(Entry {
+            entries.push(TimedEvent {
                 event: entry.event.escape_controls(),
                 ..entry
             });
@@ -133,26 +133,25 @@ impl Session {
                     if index_by_count != Some(pose_index) {
                         anchor = Some((*frame, pose_index));
                     }
-                    let Some(slot) = widths.get_mut(pose_index) else {
+                    let Some(frame_widths) = widths.get_mut(pose_index) else {
                         continue;
                     };
                     if is_resting {
                         last_index = None;
                         continue;
                     }
-                    let pulse_widths = std::array::from_fn(|servo| {
+                    *frame_widths = std::array::from_fn(|servo| {
                         let width_us = robot.servos()[servo].pulse(angles[servo]);
                         (width_us * CYCLES_PER_US as f64)
                             .round()
                             .clamp(1.0, 65_534.0) as u16
                     });
-                    *slot = pulse_widths;
                     if let Some(previous_index) = last_index
                         .filter(|index| pose_index.saturating_sub(*index) <= MAX_HELD_FRAMES)
                     {
                         let held_widths = widths[previous_index];
-                        for slot in widths.iter_mut().take(pose_index).skip(previous_index + 1) {
-                            *slot = held_widths;
+                        for frame in widths.iter_mut().take(pose_index).skip(previous_index + 1) {
+                            *frame = held_widths;
                         }
                     }
                     last_index = Some(pose_index);
@@ -175,10 +174,7 @@ impl Session {
             match &entry.event {
                 Event::Sent(command) => {
                     answers.resize(steps.len(), None);
-                    steps.push(Step {
-                        ms: entry.ms,
-                        command: command.clone(),
-                    });
+                    steps.push(Step::new(entry.ms, command));
                 }
                 Event::Answer(line) => answers.push(Some(line.clone())),
                 _ => {}
@@ -203,12 +199,12 @@ mod tests {
     use super::*;
     use crate::shared::robot_file::built_in_robot;
 
-    const BEGIN: &str =
+    const BEGIN_LINE: &str =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";
 
-    fn parse_session(lines: &[String]) -> Session {
-        let text = format!("{BEGIN}{}\n", lines.join("\n"));
-        Session::parse(&text).expect("the session is valid")
+    fn parse_session(lines: &[String]) -> RecordedSession {
+        let text = format!("{BEGIN_LINE}{}\n", lines.join("\n"));
+        RecordedSession::parse(&text).expect("the session is valid")
     }
 
     fn pose_line(ms: u64, frame: u64, a1: f64) -> String {
@@ -219,9 +215,9 @@ mod tests {
 
     #[test]
     fn control_characters_in_a_session_are_escaped() {
-        let text = BEGIN.replace("\"p\"", "\"p\\u001b[2J\"")
+        let text = BEGIN_LINE.replace("\"p\"", "\"p\\u001b[2J\"")
             + "{\"ms\":1,\"note\":\"# x\\u001b]0;y\\u0007\"}\n{\"ms\":2,\"sent\":\"\\u009b1m\"}\n";
-        let session = Session::parse(&text).expect("the session is valid");
+        let session = RecordedSession::parse(&text).expect("the session is valid");
         let events: Vec<&Event> = session.entries.iter().map(|entry| &entry.event).collect();
         assert!(
             matches!(events[0], Event::Begin { port, .. } if port == "p\\u{1b}[2J"),
@@ -232,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_pose_repeats_the_previous_pulse_widths() {
+    fn a_missing_pose_repeats_the_previous_pulse_widths() {
         let session = parse_session(&[
             pose_line(104, 50, 138.590378),
             pose_line(131, 51, 139.590378),
@@ -249,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_robot_leaves_no_gap() {
+    fn a_slow_robot_leaves_no_gap() {
         let slow_poses = (0..100).map(|n| pose_line(20 + 30 * n, n, 138.590378));
         let log = parse_session(&slow_poses.collect::<Vec<_>>())
             .build_frame_log(&built_in_robot("paper"));
@@ -259,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn resting_or_reset_robot_has_no_pulses() {
+    fn a_resting_or_reset_robot_has_no_pulses() {
         let session = parse_session(&[
             pose_line(20, 1, 138.590378),
             "{\"ms\":30,\"answer\":\"ok rest\"}".to_owned(),
@@ -296,9 +292,9 @@ mod tests {
     }
 
     #[test]
-    fn invalid_session_is_refused_with_the_line_number() {
+    fn an_invalid_session_is_refused_with_the_line_number() {
         let parse_error = |text: &str| {
-            Session::parse(text)
+            RecordedSession::parse(text)
                 .expect_err("an invalid session must be refused")
                 .to_string()
         };
@@ -309,7 +305,7 @@ mod tests {
             );
         }
         let third_line_error =
-            |line: &str| parse_error(&format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
+            |line: &str| parse_error(&format!("{BEGIN_LINE}{{\"ms\":9,\"gone\":null}}\n{line}\n"));
         assert!(third_line_error("{\"ms\":10,\"flew\":1}").starts_with("line 3: not an event: "));
         assert_eq!(
             third_line_error("{\"ms\":8,\"gone\":null}"),
@@ -322,9 +318,9 @@ mod tests {
     }
 
     #[test]
-    fn partial_last_line_is_ignored() {
-        let text = format!("{BEGIN}{{\"ms\":9,\"gone\":null}}\n{{\"ms\":10,\"se");
-        let session = Session::parse(&text).expect("the other lines are complete");
+    fn a_partial_last_line_is_ignored() {
+        let text = format!("{BEGIN_LINE}{{\"ms\":9,\"gone\":null}}\n{{\"ms\":10,\"se");
+        let session = RecordedSession::parse(&text).expect("the other lines are complete");
         assert_eq!(session.entries.len(), 2);
     }
 }

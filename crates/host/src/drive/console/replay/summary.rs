@@ -4,11 +4,11 @@ use std::io::{self, Write};
 
 use super::super::link::BANNER_START;
 use super::super::recorder::Event;
-use super::session::{FRAME_MS, Session};
+use super::session::{FRAME_MS, RecordedSession};
 use lizard_robot::Status;
 
 /// Prints the session's length, commands, smallest margin, supply voltages and problems.
-pub(super) fn print(session: &Session, out: &mut impl Write) -> io::Result<()> {
+pub(super) fn print(session: &RecordedSession, out: &mut impl Write) -> io::Result<()> {
     let entries = &session.entries;
     let count_events = |is_counted: fn(&Event) -> bool| {
         entries
@@ -103,11 +103,11 @@ fn print_range(
     volts: impl Iterator<Item = f64>,
 ) -> io::Result<()> {
     let range = volts.fold(None, |range: Option<(f64, f64)>, volts| {
-        let (low, high) = range.unwrap_or((volts, volts));
-        Some((low.min(volts), high.max(volts)))
+        let (min, max) = range.unwrap_or((volts, volts));
+        Some((min.min(volts), max.max(volts)))
     });
     match range {
-        Some((low, high)) => writeln!(out, "{name:<12}{low:.2}..{high:.2} V"),
+        Some((min, max)) => writeln!(out, "{name:<12}{min:.2}..{max:.2} V"),
         None => Ok(()),
     }
 }
@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn summary_shows_margin_supply_range_and_problems() {
+    fn the_summary_shows_margin_supply_range_and_problems() {
         let status = |ms, margin| {
             format!(
                 "{{\"ms\":{ms},\"status\":\"ok gait=walk pose=1,2,3,4 margin={margin} late=1 \
@@ -136,7 +136,7 @@ mod tests {
             "{\"ms\":2000,\"gone\":null}".to_owned(),
         ]
         .join("\n");
-        let session = Session::parse(&(text + "\n")).expect("the session is valid");
+        let session = RecordedSession::parse(&(text + "\n")).expect("the session is valid");
         let mut out = Vec::new();
         print(&session, &mut out).expect("writing to a vector succeeds");
         assert_eq!(

@@ -3,7 +3,7 @@ use super::*;
 const WALKING_STATUS: &str = "ok gait=walk phase=0 pose=1,2,3,4 margin=0.5 guard=clear fault=none";
 
 #[test]
-fn users_line_is_sent_after_the_previous_answer() {
+fn a_users_line_is_sent_after_the_previous_answer() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     assert_eq!(session.take_next_line(now).as_deref(), Some("status"));
@@ -42,7 +42,7 @@ fn users_line_is_sent_after_the_previous_answer() {
 }
 
 #[test]
-fn status_requested_by_the_user_is_shown() {
+fn a_status_requested_by_the_user_is_shown() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("status");
@@ -54,7 +54,7 @@ fn status_requested_by_the_user_is_shown() {
 }
 
 #[test]
-fn reset_cancels_the_request_and_repeats_watch() {
+fn a_reset_cancels_the_request_and_repeats_watch() {
     let now = Instant::now();
     let mut session = Session::new(now, false, true);
     assert_eq!(session.take_next_line(now).as_deref(), Some("watch 1"));
@@ -83,7 +83,7 @@ fn poses_are_shown_only_if_the_user_asks_for_them() {
 }
 
 #[test]
-fn missing_answer_is_reported_once() {
+fn a_missing_answer_is_reported_once() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("walk");
@@ -152,7 +152,7 @@ fn stop_is_repeated_until_answered_and_late_answers_are_ignored() {
 }
 
 #[test]
-fn refusal_of_stop_without_pulses_ends_the_repetition() {
+fn a_refusal_of_stop_without_pulses_ends_the_repetition() {
     for refusal in [
         "err 7 the servos are resting; send stand first",
         "err 10 no robot in the flash",
@@ -171,7 +171,7 @@ fn refusal_of_stop_without_pulses_ends_the_repetition() {
 }
 
 #[test]
-fn partial_refusal_does_not_answer_stop() {
+fn a_partial_refusal_does_not_answer_stop() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.stop(now);
@@ -182,7 +182,7 @@ fn partial_refusal_does_not_answer_stop() {
 }
 
 #[test]
-fn late_answer_does_not_count_for_the_next_line() {
+fn a_late_answer_does_not_count_for_the_next_line() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false);
     session.queue("trim 1 2");
@@ -318,7 +318,7 @@ fn deadman_is_restored_before_cal_and_set_again_afterwards() {
 }
 
 #[test]
-fn stopped_robot_gets_its_own_deadman_back() {
+fn a_stopped_robot_gets_its_own_deadman_back() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false).with_deadman();
     let answer_with_own_deadman = |line: &str| answer_as_robot(line).replace("700", "2000");
@@ -360,7 +360,7 @@ fn deadman_left_by_an_earlier_run_is_restored_as_zero() {
 }
 
 #[test]
-fn script_sets_no_deadman() {
+fn a_script_sets_no_deadman() {
     let now = Instant::now();
     let mut session = Session::new(now, true, false);
     session.queue("walk");
@@ -371,7 +371,7 @@ fn script_sets_no_deadman() {
 }
 
 #[test]
-fn gait_starts_only_after_deadman_is_confirmed() {
+fn a_gait_starts_only_after_deadman_is_confirmed() {
     let now = Instant::now();
     let mut session = Session::new(now, false, false).with_deadman();
     session.queue("walk");
@@ -397,7 +397,7 @@ fn gait_starts_only_after_deadman_is_confirmed() {
 }
 
 #[test]
-fn silent_robot_is_reported_once_until_it_answers() {
+fn a_silent_robot_is_reported_once_until_it_answers() {
     let mut now = Instant::now();
     let mut session = Session::new(now, true, false);
     let mut ask = |is_answered: bool| {

@@ -7,7 +7,7 @@ use lizard_robot::Robot;
 use svg::node::element::Group;
 
 use super::wire::{BLACK_WIRE, THIN_WIRE_WIDTH, draw_option_panel, draw_terminal};
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, ORANGE, RED, add_outline, circle, curve, line, pin_name, rectangle, text_end, text_start,
 };
 

@@ -15,10 +15,9 @@ use svg::node::element::Group;
 
 use super::route::{Path, WIRE_SPACING, path_end, route_between_rows, turn_point};
 use super::uno::Uno;
-use crate::shared::ink::pin_name;
-use crate::shared::ink::{
-    BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_PLACES, add_outline, circle, cross, line,
-    rectangle, render_svg, text_middle, text_start,
+use crate::shared::shapes::{
+    BROWN, DARK, GREY, ORANGE, RED, SERVO_COLOURS, SERVO_POSITIONS, add_outline, circle, cross,
+    line, pin_name, rectangle, render_svg, text_middle, text_start,
 };
 use wire::{BLACK_WIRE, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_terminal};
 
@@ -141,15 +140,15 @@ fn route_servo_and_board_wires(order: [usize; 4], pins: [u8; 4]) -> Vec<Wire> {
         let name = format!("signal-{}", SERVO_NAMES[servo]);
         wires.push(Wire::new(name, path, ORANGE, THIN_WIRE_WIDTH));
     }
-    let last_hole = strips::ground_hole(strips::LINKED_GROUND_WAY_COUNT - 1);
-    let signal_hole = strips::signal_ground_hole();
+    let start = strips::ground_hole(strips::LINKED_GROUND_WAY_COUNT - 1);
+    let end = strips::signal_ground_hole();
     let y = GROUND_WIRES_Y[0];
     let path = vec![
-        last_hole,
-        (GROUND_WIRE_X, last_hole.1),
+        start,
+        (GROUND_WIRE_X, start.1),
         (GROUND_WIRE_X, y),
-        (signal_hole.0, y),
-        signal_hole,
+        (end.0, y),
+        end,
     ];
     wires.push(Wire::new(
         "signals-ground",
@@ -206,7 +205,7 @@ fn draw_servo(servo: usize, index: usize, pin: u8) -> Group {
         .add(circle(shaft, 5.0, DARK))
         .add(text_middle(name, (x, SERVO_TOP_Y + 72.0), 20.0).set("font-weight", "bold"))
         .add(text_start(
-            SERVO_PLACES[servo],
+            SERVO_POSITIONS[servo],
             (text_x, SERVO_TOP_Y + 28.0),
             12.0,
         ))

@@ -9,7 +9,7 @@ use svg::node::element::{Group, Polygon};
 use super::wire::{
     BLACK_WIRE, LEAD_WIDTH, THIN_WIRE_WIDTH, Wire, draw_option_panel, draw_resistor, draw_terminal,
 };
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, ORANGE, RED, add_outline, circle, curve, line, rectangle, text_end, text_middle,
     text_start,
 };

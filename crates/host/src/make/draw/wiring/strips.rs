@@ -6,7 +6,7 @@
 use svg::node::element::Group;
 
 use super::wire::{BLACK_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, Wire, draw_resistor, draw_terminal};
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, ORANGE, RED, add_outline, circle, line, rectangle, text_middle, text_start,
 };
 
@@ -26,8 +26,10 @@ pub const SUPPLY_WAY_COUNT: usize = 6;
 const FIRST_GROUND_HOLE: (f64, f64) = (640.0, 160.0);
 /// First wire hole of the +5 V strip, at the strip's inner edge: x and y, pixels.
 const FIRST_SUPPLY_HOLE: (f64, f64) = (96.0, 259.0);
-/// The signal strip's ways: x of the first way, and the distance between neighbouring ways, pixels.
-const SIGNAL_WAY_X_AND_PITCH: (f64, f64) = (265.0, 48.0);
+/// Horizontal position of the signal strip's first way, pixels.
+const FIRST_SIGNAL_WAY_X: f64 = 265.0;
+/// Distance between neighbouring ways of the signal strip, pixels.
+const SIGNAL_WAY_PITCH: f64 = 48.0;
 /// y of the signal strip's upper and lower edge, pixels.
 const SIGNAL_EDGES_Y: (f64, f64) = (597.0, 633.0);
 /// Distance of the board's jumper from the middle of its way, away from the strip's middle way, pixels.
@@ -60,7 +62,7 @@ const SIGNAL_GROUND_WAY: usize = 2;
 
 /// Returns the horizontal position of a way in the signal strip.
 fn signal_way_x(way: usize) -> f64 {
-    SIGNAL_WAY_X_AND_PITCH.0 + SIGNAL_WAY_X_AND_PITCH.1 * way as f64
+    FIRST_SIGNAL_WAY_X + SIGNAL_WAY_PITCH * way as f64
 }
 
 /// Returns the signal strip's hole for a servo's signal; `index` counts the servos from left to right.
@@ -190,10 +192,9 @@ pub fn draw() -> Group {
         }
     }
     let (top, bottom) = SIGNAL_EDGES_Y;
-    let half_pitch = SIGNAL_WAY_X_AND_PITCH.1 / 2.0;
     group = group.add(draw_case(
-        (SIGNAL_WAY_X_AND_PITCH.0 - half_pitch, top),
-        (5.0 * SIGNAL_WAY_X_AND_PITCH.1, bottom - top),
+        (FIRST_SIGNAL_WAY_X - SIGNAL_WAY_PITCH / 2.0, top),
+        (5.0 * SIGNAL_WAY_PITCH, bottom - top),
     ));
     for way in 0..5 {
         let x = signal_way_x(way);

@@ -9,7 +9,7 @@ use super::wire::{
     BLACK_WIRE, GREY_WIRE, LEAD_WIDTH, THICK_WIRE_WIDTH, THIN_WIRE_WIDTH, Wire, draw_terminal,
 };
 use crate::make::draw::route::Path;
-use crate::shared::ink::{
+use crate::shared::shapes::{
     DARK, RED, add_outline, line, rectangle, text_end, text_middle, text_start,
 };
 
@@ -60,7 +60,7 @@ const GROUND_WAYS: [(&str, usize); 5] = [
 pub const FIRST_SERVO_WAY: usize = GROUND_WAYS.len();
 
 /// Returns the ground strip's wire hole for a part of the supply.
-fn find_ground_hole(part_name: &str) -> Point {
+fn part_ground_hole(part_name: &str) -> Point {
     let entry = GROUND_WAYS.iter().find(|(name, _)| *name == part_name);
     ground_hole(entry.map_or(0, |(_, way)| *way))
 }
@@ -86,15 +86,15 @@ pub fn route_wires(barrel_jack: Point) -> Vec<Wire> {
     let ground_wire = |part: &str, start: Point, x: f64| {
         black_wire(
             part,
-            route_by(start, x, find_ground_hole(part)),
+            route_by(start, x, part_ground_hole(part)),
             THICK_WIRE_WIDTH,
         )
     };
-    let plug_ground_path = route_by(find_ground_hole("round-plug"), minus_x, plug_minus);
+    let plug_ground_path = route_by(part_ground_hole("round-plug"), minus_x, plug_minus);
     let mut plug_plus_path = route_by(way_plus, 268.0, (plus_x, 138.0));
     plug_plus_path.extend([(plus_x, plug_plus.1), plug_plus]);
     let [upper_lead, lower_lead] = capacitor_leads();
-    let capacitor_ground_path = vec![upper_lead, find_ground_hole("capacitor")];
+    let capacitor_ground_path = vec![upper_lead, part_ground_hole("capacitor")];
     let converter_supply_path = route_by((converter_left, PLUS_Y), 106.0, supply_hole(0));
     let mut wires = vec![
         red_line("battery-fuse", [BATTERY_LEFT_X, fuse_right], PLUS_Y),
@@ -133,7 +133,7 @@ fn barrel_plug_terminals((x, y): Point) -> [Point; 2] {
 /// Returns the ends of the capacitor's leads, minus and plus.
 fn capacitor_leads() -> [Point; 2] {
     [
-        (CAPACITOR_X, find_ground_hole("capacitor").1),
+        (CAPACITOR_X, part_ground_hole("capacitor").1),
         (CAPACITOR_X, supply_hole(1).1),
     ]
 }

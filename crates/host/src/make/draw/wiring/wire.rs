@@ -6,7 +6,7 @@
 use svg::node::element::{Circle, Group, Rectangle};
 
 use crate::make::draw::route::Path;
-use crate::shared::ink::{DARK, GREY, add_outline, circle, curve, rectangle, text_start};
+use crate::shared::shapes::{DARK, GREY, add_outline, circle, curve, rectangle, text_start};
 
 /// The colour of black wires.
 pub const BLACK_WIRE: &str = "#1b1b1b";

@@ -13,12 +13,12 @@
 //! itself, and no code jumps to a computed address. The stack pointer changes only by `push`, `pop`, calls, returns,
 //! and stack frames addressed by r29:r28.
 
+mod analysis;
 mod instruction;
-mod walk;
 
 use simulated_uno::{Image, SRAM_END};
 
-use walk::{Context, Walk};
+use analysis::{Context, StackAnalysis};
 
 /// Number of vectors of an ATmega328P, including reset. Each is a `jmp` of four bytes.
 const VECTOR_COUNT: u32 = 26;
@@ -42,10 +42,10 @@ pub struct StackError {
 pub struct StackDepth {
     /// The depth of the main program from reset, without interrupts.
     pub main: u16,
-    /// The depth of the deepest interrupt handler, including its return address; 0 without interrupts.
+    /// The depth of the deepest interrupt handler, including its return address; 0 if there is no handler.
     pub handler: u16,
     /// The depth of the deepest handler that enables other interrupts and never returns, including its return address;
-    /// 0 without one.
+    /// 0 if there is none.
     pub nonreturning_handler: u16,
     /// Lowest SRAM address available to the stack.
     floor: u16,
@@ -62,19 +62,19 @@ impl StackDepth {
         let bad_interrupt = image.symbol("__bad_interrupt");
         let bad_interrupt_address = bad_interrupt.map(|symbol| symbol.address as u32);
         let (mut handler_depth, mut nonreturning_depth) = (0, 0);
-        let mut walk = Walk::new(image, &flash, Context::Interrupt);
+        let mut analysis = StackAnalysis::new(image, &flash, Context::Interrupt);
         for vector in 1..VECTOR_COUNT {
             let target = instruction::find_jump_target(&flash, 0)
                 .and_then(|_| instruction::find_jump_target(&flash, vector * 4));
             if let Some(target) = target.filter(|target| Some(*target) != bad_interrupt_address) {
-                let summary = walk.analyse_function(target)?;
+                let summary = analysis.analyse_function(target)?;
                 match summary.interrupt_enable_address {
                     None => {
                         handler_depth = handler_depth.max(INTERRUPT_ENTRY_BYTES + summary.depth)
                     }
                     Some(address) if summary.can_return => {
                         let reason = "enables interrupts in an interrupt";
-                        return Err(walk.new_error(target, address, reason));
+                        return Err(analysis.new_error(target, address, reason));
                     }
                     Some(_) => {
                         nonreturning_depth =
@@ -83,7 +83,7 @@ impl StackDepth {
                 }
             }
         }
-        let main_depth = Walk::new(image, &flash, Context::Main)
+        let main_depth = StackAnalysis::new(image, &flash, Context::Main)
             .analyse_function(0)?
             .depth;
         let floor = image.data_end();

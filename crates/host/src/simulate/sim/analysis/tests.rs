@@ -1,10 +1,7 @@
 //! Tests of the results computed from synthetic frames.
 
 use super::*;
-
-fn paper_robot() -> Robot {
-    crate::shared::robot_file::built_in_robot("paper")
-}
+use crate::shared::robot_file::built_in_robot;
 
 /// Creates frames with the pulses for `angles(seconds)`; the first frame is at 1 s.
 fn create_frames(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {
@@ -26,8 +23,8 @@ fn create_gait_frames(robot: &Robot, name: &str, count: u64) -> FrameLog {
 }
 
 #[test]
-fn angle_survives_the_conversion_to_a_pulse_and_back() {
-    let robot = paper_robot();
+fn an_angle_survives_the_conversion_to_a_pulse_and_back() {
+    let robot = built_in_robot("paper");
     let pose = [120.0, 45.0, 300.0, 230.0];
     let log = create_frames(&robot, 2, |_| pose);
     let (robot, log) = (&robot, &log);
@@ -50,7 +47,7 @@ fn angle_survives_the_conversion_to_a_pulse_and_back() {
 
 #[test]
 fn paths_of_walk_back_and_left_match_their_predictions() {
-    let robot = paper_robot();
+    let robot = built_in_robot("paper");
     for (gait, forward, turn) in [
         ("walk", 34.16, 0.0),
         ("left", 0.0, 15.34),
@@ -83,8 +80,8 @@ fn paths_of_walk_back_and_left_match_their_predictions() {
 }
 
 #[test]
-fn path_that_depends_on_a_tie_is_undetermined() {
-    let robot = paper_robot();
+fn a_path_that_depends_on_a_tie_is_undetermined() {
+    let robot = built_in_robot("paper");
     let log = create_gait_frames(&robot, "look", 100);
     let run = Run {
         robot: &robot,
@@ -102,7 +99,7 @@ fn path_that_depends_on_a_tie_is_undetermined() {
 
 #[test]
 fn paths_of_two_commands_compose_to_the_path_of_the_run() {
-    let robot = paper_robot();
+    let robot = built_in_robot("paper");
     for gait in ["arc-left", "right"] {
         let log = create_gait_frames(&robot, gait, 400);
         let run = Run {
@@ -141,7 +138,7 @@ fn paths_of_two_commands_compose_to_the_path_of_the_run() {
 
 #[test]
 fn servo_reports_have_pulse_widths_slew_rates_and_errors() {
-    let robot = paper_robot();
+    let robot = built_in_robot("paper");
     let mut frames = create_frames(&robot, 3, |seconds| {
         let mut angles: [f64; 4] = robot.neutral_pose().into();
         angles[0] += 100.0 * seconds;
@@ -153,15 +150,15 @@ fn servo_reports_have_pulse_widths_slew_rates_and_errors() {
         .map(|n| [24_000 + 320 * n, 24_000, 24_000, 24_000])
         .collect();
     let (robot, log) = (&robot, &frames);
-    let rows = compute_servo_reports(Run { robot, log }, Some(&commands));
+    let reports = compute_servo_reports(Run { robot, log }, Some(&commands));
     assert_eq!(
-        (rows[0].pulses, rows[0].min_us, rows[0].max_us),
+        (reports[0].pulse_count, reports[0].min_us, reports[0].max_us),
         (3, 1500.0, 1540.0)
     );
-    assert!((rows[0].slew - 100.0).abs() < 0.5);
-    let errors: Vec<_> = rows
+    assert!((reports[0].slew - 100.0).abs() < 0.5);
+    let errors: Vec<_> = reports
         .iter()
-        .map(|row| (row.width_error, row.period_error))
+        .map(|report| (report.width_error, report.period_error))
         .collect();
     assert_eq!(
         errors,
@@ -170,13 +167,13 @@ fn servo_reports_have_pulse_widths_slew_rates_and_errors() {
 }
 
 #[test]
-fn pose_near_a_singularity_is_a_violation() {
-    let robot = paper_robot();
+fn a_pose_near_a_singularity_is_a_violation() {
+    let robot = built_in_robot("paper");
     let check_log = |log: &FrameLog| check_safety(Run { robot: &robot, log });
     let walk_safety = check_log(&create_gait_frames(&robot, "walk", 50));
-    assert_eq!(walk_safety.violations, 0);
-    assert!(walk_safety.least.is_some_and(|min| min.value > 0.3));
+    assert_eq!(walk_safety.violation_count, 0);
+    assert!(walk_safety.min_margin.is_some_and(|min| min.value > 0.3));
     let singular_safety = check_log(&create_frames(&robot, 2, |_| [90.0, 90.0, 318.59, 221.41]));
-    assert_eq!(singular_safety.violations, 2);
+    assert_eq!(singular_safety.violation_count, 2);
     assert!(singular_safety.first_violation.is_some());
 }

@@ -1,5 +1,5 @@
 use super::*;
-use crate::drive::console::double::{PAPER_TOML, connect_paper_robot, read_calibration};
+use crate::drive::console::test_double::{PAPER_TOML, connect_paper_robot, read_calibration};
 use lizard_core::virtual_board::RunningRobot;
 use lizard_robot::STILL_FRAMES;
 
@@ -15,7 +15,7 @@ fn press_keys<P: Read + Write>(guide: &mut Guide<'_, P>, keys: &[Key]) -> bool {
 const CONFIRM_SIGN_KEYS: [Key; 2] = [Key::Act, Key::Yes];
 
 #[test]
-fn complete_calibration_saves_signs_and_trims() {
+fn a_complete_calibration_saves_signs_and_trims() {
     let mut link = connect_paper_robot();
     let [min, max] = read_calibration(&mut link).servos[0].limit;
     let mut guide = Guide::new(&mut link).expect("the robot answers");
@@ -129,7 +129,7 @@ fn reversing_a_sign_keeps_the_neutral_pulse() {
 }
 
 #[test]
-fn sign_step_needs_a_movement_of_one_servo_before_the_answer() {
+fn the_sign_step_needs_a_movement_of_one_servo_before_the_answer() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Next, Key::Next, Key::Yes]);
@@ -145,17 +145,17 @@ fn sign_step_needs_a_movement_of_one_servo_before_the_answer() {
 }
 
 #[test]
-fn motion_shows_before_the_robot_counts_as_standing() {
+fn a_motion_shows_before_the_robot_counts_as_standing() {
     // Includes the slowest valid robot and the smallest turn per key press.
     let slow_robot = PAPER_TOML.replacen("\nslew = 300.0", "\nslew = 10.0", 1);
     assert_ne!(slow_robot, PAPER_TOML);
-    for (text, degrees) in [
+    for (robot_toml, degrees) in [
         (PAPER_TOML, 10.0),
         (PAPER_TOML, 0.1),
         (slow_robot.as_str(), 10.0),
         (slow_robot.as_str(), 0.1),
     ] {
-        let robot = lizard_robot::Robot::parse(text).expect("the robot.toml is valid");
+        let robot = lizard_robot::Robot::parse(robot_toml).expect("the robot.toml is valid");
         let mut running = RunningRobot::power_on(*robot.firmware());
         running.run_frames(200);
         let before = running.status_value("pose");
@@ -175,7 +175,7 @@ fn motion_shows_before_the_robot_counts_as_standing() {
 }
 
 #[test]
-fn refused_trim_is_shown_and_changes_nothing() {
+fn a_refused_trim_is_shown_and_changes_nothing() {
     let mut link = connect_paper_robot();
     let mut guide = Guide::new(&mut link).expect("the robot answers");
     press_keys(&mut guide, &[Key::Back, Key::Next, Key::Next]);
@@ -198,7 +198,7 @@ fn refused_trim_is_shown_and_changes_nothing() {
 }
 
 /// Returns the keys from the first step to the scale of A1.
-fn list_keys_to_scales() -> Vec<Key> {
+fn keys_to_first_scale() -> Vec<Key> {
     let mut keys = vec![Key::Next, Key::Next];
     keys.extend(CONFIRM_SIGN_KEYS.repeat(4));
     keys.extend([Key::Next; 4]);
@@ -207,11 +207,11 @@ fn list_keys_to_scales() -> Vec<Key> {
 }
 
 #[test]
-fn scale_correction_keeps_the_neutral_pulse() {
+fn a_scale_correction_keeps_the_neutral_pulse() {
     let mut link = connect_paper_robot();
     link.command("trim 1 2.00").expect("the line is accepted");
     let mut guide = Guide::new(&mut link).expect("the robot answers");
-    press_keys(&mut guide, &list_keys_to_scales());
+    press_keys(&mut guide, &keys_to_first_scale());
     assert!(
         guide
             .view()
@@ -243,7 +243,7 @@ fn limits_move_at_most_to_the_travel_that_the_gaits_need() {
     let mut link = connect_paper_robot();
     let before = read_calibration(&mut link).servos[0];
     let mut guide = Guide::new(&mut link).expect("the robot answers");
-    press_keys(&mut guide, &list_keys_to_scales());
+    press_keys(&mut guide, &keys_to_first_scale());
     press_keys(&mut guide, &[Key::Next; 4]);
     let title = guide.view().title;
     assert!(title.contains("how far may A1, front left turn"), "{title}");

@@ -2,14 +2,14 @@
 
 use std::io::{Read, Write};
 
-use crate::shared::ink::SERVO_PLACES;
+use crate::shared::shapes::SERVO_POSITIONS;
 
 use super::step::{STEPS, Step};
 use super::{Guide, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 
 /// The contents of the screen in one step.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct View {
+pub struct StepView {
     /// The step's title.
     pub title: String,
     /// The user's instructions, line by line.
@@ -22,8 +22,8 @@ pub struct View {
 
 impl<P: Read + Write> Guide<'_, P> {
     /// Returns the screen for the current step.
-    pub fn view(&self) -> View {
-        let servo_name = |index: usize| format!("A{}, {}", index + 1, SERVO_PLACES[index]);
+    pub fn view(&self) -> StepView {
+        let servo_name = |index: usize| format!("A{}, {}", index + 1, SERVO_POSITIONS[index]);
         let next_keys = "Enter: next    b: back    q: cancel, nothing is saved";
         let (title, text, keys): (String, String, &str) = match self.step() {
             Step::Begin => (
@@ -167,7 +167,7 @@ impl<P: Read + Write> Guide<'_, P> {
                 "Enter: end    b: back to change something",
             ),
         };
-        View {
+        StepView {
             title: format!("Step {} of {}: {title}", self.step_index + 1, STEPS.len()),
             instructions: text.lines().map(str::to_owned).collect(),
             keys: keys.to_owned(),

@@ -1,0 +1,52 @@
+//! The contact of a robot with its floor.
+//!
+//! The model is planar and quasi-static, with Coulomb friction. At each instant the pads slide so that friction
+//! dissipates as little power as possible: the body moves with the twist (vx, vy, omega) that minimises
+//! `sum mu N |v + omega x r_i + dr_i/dt|` over the feet. Three feet in stance, which move together, prevail over one in
+//! swing, and the body advances. With rigid legs, speed, weight and a common friction coefficient cancel. If springs
+//! drive the legs, each step minimises the sum of the friction's work and the springs' energy, and the ratio of
+//! friction to stiffness decides the lag of a leg behind its servo.
+
+use crate::drive::Drive;
+use crate::feet::{Body, Feet};
+use crate::stance::Stance;
+
+/// The contact of a robot with a floor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundContact {
+    /// Geometry of the feet.
+    pub feet: Feet,
+    /// Mass and centre of mass.
+    pub body: Body,
+    /// Stiffness and lengths of the feet, which decide their loads.
+    pub stance: Stance,
+    /// Friction coefficient of a pad that slides forward. It has an effect only with springs or motors.
+    pub friction_coefficient: f64,
+    /// Ratio of a pad's friction coefficients: backward slide over forward slide.
+    pub friction_ratio: f64,
+    /// Drive of each leg by its servo.
+    pub drive: Drive,
+}
+
+/// Default friction coefficient: rubber on a smooth floor.
+pub const DEFAULT_FRICTION: f64 = 0.7;
+
+impl GroundContact {
+    /// Returns this contact with legs that do not lag, so that no step depends on earlier steps.
+    pub fn with_rigid_drive(&self) -> Self {
+        Self {
+            drive: Drive::RIGID,
+            ..*self
+        }
+    }
+
+    /// Loads of feet at these positions (forward, left in mm, servo order), divided by the mean load.
+    pub fn loads(&self, feet: [[f64; 2]; 4]) -> [f64; 4] {
+        self.stance.relative_loads(&self.body, feet)
+    }
+
+    /// Friction of a pad under the mean load, N: the force that a leg's spring or motor has to overcome.
+    pub fn mean_pad_friction(&self) -> f64 {
+        self.friction_coefficient * self.body.mean_load()
+    }
+}

@@ -1,0 +1,179 @@
+//! Lists this machine's USB serial ports, and chooses the board's port if the user has not named it.
+
+use serialport::{SerialPortInfo, SerialPortType};
+
+/// USB vendor IDs of the chips on UNOs and their clones: Arduino's IDs, and the ID of WCH, the maker of the CH340.
+const UNO_VENDOR_IDS: [u16; 3] = [ARDUINO_VENDOR_IDS[0], ARDUINO_VENDOR_IDS[1], 0x1a86];
+/// Arduino's USB vendor IDs.
+pub(in crate::drive) const ARDUINO_VENDOR_IDS: [u16; 2] = [0x2341, 0x2a03];
+
+/// A USB serial port.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UsbPort {
+    /// The port's name, such as /dev/ttyACM0 or COM3.
+    pub name: String,
+    /// The USB chip's vendor ID.
+    pub vendor_id: u16,
+    /// The USB chip's product ID.
+    pub product_id: u16,
+    /// The product name that the chip reports.
+    pub product_name: Option<String>,
+}
+
+/// An error in the choice of a port.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ChoiceError {
+    /// There is no port.
+    #[error(
+        "no board found: this machine has no USB serial port. Connect the UNO with a cable that \
+         carries data (some only charge), or name its port: lizard {command} /dev/ttyACM0; \
+         --sim uses a simulated UNO"
+    )]
+    NoPort {
+        /// The subcommand, with the arguments before the port.
+        command: &'static str,
+    },
+    /// There is more than one port.
+    #[error("several boards found: {}. Select one: lizard {command} {}", join_names(.ports), .ports[0].name)]
+    SeveralPorts {
+        /// The subcommand, with the arguments before the port.
+        command: &'static str,
+        /// The ports that may have the board.
+        ports: Vec<UsbPort>,
+    },
+}
+
+/// Returns this machine's USB serial ports, sorted by name. Other ports, such as a mainboard's, are used only if
+/// the user names them.
+pub fn list() -> Vec<UsbPort> {
+    let mut ports: Vec<UsbPort> = serialport::available_ports()
+        .unwrap_or_default()
+        .into_iter()
+        .filter_map(to_usb_port)
+        .collect();
+    ports.sort_by(|a, b| a.name.cmp(&b.name));
+    ports
+}
+
+fn to_usb_port(port: SerialPortInfo) -> Option<UsbPort> {
+    let SerialPortType::UsbPort(usb) = port.port_type else {
+        return None;
+    };
+    // macOS lists each port twice; opening the port called /dev/tty.* would wait for a modem's carrier.
+    if port.port_name.starts_with("/dev/tty.") {
+        return None;
+    }
+    Some(UsbPort {
+        name: port.port_name,
+        vendor_id: usb.vid,
+        product_id: usb.pid,
+        product_name: usb.product,
+    })
+}
+
+impl UsbPort {
+    /// True if the chip has one of Arduino's vendor IDs.
+    pub fn has_arduino_vendor_id(&self) -> bool {
+        ARDUINO_VENDOR_IDS.contains(&self.vendor_id)
+    }
+}
+
+/// Chooses the only port with a UNO's USB chip; if no port has one, the only port.
+///
+/// # Errors
+/// Fails if there is no such port, or more than one.
+pub fn choose(ports: &[UsbPort], command: &'static str) -> Result<UsbPort, ChoiceError> {
+    let mut candidates = ports.to_vec();
+    candidates.retain(|port| UNO_VENDOR_IDS.contains(&port.vendor_id));
+    if candidates.is_empty() {
+        candidates = ports.to_vec();
+    }
+    match candidates.as_slice() {
+        [port] => Ok(port.clone()),
+        [] => Err(ChoiceError::NoPort { command }),
+        _ => Err(ChoiceError::SeveralPorts {
+            command,
+            ports: candidates,
+        }),
+    }
+}
+
+impl std::fmt::Display for UsbPort {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.product_name {
+            Some(product) => write!(f, "{} ({})", self.name, product.replace('_', " ")),
+            None => f.write_str(&self.name),
+        }
+    }
+}
+
+fn join_names(ports: &[UsbPort]) -> String {
+    let names: Vec<String> = ports.iter().map(ToString::to_string).collect();
+    names.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn port(name: &str, vendor_id: u16) -> UsbPort {
+        UsbPort {
+            name: format!("/dev/{name}"),
+            vendor_id,
+            product_id: 0x43,
+            product_name: (vendor_id == 0x2341).then(|| "Arduino_Uno".to_owned()),
+        }
+    }
+
+    fn choose_from(ports: &[(&str, u16)]) -> Result<String, String> {
+        let ports: Vec<UsbPort> = ports.iter().map(|(name, id)| port(name, *id)).collect();
+        choose(&ports, "console")
+            .map(|port| port.to_string())
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_only_uno_among_other_devices_is_chosen() {
+        assert_eq!(
+            choose_from(&[
+                ("ttyUSB0", 0x0403),
+                ("ttyACM0", 0x2341),
+                ("ttyACM1", 0x1546)
+            ]),
+            Ok("/dev/ttyACM0 (Arduino Uno)".to_owned())
+        );
+        assert_eq!(
+            choose_from(&[("ttyUSB0", 0x0403), ("ttyUSB1", 0x1a86)]),
+            Ok("/dev/ttyUSB1".to_owned())
+        );
+    }
+
+    #[test]
+    fn the_only_port_is_chosen_with_any_chip() {
+        assert_eq!(
+            choose_from(&[("ttyUSB0", 0x0403)]),
+            Ok("/dev/ttyUSB0".to_owned())
+        );
+    }
+
+    #[test]
+    fn errors_for_no_port_and_several_ports_name_the_remedy() {
+        let message = choose_from(&[]).expect_err("the choice must fail without a port");
+        assert!(
+            message.contains("carries data") && message.contains("lizard console /dev/ttyACM0")
+        );
+        assert_eq!(
+            choose_from(&[
+                ("ttyACM0", 0x2341),
+                ("ttyUSB0", 0x1a86),
+                ("ttyUSB1", 0x0403)
+            ]),
+            Err(
+                "several boards found: /dev/ttyACM0 (Arduino Uno), /dev/ttyUSB0. Select one: \
+                 lizard console /dev/ttyACM0"
+                    .to_owned()
+            )
+        );
+        assert!(choose_from(&[("ttyUSB0", 1), ("ttyUSB1", 2)]).is_err());
+    }
+}

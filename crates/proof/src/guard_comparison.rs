@@ -1,0 +1,111 @@
+//! The comparison of the guard with floating point at the pairs of servo positions of every end and side, divided
+//! into pieces.
+
+use std::sync::OnceLock;
+
+use lizard_kinematics::{End, Side};
+use lizard_robot::{CellMaps, CoreRobot, Robot, servo};
+
+use crate::end_comparison::{EndComparison, compute_bands};
+use crate::positions::Positions;
+use crate::rows::{PIECES_PER_PART, PairSample};
+use crate::side_comparison::{SideComparison, compare_leg};
+use crate::tally::{Finding, MARGIN_BAND, Tally};
+
+/// Number of pieces of the whole comparison: 64 for each end and each side.
+pub const PIECE_COUNT: usize = 4 * PIECES_PER_PART;
+
+/// The comparison of a robot's guard with floating point at pairs of servo positions, with the values that all pieces
+/// share.
+pub struct GuardComparison<'a> {
+    robot: &'a Robot,
+    guard: &'a CoreRobot,
+    sample: PairSample,
+    maps: CellMaps,
+    /// The positions of each servo, computed when the first piece needs them.
+    positions: [OnceLock<Positions>; 4],
+}
+
+impl<'a> GuardComparison<'a> {
+    /// Creates the comparison over a sample of the pairs.
+    pub fn new(robot: &'a Robot, guard: &'a CoreRobot, sample: PairSample) -> Self {
+        Self {
+            robot,
+            guard,
+            sample,
+            maps: robot.cell_maps(),
+            positions: Default::default(),
+        }
+    }
+
+    /// The positions of the servo with this index, 0 to 3.
+    fn positions(&self, servo: usize) -> &Positions {
+        self.positions[servo].get_or_init(|| Positions::compute(self.guard, servo))
+    }
+
+    /// Compares the pairs of one piece, whose index is below [`PIECE_COUNT`].
+    pub fn compare_piece(&self, index: usize, report_progress: &(dyn Fn(u64) + Sync)) -> Tally {
+        let (part_index, piece_index) = (index / PIECES_PER_PART, index % PIECES_PER_PART);
+        let servo_positions = |servos: [usize; 2]| servos.map(|servo| self.positions(servo));
+        if let Some(end) = End::ALL.get(part_index) {
+            let comparison = EndComparison::new(self.robot, self.guard, &self.maps, *end);
+            let positions = servo_positions(end.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
+        } else {
+            let side = Side::ALL[part_index - End::ALL.len()];
+            let comparison = SideComparison::new(self.robot, self.guard, &self.maps, side);
+            let positions = servo_positions(side.servos());
+            comparison.compare_piece(positions, self.sample, piece_index, report_progress)
+        }
+    }
+}
+
+/// Computes the findings for every end, side and leg of a robot from the tallies of all pieces, in order.
+pub fn compute_findings(robot: &Robot, guard: &CoreRobot, tallies: Vec<Tally>) -> Vec<Finding> {
+    let mut tallies = tallies.into_iter();
+    let mut next_part_tally = || {
+        tallies
+            .by_ref()
+            .take(PIECES_PER_PART)
+            .fold(Tally::default(), Tally::merge)
+    };
+    let ends = End::ALL.map(|end| (end.name().to_string(), end.servos()));
+    let sides = Side::ALL.map(|side| (format!("{side} side"), side.servos()));
+    let parts = ends.into_iter().chain(sides);
+    let to_finding = |(part, servos): (String, [usize; 2])| Finding {
+        part,
+        servos: servos.map(|servo| servo::SERVO_NAMES[servo]).to_vec(),
+        tally: next_part_tally(),
+    };
+    let mut findings: Vec<Finding> = parts.map(to_finding).collect();
+    for (servo, leg_name) in servo::LEG_NAMES.iter().enumerate() {
+        findings.push(Finding {
+            part: format!("leg {leg_name}"),
+            servos: vec![servo::SERVO_NAMES[servo]],
+            tally: compare_leg(robot, guard, &Positions::compute(guard, servo)),
+        });
+    }
+    findings
+}
+
+/// The larger margin band of the two ends, and at least [`MARGIN_BAND`]: the distance from a margin's limit, a sine,
+/// within which the guard may decide differently from floating point.
+pub fn widest_margin_band(robot: &Robot) -> f64 {
+    End::ALL
+        .map(|end| compute_bands(robot, end)[0])
+        .into_iter()
+        .fold(MARGIN_BAND, f64::max)
+}
+
+/// The number of rows to check: one for each position of the first servo of each end and side.
+pub fn row_count(guard: &CoreRobot) -> u64 {
+    let count_positions = |servo: usize| {
+        let calibration = guard.calibration()[servo];
+        (i32::from(calibration.travel_max.0) - i32::from(calibration.travel_min.0) + 1) as u64
+    };
+    let first_servos = End::ALL
+        .map(|end| end.servos()[0])
+        .into_iter()
+        .chain(Side::ALL.map(|side| side.servos()[0]));
+    first_servos.map(count_positions).sum()
+}

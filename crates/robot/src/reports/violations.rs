@@ -1,0 +1,37 @@
+//! The messages about a pose that a robot must not take: violated limits, and angles outside the servos' travel.
+
+use lizard_kinematics::{Pose, Solution, wrap};
+
+use crate::config::servo::SERVO_NAMES;
+use crate::robot::Robot;
+
+/// Returns a message for each violation by a solved pose; none if the pose is safe.
+pub fn find_pose_violations(robot: &Robot, solution: &Solution) -> Vec<String> {
+    let violations = robot.limits().violations(solution);
+    violations
+        .map(|violation| violation.to_string())
+        .chain(find_travel_violations(robot, &solution.pose))
+        .collect()
+}
+
+/// Returns a message for each servo that cannot reach its angle in a pose.
+pub fn find_travel_violations(robot: &Robot, pose: &Pose) -> impl Iterator<Item = String> {
+    let angles = <[f64; 4]>::from(*pose);
+    (0..4).filter_map(move |i| find_travel_violation(robot, i, angles[i]))
+}
+
+/// Returns a message if the servo with this index cannot reach an angle (deg, chassis frame), `None` if it can.
+pub fn find_travel_violation(robot: &Robot, index: usize, angle: f64) -> Option<String> {
+    let servo = &robot.servos()[index];
+    (!servo.reaches(angle)).then(|| {
+        let (neutral, (min, max)) = (servo.neutral, servo.travel());
+        let sweep = wrap(angle - neutral);
+        format!(
+            "servo {} would turn {sweep:+.1} deg from neutral to {:.1} deg; its travel is {:.1} to {:.1} deg",
+            SERVO_NAMES[index],
+            neutral + sweep,
+            neutral + min,
+            neutral + max,
+        )
+    })
+}

@@ -1,0 +1,251 @@
+//! Builds and scores gaits. A gait is computed and checked like any gait in robot.toml, at the pace at which its
+//! fastest servo reaches the speed limit. Then the gait is simulated on random robots.
+
+use lizard_robot::{Bars, CheckedGait, GroundContact, Robot, Travel};
+use lizard_twin::ServoModel;
+
+use crate::goal::Goal;
+use crate::plan::{GaitKind, MAX_PERIOD_S, SearchSpace, plan_gait};
+use crate::variation::{Variation, compute_quantiles};
+
+/// Bounds of the search for a robot's largest amplitude, deg.
+const AMPLITUDE_BOUNDS: (f64, f64) = (5.0, 80.0);
+/// The servos of the random robots. Their dead band reduces small strides by a larger fraction than large strides.
+const SERVO_MODEL: ServoModel = ServoModel::SG90;
+/// Period at which the servo speed is measured first, s: no servo exceeds its speed limit.
+const SLOW_PERIOD_S: f64 = 3.0;
+/// Number of iterations that fit the period to the servo speed.
+const PERIOD_ITERATIONS: usize = 3;
+/// Fraction of the random robots that are slower than the score.
+const SLOWEST_FRACTION: f64 = 0.05;
+
+/// A built and checked gait, with its table for robot.toml.
+#[derive(Debug, Clone)]
+pub struct BuiltGait {
+    /// The robot with only this gait and `stand`.
+    robot: Robot,
+    table: String,
+}
+
+impl BuiltGait {
+    /// Builds a gait with the shortest period at which no servo exceeds `max_rate` (deg/s). Returns `None` if the gait
+    /// violates a limit of the robot, or if this period exceeds [`MAX_PERIOD_S`].
+    pub(crate) fn build(robot: &Robot, bars: &Bars, max_rate: f64) -> Option<Self> {
+        let build_with_period = |period: f64| {
+            let bars = Bars {
+                period,
+                ..bars.clone()
+            };
+            let table = bars.to_toml();
+            let robot = robot.with_gait(&table).ok()?;
+            Some(Self { robot, table })
+        };
+        let mut shortest_gait: Option<Self> = None;
+        let mut built = build_with_period(SLOW_PERIOD_S)?;
+        for _ in 0..PERIOD_ITERATIONS {
+            let period = round_period(built.gait().period() * built.peak_rate() / max_rate);
+            if period > MAX_PERIOD_S {
+                return None;
+            }
+            built = build_with_period(period)?;
+            let is_shorter = |shortest: &Self| period < shortest.gait().period();
+            if built.peak_rate() <= max_rate && shortest_gait.as_ref().is_none_or(is_shorter) {
+                shortest_gait = Some(built.clone());
+            }
+        }
+        // The peak speed depends on the phases of the frames, so a slightly shorter period may also keep the servos
+        // within the limit.
+        let shorter_gait = build_with_period(shortest_gait.as_ref()?.gait().period() - 0.01);
+        shorter_gait
+            .filter(|gait| gait.peak_rate() <= max_rate)
+            .or(shortest_gait)
+    }
+
+    /// Finds the largest amplitude, deg, of a wave gait within the robot's limits, with the first start parameters of
+    /// the search.
+    pub(crate) fn find_max_amplitude(robot: &Robot, goal: Goal, max_rate: f64) -> f64 {
+        let is_within_limits = |max_amplitude: f64| {
+            let space = SearchSpace {
+                goal,
+                max_amplitude,
+            };
+            let parameters = &GaitKind::Wave.start_parameters()[0];
+            let bars = plan_gait(GaitKind::Wave, space, "x", parameters);
+            Self::build(robot, &bars, max_rate).is_some()
+        };
+        let (mut low, mut high) = AMPLITUDE_BOUNDS;
+        while high - low > 0.2 {
+            let middle = f64::midpoint(low, high);
+            if is_within_limits(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// The checked gait.
+    pub fn gait(&self) -> &CheckedGait {
+        // The first gait is `stand`.
+        self.robot.gaits().last().unwrap_or(&self.robot.gaits()[0])
+    }
+
+    /// The gait's table for robot.toml.
+    pub fn table(&self) -> &str {
+        &self.table
+    }
+
+    /// Speed of the fastest servo, deg/s.
+    fn peak_rate(&self) -> f64 {
+        self.gait().audit().peak_speed.speed
+    }
+}
+
+/// Rounds a period up to hundredths of a second, at least 0.2 s.
+fn round_period(period: f64) -> f64 {
+    // The subtraction keeps a rounding error from raising the period to the next hundredth.
+    ((period * 100.0 - 1e-6).ceil() / 100.0).max(0.2)
+}
+
+/// Scores gaits on random robots.
+#[derive(Debug, Clone)]
+pub struct Scorer {
+    robot: Robot,
+    ground: GroundContact,
+    goal: Goal,
+    variations: Vec<Variation>,
+}
+
+impl Scorer {
+    /// Creates `robot_count` random variations of the robot and the ground, with consecutive seeds from `seed` on.
+    pub fn new(
+        robot: &Robot,
+        ground: &GroundContact,
+        goal: Goal,
+        robot_count: usize,
+        seed: u64,
+    ) -> Self {
+        let sample = |index: u64| Variation::sample(ground, seed.wrapping_add(index));
+        Self {
+            robot: robot.clone(),
+            ground: *ground,
+            goal,
+            variations: (0..robot_count as u64).map(sample).collect(),
+        }
+    }
+
+    /// Computes the speed of a gait on each random robot, mm/s or deg/s.
+    pub fn compute_speeds(&self, gait: &CheckedGait, period: f64) -> Vec<f64> {
+        let variations = self.variations.iter();
+        let speeds = variations.map(|variation| self.compute_speed(variation, gait, period));
+        speeds.collect()
+    }
+
+    /// Computes the speed of a gait on the robot without variation, mm/s or deg/s.
+    pub fn compute_nominal_speed(&self, gait: &CheckedGait, period: f64) -> f64 {
+        self.compute_speed(&Variation::nominal(&self.ground), gait, period)
+    }
+
+    /// Simulates a cycle frame by frame with the servos [`SERVO_MODEL`], and computes the speed, mm/s or deg/s.
+    fn compute_speed(&self, variation: &Variation, gait: &CheckedGait, period: f64) -> f64 {
+        let movement = variation.simulate_cycle(&self.robot, gait, SERVO_MODEL);
+        self.goal.progress(&movement) / period
+    }
+
+    /// The goal towards which gaits are scored.
+    pub const fn goal(&self) -> Goal {
+        self.goal
+    }
+
+    /// Simulates a cycle in fine steps on the robot without variation, with ideal servos.
+    pub fn simulate_ideal_cycle(&self, gait: &CheckedGait) -> Travel {
+        gait.simulate_cycle(&self.ground).travel
+    }
+
+    /// Computes the speed that the gait exceeds on 95 % of the random robots. Returns `None` if the movement of the
+    /// robot without variation has a component in another direction than the goal's.
+    pub fn score(&self, gait: &CheckedGait) -> Option<f64> {
+        // The direction is checked in fine steps. If the period is not a whole number of frames, a simulation by frames
+        // does not include the end of the cycle, so it would show a sideways movement.
+        let ideal_movement = self.simulate_ideal_cycle(gait);
+        if !self.goal.matches_direction(&ideal_movement) {
+            return None;
+        }
+        let speeds = self.compute_speeds(gait, gait.period());
+        let [score] = compute_quantiles(speeds, [SLOWEST_FRACTION]);
+        Some(score)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paper_robot() -> Robot {
+        Robot::parse(include_str!("../../../robots/paper.toml")).expect("paper.toml is valid")
+    }
+
+    fn plan_wave_gait(max_amplitude: f64, amplitude_fraction: f64) -> Bars {
+        let space = SearchSpace {
+            goal: Goal::Straight(1.0),
+            max_amplitude,
+        };
+        let parameters = [0.5, 0.25, amplitude_fraction, 0.5];
+        plan_gait(GaitKind::Wave, space, "x", &parameters)
+    }
+
+    #[test]
+    fn the_leg_margin_limits_the_amplitude_of_the_papers_robot() {
+        // sin(41.41 deg - amplitude) = 0.3.
+        let max_amplitude =
+            BuiltGait::find_max_amplitude(&paper_robot(), Goal::Straight(1.0), 262.0);
+        assert!(
+            (max_amplitude - (41.41 - 0.3f64.asin().to_degrees())).abs() < 0.4,
+            "largest amplitude {max_amplitude} deg"
+        );
+    }
+
+    #[test]
+    fn a_built_gait_uses_at_least_97_percent_of_the_allowed_servo_speed() {
+        let robot = paper_robot();
+        let bars = plan_wave_gait(45.0, 0.375);
+        for rate in [150.0, 262.2, 300.0] {
+            let built =
+                BuiltGait::build(&robot, &bars, rate).expect("the gait is within the limits");
+            assert!(
+                built.peak_rate() <= rate && built.peak_rate() > 0.97 * rate,
+                "allowed: {rate} deg/s, used: {} deg/s",
+                built.peak_rate()
+            );
+        }
+    }
+
+    #[test]
+    fn build_rejects_a_gait_that_violates_a_limit() {
+        // At 45 deg in both directions, the leg margins are below their limit.
+        let wide_bars = plan_wave_gait(45.0, 1.0);
+        assert!(BuiltGait::build(&paper_robot(), &wide_bars, 250.0).is_none());
+    }
+
+    #[test]
+    fn the_score_is_below_the_speed_of_the_robot_without_variation() {
+        let robot = paper_robot();
+        for (name, goal, min_score) in [
+            ("walk", Goal::Straight(1.0), 28.0),
+            ("left", Goal::Turn(1.0), 13.0),
+        ] {
+            let gait = robot.gait(name).expect("paper.toml has the gait");
+            let scorer = Scorer::new(&robot, robot.ground(), goal, 20, 0);
+            let score = scorer.score(gait).expect("the gait moves towards its goal");
+            let nominal_speed = scorer.compute_nominal_speed(gait, gait.period());
+            assert!(
+                min_score < score && score < nominal_speed,
+                "{name}: score {score}, nominal speed {nominal_speed}"
+            );
+        }
+        let walk = robot.gait("walk").expect("paper.toml has the gait");
+        let turn_scorer = Scorer::new(&robot, robot.ground(), Goal::Turn(1.0), 2, 0);
+        assert_eq!(turn_scorer.score(walk), None);
+    }
+}

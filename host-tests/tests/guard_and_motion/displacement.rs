@@ -1,0 +1,130 @@
+//! Tests of the robot's displacement due to the core's pulses. The pulses are converted back to angles for the contact
+//! model, and must move the robot like the gait in floating point.
+
+use lizard_core::numbers::pose::Pulses;
+use lizard_host_tests::{CYCLES_PER_US, NamedRobot, paper_robot, robots};
+use lizard_robot::{CheckedGait, Robot, Travel};
+
+use crate::checked_robot::{CheckedRobot, settling_frames};
+
+/// Converts pulse widths in cycles of 62.5 ns to servo angles in the chassis frame, deg.
+fn pulses_to_angles(robot: &Robot, pulses: Pulses) -> [f64; 4] {
+    std::array::from_fn(|n| {
+        let servo = &robot.servos()[n];
+        servo.neutral + servo.sweep(f64::from(pulses.0[n].0) / CYCLES_PER_US)
+    })
+}
+
+/// Simulates one cycle of a gait at a speed in percent, and returns the robot's displacement due to the core's pulses;
+/// `None` if the guard stops the robot on its path to the gait's first pose. The cycle begins at the frame whose phase
+/// is nearest to 0.
+fn simulate_travel(named: &NamedRobot, gait: &CheckedGait, speed_percent: f64) -> Option<Travel> {
+    let robot = &named.robot;
+    let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+    checked_robot.expect_ok(&format!("speed {speed_percent}"));
+    checked_robot.expect_ok(&gait.command());
+    checked_robot.run_frames(settling_frames(robot));
+    if checked_robot.motion().hazard().is_some() {
+        return None;
+    }
+    let frames_per_cycle = gait.period() * 50.0 * 100.0 / speed_percent;
+    // The phase of a reversed gait decreases, so the distance from 0 counts in both directions.
+    let phase_distance = |checked_robot: &CheckedRobot| {
+        let phase = i64::from(checked_robot.motion().phase());
+        phase.min((1 << 24) - phase)
+    };
+    let phase_per_frame = (f64::from(1 << 24) / frames_per_cycle) as i64;
+    while phase_distance(&checked_robot) > phase_per_frame / 2 + 1 {
+        checked_robot.run_frames(1);
+    }
+    let mut path = vec![pulses_to_angles(
+        robot,
+        checked_robot
+            .pose()
+            .pulses(checked_robot.motion().calibration()),
+    )];
+    for _ in 0..frames_per_cycle.ceil() as usize {
+        path.push(pulses_to_angles(robot, checked_robot.run_frame()));
+    }
+    // A cycle may end between two frames, so only a fraction of the last frame counts.
+    let last_index = path.len() - 1;
+    let last_frame_fraction = frames_per_cycle - frames_per_cycle.ceil() + 1.0;
+    let (previous, last) = (path[last_index - 1], path[last_index]);
+    path[last_index] =
+        std::array::from_fn(|n| previous[n] + last_frame_fraction * (last[n] - previous[n]));
+    Some(robot.predict_travel(path))
+}
+
+/// Asserts that a displacement matches the expected values: forward within `tolerance_mm` or 1 %, the turn within 0.2
+/// deg. An expected value of `None` is not compared.
+fn assert_travel(
+    name: &str,
+    travel: Travel,
+    tolerance_mm: f64,
+    expected_forward_mm: Option<f64>,
+    expected_turn_deg: Option<f64>,
+) {
+    println!(
+        "{name}: {:+.2} mm, {:+.2} deg, expected {expected_forward_mm:?} {expected_turn_deg:?}",
+        travel.forward, travel.turn
+    );
+    if let Some(forward_mm) = expected_forward_mm {
+        let tolerance_mm = tolerance_mm.max(0.01 * forward_mm.abs());
+        assert!(
+            (travel.forward - forward_mm).abs() <= tolerance_mm,
+            "{name}: expected {forward_mm} mm forward, got {travel:?}"
+        );
+    }
+    if let Some(turn_deg) = expected_turn_deg {
+        assert!(
+            (travel.turn - turn_deg).abs() <= 0.2,
+            "{name}: expected a turn of {turn_deg} deg, got {travel:?}"
+        );
+    }
+}
+
+#[test]
+fn the_pulses_of_every_gait_move_the_robot_like_the_gait_in_floating_point() {
+    let mut travel_count = 0;
+    // The contact model is slow, so the last five random robots are left out.
+    for named in &robots()[..robots().len() - 5] {
+        for gait in named.robot.gaits() {
+            for speed_percent in [100.0, 20.0] {
+                // Random robots are tested only at full speed.
+                if speed_percent < 100.0 && named.name.starts_with("random") {
+                    continue;
+                }
+                let Some(travel) = simulate_travel(named, gait, speed_percent) else {
+                    continue;
+                };
+                travel_count += 1;
+                let expected = gait.predict(&named.robot.ground().with_rigid_drive());
+                let name = format!("{}: {} at {speed_percent} %", named.name, gait.name());
+                // In a robot without symmetry, a tenth of a degree may determine which foot sticks and which slips.
+                let tolerance_mm = 0.01 * named.robot.lizard().links.l10;
+                assert_travel(&name, travel, tolerance_mm, expected.forward, expected.turn);
+            }
+        }
+    }
+    assert!(travel_count > 100);
+}
+
+// The tests in crates/robot/ compare the predictions in floating point with independent values.
+#[test]
+fn the_pulses_of_the_papers_gaits_move_the_robot_as_predicted_within_0_3_mm() {
+    let named = NamedRobot {
+        name: "paper.toml".into(),
+        robot: paper_robot().clone(),
+    };
+    let mut predicted_count = 0;
+    for gait in paper_robot().gaits() {
+        let expected = gait.predict(&paper_robot().ground().with_rigid_drive());
+        predicted_count += usize::from(expected.forward.is_some() && expected.turn.is_some());
+        for speed_percent in [100.0, 80.0, 50.0, 20.0] {
+            let travel = simulate_travel(&named, gait, speed_percent)
+                .expect("the guard does not stop the robot");
+            assert_travel(gait.name(), travel, 0.3, expected.forward, expected.turn);
+        }
+    }
+    assert!(predicted_count >= 9, "only {predicted_count} predictions");
+}

@@ -1,0 +1,142 @@
+//! Tests of running gaits: the duration of their cycles at full and other speeds, and the poses of their frames.
+
+use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::units::CYCLE;
+use lizard_host_tests::{NamedRobot, rng, robots};
+
+use crate::checked_robot::{CheckedRobot, settling_frames};
+use crate::gaits::{FULL_PACE, all_gaits};
+
+#[test]
+fn a_hundred_cycles_take_a_hundred_periods() {
+    for (NamedRobot { name, .. }, float_gait, gait) in all_gaits() {
+        let frame_count = (5000.0 * float_gait.period()).round();
+        let phase = (0..frame_count as u32).fold(0, |phase, _| gait.advance(phase, FULL_PACE));
+        // A frame's phase advance is rounded to 1/2^24 cycle, so each frame adds an error of up to half a step.
+        let expected_phase = (frame_count / 50.0 / float_gait.period()).fract();
+        let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
+        let difference =
+            (f64::from(phase) / f64::from(CYCLE) - sign * expected_phase).rem_euclid(1.0);
+        let error = difference.min(1.0 - difference) * f64::from(CYCLE);
+        assert!(
+            error <= 0.5 * frame_count + 1.0,
+            "{name}: {} is off by {error} phase steps of 1/2^24 cycle",
+            float_gait.name()
+        );
+    }
+}
+
+#[test]
+fn every_speed_sets_its_percentage_of_a_gaits_full_pace() {
+    const FRAME_COUNT: u32 = 1000;
+    let mut rng = rng(8000);
+    let mut worst_error = 0.0f64;
+    let (mut walked_count, mut blocked_count) = (0, 0);
+    for named in robots() {
+        for float_gait in named.robot.gaits().iter().skip(1) {
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            checked_robot.expect_ok(&float_gait.command());
+            checked_robot.run_frames(settling_frames(&named.robot));
+            if checked_robot.motion().hazard().is_some() {
+                blocked_count += 1; // the path to the gait's first pose is unsafe
+                continue;
+            }
+            walked_count += 1;
+            for percent in [10, 100, rng.u8(11..100)] {
+                checked_robot.expect_ok(&format!("speed {percent}"));
+                checked_robot.run_frames(10);
+                let mut advance = 0i64;
+                for _ in 0..FRAME_COUNT {
+                    let previous_phase = checked_robot.motion().phase();
+                    checked_robot.run_frames(1);
+                    // A frame advances by less than half a cycle, so the wrapped difference has the correct sign.
+                    let phase_step =
+                        checked_robot.motion().phase().wrapping_sub(previous_phase) << 8;
+                    advance += i64::from(phase_step as i32 >> 8);
+                }
+                let cycles = advance as f64 / f64::from(CYCLE);
+                let sign = if float_gait.is_reversed() { -1.0 } else { 1.0 };
+                let fraction = sign * f64::from(percent) / 100.0;
+                let error =
+                    cycles / (fraction * f64::from(FRAME_COUNT) / 50.0 / float_gait.period()) - 1.0;
+                worst_error = worst_error.max(error.abs());
+                assert!(
+                    error.abs() <= 0.005,
+                    "{} {} at {percent} %: relative error {error}",
+                    named.name,
+                    float_gait.name()
+                );
+            }
+        }
+    }
+    println!("the pace is off by at most {:.2} %", 100.0 * worst_error);
+    assert!(
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
+    );
+}
+
+#[test]
+fn a_gait_that_is_commanded_again_continues() {
+    for named in robots() {
+        for gait in named.robot.gaits() {
+            let (mut tested, mut reference) = (
+                CheckedRobot::power_on_and_stand(named),
+                CheckedRobot::power_on_and_stand(named),
+            );
+            for frame in 0..150 {
+                if frame % 7 == 0 {
+                    tested.expect_ok(&gait.command());
+                }
+                if frame == 0 {
+                    reference.expect_ok(&gait.command());
+                }
+                assert_eq!(
+                    tested.run_frame(),
+                    reference.run_frame(),
+                    "{}: {}",
+                    named.name,
+                    gait.name()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_frame_of_a_running_gait_is_a_pose_of_the_gait() {
+    let (mut walked_count, mut blocked_count) = (0, 0);
+    for named in robots() {
+        for (gait, id) in named
+            .robot
+            .gaits()
+            .iter()
+            .zip(GaitId::all(named.robot.gaits().len()))
+        {
+            let mut checked_robot = CheckedRobot::power_on_and_stand(named);
+            checked_robot.expect_ok(&gait.command());
+            let firmware = named.robot.firmware();
+            let core_gait = firmware.gait(id);
+            checked_robot.run_frames(settling_frames(&named.robot));
+            if checked_robot.motion().hazard().is_some() {
+                blocked_count += 1; // the path to the gait's first pose is unsafe
+                continue;
+            }
+            walked_count += 1;
+            for _ in 0..100 {
+                checked_robot.run_frames(1);
+                let phase = checked_robot.motion().phase();
+                assert_eq!(
+                    checked_robot.pose(),
+                    core_gait.pose(firmware.waves(), phase),
+                    "{}",
+                    named.name
+                );
+            }
+        }
+    }
+    assert!(
+        walked_count > 10 * blocked_count,
+        "{walked_count} gaits walked, {blocked_count} blocked"
+    );
+}

@@ -1,0 +1,73 @@
+// The calibration of a board at its first connection. The WebAssembly module for boards implements the steps, in Rust.
+import type { Console, Calibrator } from '../../generated/board';
+import { loadBoardModule } from '../board-module';
+import type { Answer } from '../link/dialogue';
+import type { Link } from '../link/link';
+import type { Calibration } from '../robot';
+import type { Session } from '../session';
+import { WORDS } from '../words';
+
+const LOST_MESSAGE = 'The board has restarted or is gone; unsaved settings are lost.';
+
+/** The console of a board; usable until the board restarts or is gone. */
+class BoardConsole implements Console {
+  private readonly link: Link;
+  private readonly bannerCount: number;
+
+  constructor(private readonly session: Session) {
+    this.link = session.link;
+    this.bannerCount = session.state.bannerCount.value;
+  }
+
+  /** True if the board is still connected and has not restarted. */
+  get isCurrent(): boolean {
+    return this.session.link === this.link && this.session.state.bannerCount.value === this.bannerCount;
+  }
+
+  async ask(line: string): Promise<Answer> {
+    if (!this.isCurrent) throw new Error(LOST_MESSAGE);
+    const answer = await this.session.ask(line, line === WORDS.status);
+    if (answer) return answer;
+    throw new Error(this.isCurrent ? `The robot did not answer "${line}".` : LOST_MESSAGE);
+  }
+
+  wait(ms: number): Promise<void> {
+    return this.link.wait(ms);
+  }
+}
+
+/** Calibrates the connected board step by step. */
+export class BoardCalibrator {
+  /** The robot's calibration after the last action, saved or not. */
+  calibration: Readonly<Calibration>;
+  /** True if the calibration is not saved. */
+  isChanged = false;
+
+  private constructor(
+    private readonly boardConsole: BoardConsole,
+    private readonly calibrator: Calibrator,
+  ) {
+    this.calibration = calibrator.calibration;
+  }
+
+  /** Reads the robot's calibration; nothing moves. Throws an error with a message for the user. */
+  static async begin(session: Session): Promise<BoardCalibrator> {
+    const boardConsole = new BoardConsole(session);
+    const { Calibrator } = await loadBoardModule();
+    return new BoardCalibrator(boardConsole, await Calibrator.begin(boardConsole));
+  }
+
+  /** True if the board is still connected and has not restarted. */
+  get isCurrent(): boolean {
+    return this.boardConsole.isCurrent;
+  }
+
+  /** Runs an action; only one action may run at a time. Throws an error with a message for the user. */
+  async run<T>(action: (calibrator: Calibrator) => Promise<T>): Promise<T> {
+    try {
+      return await action(this.calibrator);
+    } finally {
+      ({ calibration: this.calibration, isChanged: this.isChanged } = this.calibrator);
+    }
+  }
+}

@@ -1,0 +1,51 @@
+// A robot as a link: the compressed robot.toml in the fragment of the page's address, which no server receives.
+
+/** Largest accepted size of a robot.toml, bytes; a typical robot.toml is a few thousand bytes long. */
+const MAX_BYTES = 200_000;
+
+async function pipeThrough(bytes: Uint8Array<ArrayBuffer>, stream: CompressionStream | DecompressionStream): Promise<Uint8Array<ArrayBuffer>> {
+  const output = new Blob([bytes]).stream().pipeThrough(stream);
+  const reader = output.getReader();
+  const chunks: BlobPart[] = [];
+  let length = 0;
+  for (let chunk = await reader.read(); !chunk.done; chunk = await reader.read()) {
+    length += chunk.value.length;
+    if (length > MAX_BYTES) throw new Error(`the robot in this address exceeds ${MAX_BYTES} bytes`);
+    chunks.push(chunk.value);
+  }
+  return new Uint8Array(await new Blob(chunks).arrayBuffer());
+}
+
+/** Compresses a robot.toml for the parameter `robot` of an address. */
+export async function pack(toml: string): Promise<string> {
+  const bytes = await pipeThrough(new TextEncoder().encode(toml), new CompressionStream('deflate-raw'));
+  const base64 = btoa(String.fromCharCode(...bytes));
+  // base64url needs no escapes in an address.
+  return base64.replaceAll('+', '-').replaceAll('/', '_').replaceAll('=', '');
+}
+
+/**
+ * Returns a robot.toml without comments, which would make up most of a link. Returns the text unchanged if the shorter
+ * text would parse to other values, for example because of a # in a multi-line string.
+ */
+async function stripComments(toml: string): Promise<string> {
+  const { parse } = await import('smol-toml');
+  const shortText = toml.replaceAll(/^[ \t]*#.*\n/gm, '').replaceAll(/[ \t]+#[^"'\n]*$/gm, '');
+  return JSON.stringify(parse(shortText)) === JSON.stringify(parse(toml)) ? shortText : toml;
+}
+
+/** Makes a link that opens this page with a robot, short enough for a chat or a QR code. */
+export async function makeLink(toml: string): Promise<string> {
+  return `${location.href.split('#')[0]}#robot=${await pack(await stripComments(toml))}`;
+}
+
+/** Decompresses the parameter `robot` of an address to a robot.toml. Throws an error with a message for the user. */
+export async function unpack(encoded: string): Promise<string> {
+  try {
+    const base64 = atob(encoded.replaceAll('-', '+').replaceAll('_', '/'));
+    const bytes = Uint8Array.from(base64, (character) => character.charCodeAt(0));
+    return new TextDecoder('utf-8', { fatal: true }).decode(await pipeThrough(bytes, new DecompressionStream('deflate-raw')));
+  } catch {
+    throw new Error('The robot in the address is incomplete; was the whole link copied?');
+  }
+}

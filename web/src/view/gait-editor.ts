@@ -1,0 +1,201 @@
+// The gait editor: a circle represents the cycle, and its bars represent the stances of the legs.
+import { browserStorage } from '../browser-storage';
+import { type Bars, type Description, type Four, Robot } from '../robot';
+import type { Session } from '../session';
+import { type GaitEditor, FasterView } from './faster';
+import { element, make, makeSvg, setAttributes, tableRow } from './elements';
+import { setUpNumberInput, putNumber, type Range } from './number-input';
+import { followShownRobot } from './rooms';
+import { TrialView } from './trial';
+import type { BoardWriter } from './writer';
+
+const LEGS = ['LF', 'RF', 'RH', 'LH'] as const;
+/** The index of each leg's opposite leg. */
+const OPPOSITE_LEGS = [1, 0, 3, 2] as const;
+/** Radius of each leg's ring, in units of the SVG. */
+const RING_RADII = [104, 82, 60, 38] as const;
+/** Width of a bar, in units of the SVG. */
+const BAR_WIDTH = 16;
+/** Fraction of the cycle that a bar covers in a gait whose legs hold still in between. */
+const HELD_STANCE_FRACTION = 0.25;
+
+/** The key of a gait's number with an input. */
+type GaitNumber = 'period' | 'duty' | 'amplitude';
+
+/** Ranges of the gait's numbers, as in robot.toml. */
+const NUMBER_RANGES: Record<GaitNumber, Range> = {
+  period: { min: 0.1, max: 10, step: 0.01 },
+  duty: { min: 0.05, max: 0.95, step: 0.005 },
+  amplitude: { min: 0.5, max: 60, step: 0.1 },
+};
+const LEG_NUMBER_RANGES = { start: { min: 0, max: 1, step: 0.005 }, gain: { min: -2, max: 2, step: 0.05 } };
+
+/** Rounds a value to a multiple of `step`. */
+const roundToMultiple = (value: number, step: number) => Number((Math.round(value / step) * step).toFixed(4));
+/** Wraps a phase to the range from 0 to less than 1. */
+const wrapPhase = (phase: number) => ((phase % 1) + 1) % 1;
+
+export class GaitEditorView {
+  private readonly templateList = element<HTMLSelectElement>('gait-from');
+  private readonly nameInput = element<HTMLInputElement>('gait-name');
+  private readonly kindList = element<HTMLSelectElement>('gait-kind');
+  private readonly circle = element<HTMLElement>('gait-circle') as unknown as SVGSVGElement;
+  private readonly startInputs: HTMLInputElement[] = [];
+  private readonly gainInputs: HTMLInputElement[] = [];
+  private readonly bars: SVGPathElement[] = [];
+  private readonly handles: SVGCircleElement[] = [];
+  private readonly trial: TrialView;
+  private readonly faster: FasterView;
+  /** The edited gait; null before the first gait. */
+  private gait: Bars | null = browserStorage.getGait();
+
+  constructor(
+    private readonly session: Session,
+    writer: BoardWriter,
+    compare: GaitEditor['compare'],
+  ) {
+    this.trial = new TrialView(session, writer, { prefix: 'gait', editedGait: () => this.gait, change: (key, value) => this.changeGait({ [key]: value }) });
+    this.faster = new FasterView(session, { gait: () => this.gait, setGait: (gait) => this.changeGait(gait), compare });
+    session.followRobot(() => this.faster.endIfRobotChanged());
+    followShownRobot(element<HTMLDetailsElement>('gait-editor'), session, (description) => this.showRobot(description));
+    this.templateList.addEventListener('change', () => this.editTemplate());
+    this.nameInput.addEventListener('input', () => this.changeGait({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
+    this.kindList.addEventListener('change', () => this.changeGait({ held: this.kindList.value === 'held' }));
+    for (const key of Object.keys(NUMBER_RANGES) as GaitNumber[]) {
+      setUpNumberInput(element(`gait-${key}`), NUMBER_RANGES[key], (value) => value !== null && this.changeGait({ [key]: value }));
+    }
+    LEGS.forEach((_, leg) => this.addLeg(leg));
+    element('gait-mirror').addEventListener('click', () => this.mirror());
+    element('gait-turn-round').addEventListener('click', () => this.gait && this.changeGait(Robot.reversed(this.gait)));
+  }
+
+  /** Shows another robot; an edited gait stays. */
+  private showRobot(description: Description): void {
+    this.fillTemplateList(description);
+    if (!this.gait || this.templateList.value === '') return this.editTemplate();
+    this.showGait();
+    this.trial.predict();
+  }
+
+  private fillTemplateList({ gaits }: Description): void {
+    const chosen = this.templateList.value;
+    const { robot } = this.session;
+    const barGaits = gaits.flatMap(({ name }, index) => (robot.bars(index) ? [{ name, index }] : []));
+    this.templateList.replaceChildren(...barGaits.map(({ name, index }) => new Option(name, String(index))));
+    if (barGaits.some(({ index }) => String(index) === chosen)) this.templateList.value = chosen;
+  }
+
+  /** Starts editing a copy of the robot's gait that the user chose as a template. */
+  private editTemplate(): void {
+    const bars = this.templateList.value === '' ? null : this.session.robot.bars(Number(this.templateList.value));
+    if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
+    this.gait = { ...bars, name: this.nameInput.value || 'mine' };
+    this.showGait();
+    this.trial.predict();
+  }
+
+  private changeGait(changes: Partial<Bars>): void {
+    if (!this.gait) return;
+    this.gait = { ...this.gait, ...changes };
+    browserStorage.putGait(this.gait);
+    this.showGait();
+    this.trial.predict();
+  }
+
+  private setLegValue(key: 'start' | 'gain', leg: number, value: number): void {
+    if (!this.gait) return;
+    const values = [...this.gait[key]] as Four<number>;
+    values[leg] = value;
+    this.changeGait({ [key]: values });
+  }
+
+  /** Swaps the left and the right legs. */
+  private mirror(): void {
+    if (!this.gait) return;
+    const { start, gain } = this.gait;
+    const swapSides = (values: Four<number>) => OPPOSITE_LEGS.map((leg) => values[leg]) as Four<number>;
+    this.changeGait({ start: swapSides(start), gain: swapSides(gain) });
+  }
+
+  /** Adds a leg's bar, its handle and the leg's two number inputs. */
+  private addLeg(leg: number): void {
+    const bar = this.circle.appendChild(makeSvg('path', { class: `bar a${leg + 1}` }));
+    const handle = this.circle.appendChild(makeSvg('circle', { class: `end a${leg + 1}`, r: 6 }));
+    this.bars.push(bar);
+    this.handles.push(handle);
+    this.addDragHandler(bar, (cycles, startGait) => this.setLegValue('start', leg, roundToMultiple(wrapPhase((startGait.start[leg] ?? 0) + cycles), 0.005)));
+    this.addDragHandler(handle, (cycles, startGait) => this.changeGait({ duty: roundToMultiple(Math.min(0.95, Math.max(0.05, startGait.duty + cycles)), 0.005) }));
+    const row = element('gait-legs').appendChild(tableRow([LEGS[leg] ?? '']));
+    for (const [key, label, list] of [['start', 'starts at', this.startInputs], ['gain', 'gain', this.gainInputs]] as const) {
+      const input = make('input', { ariaLabel: `${LEGS[leg]} ${label}` });
+      row.append(make('td', {}, input));
+      setUpNumberInput(input, LEG_NUMBER_RANGES[key], (value) => value !== null && this.setLegValue(key, leg, value));
+      list.push(input);
+    }
+  }
+
+  /** Calls `onDrag` during a drag of `mark`, with the angle of the drag in cycles and the gait at the drag's start. */
+  private addDragHandler(mark: SVGElement, onDrag: (cycles: number, startGait: Bars) => void): void {
+    let lastPhase = 0;
+    let draggedCycles = 0;
+    let startGait: Bars | null = null;
+    const computePhase = ({ clientX, clientY }: PointerEvent) => {
+      const { left, top, width, height } = this.circle.getBoundingClientRect();
+      return Math.atan2(clientX - left - width / 2, top + height / 2 - clientY) / (2 * Math.PI);
+    };
+    mark.addEventListener('pointerdown', (event) => {
+      mark.setPointerCapture(event.pointerId);
+      [lastPhase, draggedCycles, startGait] = [computePhase(event), 0, this.gait];
+    });
+    mark.addEventListener('pointermove', (event) => {
+      if (!startGait || !mark.hasPointerCapture(event.pointerId)) return;
+      const currentPhase = computePhase(event);
+      // Between two events, the pointer moves less than half a circle.
+      draggedCycles += wrapPhase(currentPhase - lastPhase + 0.5) - 0.5;
+      lastPhase = currentPhase;
+      onDrag(draggedCycles, startGait);
+    });
+    for (const eventName of ['pointerup', 'pointercancel']) mark.addEventListener(eventName, () => (startGait = null));
+  }
+
+  private showGait(): void {
+    const { gait } = this;
+    if (!gait) return;
+    const put = (input: HTMLInputElement, value: number) => putNumber(input, roundToMultiple(value, 0.001));
+    for (const key of Object.keys(NUMBER_RANGES) as GaitNumber[]) put(element(`gait-${key}`), gait[key]);
+    element<HTMLInputElement>('gait-duty').disabled = gait.held;
+    if (document.activeElement !== this.nameInput) this.nameInput.value = gait.name;
+    this.kindList.value = gait.held ? 'held' : 'wave';
+    const fraction = gait.held ? HELD_STANCE_FRACTION : gait.duty;
+    LEGS.forEach((_, leg) => {
+      const [start, radius] = [gait.start[leg] ?? 0, RING_RADII[leg] ?? 0];
+      const [startInput, gainInput] = [this.startInputs[leg], this.gainInputs[leg]];
+      if (startInput && gainInput) {
+        put(startInput, start);
+        put(gainInput, gait.gain[leg] ?? 1);
+      }
+      this.bars[leg]?.setAttribute('d', makeSectorPath(radius, start, fraction));
+      // A negative gain makes the foot push the robot backward.
+      this.bars[leg]?.classList.toggle('against', (gait.gain[leg] ?? 1) < 0);
+      const [cx, cy] = locateOnRing(radius, start + fraction);
+      setAttributes(this.handles[leg], { cx, cy, display: gait.held ? 'none' : 'inline' });
+    });
+  }
+}
+
+/** Returns the point of a ring at a phase; phase 0 is at the top, and phases increase clockwise. */
+function locateOnRing(radius: number, phase: number): [number, number] {
+  const angle = 2 * Math.PI * phase;
+  return [radius * Math.sin(angle), -radius * Math.cos(angle)];
+}
+
+/** Returns the SVG path of a bar, a ring sector that starts at the phase `start` and covers `cycles` cycles. */
+function makeSectorPath(radius: number, start: number, cycles: number): string {
+  const halfWidth = BAR_WIDTH / 2;
+  const [inner, outer] = [radius - halfWidth, radius + halfWidth];
+  const largeFlag = cycles > 0.5 ? 1 : 0;
+  const [a, b] = [locateOnRing(outer, start), locateOnRing(outer, start + cycles)];
+  const [c, d] = [locateOnRing(inner, start + cycles), locateOnRing(inner, start)];
+  const formatArc = (r: number, sweep: number, [x, y]: [number, number]) => `A ${r} ${r} 0 ${largeFlag} ${sweep} ${x} ${y}`;
+  return `M ${a[0]} ${a[1]} ${formatArc(outer, 1, b)} L ${c[0]} ${c[1]} ${formatArc(inner, 0, d)} Z`;
+}

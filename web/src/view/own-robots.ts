@@ -1,0 +1,49 @@
+// The user's own robots: when the user opens a link or another robot, the changed robot is put aside.
+import { browserStorage, type SavedChanges } from '../browser-storage';
+import type { Session } from '../session';
+import type { ProblemList } from './problems';
+
+const readName = (toml: string) => /^name\s*=\s*["'](.+?)["']/m.exec(toml)?.[1] ?? 'robot';
+
+export class OwnRobots {
+  /** `loadFile` loads a robot by its file name; `listNames` shows the names of the robots put aside. */
+  constructor(
+    private readonly session: Session,
+    private readonly problems: ProblemList,
+    private readonly loadFile: (file: string) => Promise<void>,
+    private readonly listNames: (names: string[]) => void,
+  ) {
+    this.updateList();
+  }
+
+  /** If another robot has replaced a changed robot, puts the changed robot aside and offers to restore it. */
+  putAside(previous: SavedChanges | null): void {
+    if (!previous || previous.toml === previous.original || previous.toml === this.session.toml) return;
+    this.storeAside([previous, ...browserStorage.getRobotsAside().filter(({ toml }) => toml !== previous.toml)]);
+    this.problems.setMessage('own', 'This is another robot. Your own robot is put aside and stays in the list of robots.', { label: 'Back to my own robot', action: () => void this.restore() });
+  }
+
+  /** Restores the robot with this index among the robots put aside, and puts the current robot aside. */
+  async restore(index = 0): Promise<void> {
+    const robotsAside = browserStorage.getRobotsAside();
+    const ownRobot = robotsAside[index];
+    this.problems.setMessage('own', null);
+    if (!ownRobot) return;
+    const previous = browserStorage.getChanges();
+    await this.loadFile(ownRobot.file);
+    const session = this.session;
+    // If the robot's file has changed meanwhile, only the stored text is loaded.
+    if (!(await session.restoreSaved(ownRobot)) && (await session.change(ownRobot.toml))) return;
+    this.storeAside(robotsAside.filter((_, n) => n !== index));
+    this.putAside(previous);
+  }
+
+  private storeAside(robots: SavedChanges[]): void {
+    browserStorage.putRobotsAside(robots);
+    this.updateList();
+  }
+
+  private updateList(): void {
+    this.listNames(browserStorage.getRobotsAside().map(({ toml }) => readName(toml)));
+  }
+}
