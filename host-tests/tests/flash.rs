@@ -121,7 +121,7 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
     // After the first page is written, one of its bits changes.
     let has_ended = board.run_until(|uno| {
         if !has_flipped_bit && uno.flash()[0x100] != 0xff {
-            uno.set_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
+            uno.write_flash(0x11, &[uno.flash()[0x11] ^ 0x10]);
             has_flipped_bit = true;
         }
         shell.has_ended()
@@ -145,7 +145,9 @@ fn a_byte_that_changes_after_its_write_ends_the_upload() {
 fn a_board_that_never_answers_ends_the_upload_with_an_explanation() {
     let mut board = ConnectedBoard::with_new_uno();
     // Replaces the boot loader with an endless loop: `rjmp .-2`.
-    board.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
+    board
+        .uno
+        .write_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_make_flash(&board);
     let screen = board.run_until_exit(&shell);
     assert!(screen.contains("the board does not answer"), "{screen}");

@@ -1,5 +1,5 @@
-// A web worker whose functions the page calls. Computations of tenths of a second run in a worker, because the page has
-// only 16 ms per animation frame.
+// A web worker whose functions the page calls. Computations that take tenths of a second run in a worker, because
+// the page has only 16 ms per animation frame.
 import { type Remote, wrap } from 'comlink';
 
 export class CallableWorker<Api> {

@@ -30,7 +30,7 @@ import { HealthView } from './view/health';
 import { RecordView } from './view/record';
 import { LengthsView } from './view/lengths';
 import { LogView } from './view/log';
-import { MapView } from './view/maps';
+import { SingularityMapView } from './view/singularity-map';
 import { MarginsView } from './view/margins';
 import type { MeasureView } from './view/measure';
 import { PaceView } from './view/pace';
@@ -106,7 +106,7 @@ async function start(): Promise<void> {
   const predictor = new Predictor(session);
   const scope = new ScopeView(session);
   const margins = new MarginsView(session);
-  const maps = [new MapView(session, 0), new MapView(session, 1)];
+  const maps = [new SingularityMapView(session, 0), new SingularityMapView(session, 1)];
   const log = new LogView((line) => void session.ask(line));
   const floor = new FloorView(() => {
     session.returnToStart();
@@ -180,7 +180,7 @@ async function start(): Promise<void> {
     setText(element('where'), describeBoard(link.name, banner, description.hash));
     // Reserves the row's height for the text that most likely follows.
     const { version, name, hash } = description;
-    element('where').parentElement!.dataset.room = describeBoard(link.name, { version, robot: { name, hash } }, hash);
+    element('where').parentElement!.dataset.longestText = describeBoard(link.name, { version, robot: { name, hash } }, hash);
     element('heard').hidden = !isReal;
     element<HTMLButtonElement>('reset').disabled = link.kind === 'radio';
     connectButton.textContent = isReal ? 'Back to the simulation' : 'Connect a board…';

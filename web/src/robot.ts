@@ -22,7 +22,7 @@ export interface OnFloor {
   servos: string;
 }
 
-/** Initializes the WebAssembly module and creates an instance without a robot. */
+/** Initialises the WebAssembly module and creates an instance without a robot. */
 export function load(module: WebAssembly.Module): Robot {
   initSync({ module });
   return new Robot();

@@ -11,7 +11,7 @@ const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, has
 
 const ROOMS = {
   drive: ['#keep', '#world', '#power'],
-  gaits: ['#gait-editor', '#routines', '#path-editor'],
+  gaits: ['#gait-editor', '#routines', '#gesture-editor'],
   build: ['#lengths-panel', '#parts', '#robot-editor'],
   board: ['#calibrate', '#flash'],
   measure: [],

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { before, test } from 'node:test';
 
-import { openBlank, useBrowser } from './browser.js';
+import { openBlankPage, useBrowser } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 const folder = await makeFolder();
@@ -15,7 +15,7 @@ before(() => {
 });
 
 test('the book\'s search finds a word without a server', async () => {
-  const book = await openBlank();
+  const book = await openBlankPage();
   await book.goto(`file://${folder}/index.html`);
   // The theme reads the input on key-up only, so the text is typed, not set.
   await book.locator('input[name=query]').pressSequentially('brownout');

@@ -197,7 +197,7 @@ export const address = (webServer = server) => `http://127.0.0.1:${webServer.add
  * Opens an empty page with reduced motion, so that nothing moves unless a test starts it. Files come from the server,
  * unless a test allows service workers.
  */
-export async function openBlank(options = {}) {
+export async function openBlankPage(options = {}) {
   const page = await withTimeout('a new page', browser.newPage({ reducedMotion: 'reduce', serviceWorkers: 'block', ...options }));
   pages.push(page);
   openRoomsOnUse(page);
@@ -249,7 +249,7 @@ export async function download(page, button) {
 
 /** Opens the page of a server, and waits until its service worker has stored it and answers its requests. */
 export async function openStored(webServer) {
-  const page = await openBlank({ serviceWorkers: 'allow' });
+  const page = await openBlankPage({ serviceWorkers: 'allow' });
   await page.goto(address(webServer));
   await waitUntil(page, async () => (await navigator.serviceWorker.ready) && navigator.serviceWorker.controller !== null);
   return page;
@@ -274,7 +274,7 @@ export function waitUntil(page, condition, value) {
  * only when the test advances it.
  */
 export async function openPage(options = {}, initScript = undefined, url = address()) {
-  const page = await openBlank(options);
+  const page = await openBlankPage(options);
   page.on('console', (message) => {
     // Expected: these pages load their files from the server.
     if (message.text() === 'Service Worker registration blocked by Playwright') return;

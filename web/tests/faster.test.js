@@ -15,12 +15,12 @@ useBrowser();
 const waitForPrediction = (page) => page.waitForFunction(() => /mm$|may drift/.test(document.querySelector('#gait-distance').textContent));
 
 /** Opens the gait editor with a gait of the robot, and sets the number of rounds of a search. */
-async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {}, options = {}) {
+async function openEditor({ gait = 'walk', rounds = 1, seed = 3, maxServoSpeed = '' } = {}, options = {}) {
   const page = await openStanding(options);
   await unfold(page, '#gait-editor');
   await waitForPrediction(page);
   await page.locator('#gait-from').selectOption({ label: gait });
-  await page.getByLabel('Servos at most').fill(String(rate));
+  await page.getByLabel('Servos at most').fill(String(maxServoSpeed));
   await page.getByLabel('Rounds of 40 gaits').fill(String(rounds));
   await page.getByLabel('Seed of the random numbers').fill(String(seed));
   return page;
@@ -29,7 +29,7 @@ async function openEditor({ gait = 'walk', rounds = 1, seed = 3, rate = '' } = {
 const startSearch = (page) => page.getByRole('button', { name: 'Make it faster' }).click();
 const waitForSearchEnd = (page) => page.waitForFunction(() => document.querySelector('#faster-start').textContent === 'Make it faster' && document.querySelector('#faster-message').textContent !== '');
 /** Waits until the search has tried `count` gaits. */
-const waitForTries = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
+const waitForTriedGaits = (page, count) => page.waitForFunction((count) => document.querySelector('#faster-progress').value >= count, count);
 
 async function stopSearch(page) {
   await page.getByRole('button', { name: 'Stop the search' }).click();
@@ -39,7 +39,7 @@ async function stopSearch(page) {
 /** Searches until `count` gaits have been tried. */
 async function searchUntil(page, count) {
   await startSearch(page);
-  await waitForTries(page, count);
+  await waitForTriedGaits(page, count);
   await stopSearch(page);
 }
 
@@ -51,7 +51,7 @@ async function waitForFoundGait(page) {
 }
 
 /** Stops the robots and returns the distances that they have walked. */
-async function stopAndCompare(page) {
+async function stopAndReadDistances(page) {
   await page.keyboard.press('Escape');
   await advance(page, 1000);
   return readText(page, '#faster-distances');
@@ -106,12 +106,12 @@ test('a search stopped midway returns the best gait so far, and the page can sea
   await page.waitForFunction(() => Number(document.querySelector('#gait-amplitude').value) > 20);
   // The next search starts from the gait in use.
   await startSearch(page);
-  await waitForTries(page, 1);
+  await waitForTriedGaits(page, 1);
   assert.ok(await page.locator('#faster-result').isHidden());
   await stopSearch(page);
 });
 
-test('the found gait walks beside the previous gait, and is faster by the promised ratio', async () => {
+test('the found gait walks beside the previous gait, and is faster by the predicted ratio', async () => {
   const page = await openEditor({ rounds: 200 });
   await page.locator('#button-3d').click();
   await searchUntil(page, 21);
@@ -123,14 +123,14 @@ test('the found gait walks beside the previous gait, and is faster by the promis
   await waitForFoundGait(page);
   await advance(page, 8000);
   await page.waitForFunction(() => /^Found: [0-9.]+ mm.*\. Before: [0-9.]+ mm/.test(document.querySelector('#faster-distances').textContent));
-  const comparison = await stopAndCompare(page);
+  const comparison = await stopAndReadDistances(page);
   const [, foundDistance, previousDistance] = /^Found: ([0-9.]+) mm.*\. Before: ([0-9.]+) mm/.exec(comparison) ?? assert.fail(comparison);
   assert.ok(Math.abs(foundDistance / previousDistance / (foundSpeed / previousSpeed) - 1) < 0.1, `${comparison} Predicted: ${foundSpeed} mm/s, before ${previousSpeed} mm/s`);
-  assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays');
+  assert.ok(await page.locator('#faster-result').isVisible(), 'the result stays visible');
   assert.equal((await page.evaluate(() => window.lizard.toml)).match(/\[gait\.mine\]/g).length, 1);
 });
 
-test('the found turn is faster by the promised ratio, and the page shows both angles', async () => {
+test('the found turn is faster by the predicted ratio, and the page shows both angles', async () => {
   const page = await openEditor({ gait: 'left', rounds: 200 });
   // The robot's own turn cannot be made faster, so the search starts with half the stroke of the front legs.
   for (const [leg, gain] of [['LF', '-0.5'], ['RF', '0.5']]) {
@@ -141,21 +141,21 @@ test('the found turn is faster by the promised ratio, and the page shows both an
   const rows = (await page.locator('#faster-rows tr').allInnerTexts()).map((row) => row.split('\t'));
   const [, previousSpeed, foundSpeed] = rows.find(([name]) => name === 'speed');
   assert.ok([previousSpeed, foundSpeed].every((speed) => /^[0-9.]+ °\/s$/.test(speed)), `${previousSpeed} and ${foundSpeed}`);
-  const promisedRatio = Number.parseFloat(foundSpeed) / Number.parseFloat(previousSpeed);
-  assert.ok(promisedRatio > 1.2, `${previousSpeed} and ${foundSpeed}`);
+  const predictedRatio = Number.parseFloat(foundSpeed) / Number.parseFloat(previousSpeed);
+  assert.ok(predictedRatio > 1.2, `${previousSpeed} and ${foundSpeed}`);
   await page.getByRole('button', { name: 'See both walk' }).click();
   await waitForFoundGait(page);
   await advance(page, 40_000);
-  const comparison = await stopAndCompare(page);
+  const comparison = await stopAndReadDistances(page);
   const [, foundAngle, previousAngle] = /^Found: .*?(-?[0-9.]+)°\. Before: .*?(-?[0-9.]+)°\.$/.exec(comparison) ?? assert.fail(comparison);
-  assert.ok(Math.abs(foundAngle / previousAngle / promisedRatio - 1) < 0.1, `${comparison} Predicted: ${foundSpeed}, before ${previousSpeed}`);
+  assert.ok(Math.abs(foundAngle / previousAngle / predictedRatio - 1) < 0.1, `${comparison} Predicted: ${foundSpeed}, before ${previousSpeed}`);
   assert.ok(Number(foundAngle) > 360, `${foundAngle} is not more than a full turn`);
 });
 
 test('changing the robot ends the search for the previous robot', async () => {
   const page = await openEditor({ rounds: 200 });
   await startSearch(page);
-  await waitForTries(page, 1);
+  await waitForTriedGaits(page, 1);
   await unfold(page, '#lengths-panel');
   await typeLength(page, 'links.l12', 46);
   await page.waitForFunction(() => window.lizard.toml !== window.lizard.original);
@@ -165,8 +165,8 @@ test('changing the robot ends the search for the previous robot', async () => {
 });
 
 test('the page reports a gait that cannot be made faster', async () => {
-  // With servos this slow no stride is better than that of `left`.
-  const page = await openEditor({ gait: 'left', rate: 200, seed: 1 });
+  // With servos this slow, no stride is better than that of `left`.
+  const page = await openEditor({ gait: 'left', maxServoSpeed: 200, seed: 1 });
   await startSearch(page);
   await waitForSearchEnd(page);
   assert.equal(await readText(page, '#faster-message'), 'No faster gait was found for the slowest random robots and floors. More rounds or another seed may find a faster gait.');
@@ -179,18 +179,18 @@ test('an impossible search is refused with a message, and a number out of range 
   await waitForSearchEnd(page);
   assert.match(await readText(page, '#faster-message'), /^This gait cannot be made faster: the gait `mine` walks along a curve; /);
   await page.locator('#gait-from').selectOption({ label: 'walk' });
-  const rate = page.getByLabel('Servos at most');
-  await rate.fill('900');
+  const speedInput = page.getByLabel('Servos at most');
+  await speedInput.fill('900');
   await startSearch(page);
   await page.waitForFunction(() => document.querySelector('#faster-message').textContent.includes('900'));
   assert.equal(await readText(page, '#faster-message'), 'This gait cannot be made faster: servo speed 900: must be between 10 and 310 deg/s (limits.gait_slew in robot.toml).');
-  await rate.fill('5');
-  assert.equal(await rate.getAttribute('aria-invalid'), 'true');
+  await speedInput.fill('5');
+  assert.equal(await speedInput.getAttribute('aria-invalid'), 'true');
   await page.keyboard.press('Tab');
-  assert.equal(await rate.inputValue(), '900', 'the last valid number');
+  assert.equal(await speedInput.inputValue(), '900', 'the input shows the last number in range');
 });
 
-test('the search works by keyboard alone, fits a phone, and has no violations for axe-core', async () => {
+test('the search works by keyboard alone, fits a phone, and passes axe-core', async () => {
   const page = await openEditor({ rounds: 200 }, { viewport: { width: 320, height: 640 }, bypassCSP: true });
   await page.getByLabel('Seed of the random numbers').focus();
   await page.keyboard.press('Tab');

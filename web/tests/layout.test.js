@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, openBlank, openStanding, browserErrors, useBrowser } from './browser.js';
+import { address, advance, openBlankPage, openStanding, browserErrors, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -26,7 +26,7 @@ function setLetterHeight(height) {
 for (const [letters, height] of [['narrow', 0.45], ['wide', 0.62]]) {
   for (const [width, viewHeight] of [[1400, 700], [1280, 800], [390, 844]]) {
     test(`the layout stays after the first frame: ${letters} letters, ${width} x ${viewHeight} pixels`, async () => {
-      const page = await openBlank({ viewport: { width, height: viewHeight } });
+      const page = await openBlankPage({ viewport: { width, height: viewHeight } });
       await page.addInitScript(setLetterHeight, height);
       // Without the stored predictions, as for a user's own robot.
       await page.route(/predictions/, (route) => route.fulfill({ status: 404 }));

@@ -1,4 +1,4 @@
-// Tests of the measuring room. The browser's camera is a rendered video, so the true motion is known.
+// Tests of the page's room Measure. The browser's camera is a rendered video, so the true motion is known.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -6,14 +6,14 @@ import { dirname, join } from 'node:path';
 import { afterEach, before, test } from 'node:test';
 
 import { connect } from './board.js';
-import { address, openBlank, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
+import { address, openBlankPage, closeBrowser, browserErrors, openBrowserWithCamera, openPage, closePages, download } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 import { makeFolder } from './temporary-folder.js';
 
 const { LIZARD } = process.env;
 const ROBOT = new URL('../../robots/paper.toml', import.meta.url).pathname;
 const folder = await makeFolder();
-/** Largest differences of a mean from the true value, mm and deg; the same as in the tests of crates/video. */
+/** Largest allowed differences between a mean and the true value, mm and deg, as in the tests of crates/video. */
 const TOLERANCES = { forward: 0.3, left: 0.3, turn: 0.5 };
 
 /** Renders a video into a folder; `args` are its width, its number of cycles and the ids of hidden tags. */
@@ -24,10 +24,10 @@ function renderVideo(name, ...args) {
 }
 
 let walkFolder;
-let truth;
+let trueValues;
 before(() => {
   walkFolder = renderVideo('walk', 640, 14);
-  truth = JSON.parse(readFileSync(join(walkFolder, 'truth.json'), 'utf8'));
+  trueValues = JSON.parse(readFileSync(join(walkFolder, 'truth.json'), 'utf8'));
 });
 afterEach(async () => {
   await closePages();
@@ -52,7 +52,7 @@ const waitForMessage = (page, id, words) => page.locator(`#measure-${id}`, { has
 
 async function switchCameraOn(page, words = 'All five tags are visible.') {
   await page.getByRole('button', { name: 'Camera' }).click();
-  await waitForMessage(page, 'seen', words);
+  await waitForMessage(page, 'visible-tags', words);
 }
 
 /** Types a number into an input of the room. */
@@ -79,9 +79,9 @@ const downloadResults = async (page, format) => (await download(page, page.locat
 /** Measures the same frames with `lizard measure` and returns the report. */
 const measureWithCommand = () => JSON.parse(execFileSync(LIZARD, ['measure', join(walkFolder, 'frames'), '--robot', ROBOT, '--gait', 'walk', '--height', '95', '--json'], { encoding: 'utf8' })).gaits[0];
 
-function assertNearTruth(report) {
+function assertNearTrueValues(report) {
   for (const [quantity, tolerance] of Object.entries(TOLERANCES)) {
-    assert.ok(Math.abs(report[quantity].mean - truth[quantity]) < tolerance, `${quantity}: ${report[quantity].mean}, not ${truth[quantity]}`);
+    assert.ok(Math.abs(report[quantity].mean - trueValues[quantity]) < tolerance, `${quantity}: ${report[quantity].mean}, not ${trueValues[quantity]}`);
     assert.ok(report[quantity].error > 0 && report[quantity].error < tolerance, JSON.stringify(report[quantity]));
   }
 }
@@ -92,13 +92,13 @@ test('the page drives the simulated robot in front of a camera, and its measurem
   await page.waitForFunction(() => window.lizard.gait === 'walk');
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
-  assertNearTruth(report);
+  assertNearTrueValues(report);
   const expected = measureWithCommand();
-  assertNearTruth(expected);
+  assertNearTrueValues(expected);
   for (const quantity of Object.keys(TOLERANCES)) {
     // The sine functions of the two programs may differ in the last bits.
     assert.ok(Math.abs(report[quantity].predicted - expected[quantity].predicted) < 1e-9, quantity);
-    // The browser shows the frames at other times, and may miss some cycles.
+    // The browser samples the frames at different times, and may miss some cycles.
     assert.ok(Math.abs(report[quantity].mean - expected[quantity].mean) < 2 * (report[quantity].error + expected[quantity].error), quantity);
   }
   assert.ok(report.cycles >= 2 && report.cycles <= 5, `${report.cycles}`);
@@ -112,9 +112,9 @@ test('the page drives the simulated robot in front of a camera, and its measurem
   assert.deepEqual([...(await downloadResults(page, 'png')).subarray(1, 4)], [...Buffer.from('PNG')]);
 });
 
-test('the gait in a recorded video file is recognized by its path, and rejected as another gait', async () => {
+test('the gait in a recorded video file is recognised by its path, and rejected as another gait', async () => {
   await openBrowserWithCamera(join(walkFolder, 'video.y4m'));
-  const recorderPage = await openBlank();
+  const recorderPage = await openBlankPage();
   await recorderPage.goto(address());
   const bytes = await recorderPage.evaluate(async () => {
     const stream = await navigator.mediaDevices.getUserMedia({ video: { width: 640, height: 360 } });
@@ -136,7 +136,7 @@ test('the gait in a recorded video file is recognized by its path, and rejected 
   await page.locator('#measure-file').setInputFiles(join(folder, 'video.webm'));
   await page.locator('#measure-results').waitFor();
   const { gaits: [report] } = JSON.parse(await downloadResults(page, 'json'));
-  assertNearTruth(report);
+  assertNearTrueValues(report);
   assert.equal(report.gait, 'walk');
   await page.locator('#measure-gait').selectOption('left');
   await page.getByRole('button', { name: 'Measure again' }).click();
@@ -147,14 +147,14 @@ test('the gait in a recorded video file is recognized by its path, and rejected 
   await waitForMessage(page, 'message', /^words\.mp4 is not a video that this browser can play/);
 });
 
-test('a video that is recorded until Done while another program drives is measured', async () => {
+test('a video recorded until Done, while another program drives the robot, is measured', async () => {
   const page = await openRoomWithVideo(walkFolder);
   await switchCameraOn(page);
   await page.getByRole('button', { name: 'Record' }).click();
   await page.waitForTimeout(6000);
   await page.getByRole('button', { name: 'Done' }).click();
   await page.locator('#measure-results').waitFor();
-  assertNearTruth(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
+  assertNearTrueValues(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
 });
 
 test('a hidden tag is named while the camera is on, and no result is computed', async () => {
@@ -181,7 +181,7 @@ test('the page offers to open a video if there is no camera or the browser may n
   await waitForMessage(page, 'message', /not allowed to use the camera.*record a video and open it here/);
 });
 
-test('Stop and leaving the room end the protocol and stop the robot, and leaving switches the camera off', async () => {
+test('Stop, or leaving the room, ends the measurement and stops the robot, and leaving also switches the camera off', async () => {
   const page = await openRoomWithVideo(walkFolder);
   await startDriving(page, ['walk', 'left'], 20);
   await page.waitForFunction(() => window.lizard.gait === 'walk');
@@ -198,7 +198,7 @@ test('Stop and leaving the room end the protocol and stop the robot, and leaving
   assert.equal(await page.evaluate(() => document.querySelector('#measure-view video').srcObject), null);
 });
 
-test('after a cut link, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', async () => {
+test('after the link is cut, the board is no longer driven, the room reports the cut, and the recorded cycles are measured', async () => {
   const page = await openRoomWithVideo(walkFolder);
   await page.evaluate(installFakeSerial);
   // For a robot with a Bluetooth module, the page does not open the dialog of the first connection.
@@ -210,9 +210,9 @@ test('after a cut link, the board is no longer driven, the room reports the cut,
   await page.waitForTimeout(6000);
   await page.evaluate(() => window.unplug());
   await waitForMessage(page, 'message', 'Ended before all gaits were walked: the link to the robot was cut');
-  assertNearTruth(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
-  assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent');
-  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'nor to the simulated board that follows');
+  assertNearTrueValues(JSON.parse(await downloadResults(page, 'json')).gaits[0]);
+  assert.ok(!/left/.test(await page.evaluate(() => window.receivedText)), 'no further gait was sent to the board');
+  assert.equal(await page.evaluate(() => window.lizard.gait), 'stand', 'no gait was sent to the simulated board that replaces it');
 });
 
 test('the printed sheet equals the output of lizard measure sheet for both paper sizes', async () => {

@@ -7,7 +7,7 @@ import { test } from 'node:test';
 import { gzipSync } from 'node:zlib';
 
 import { writeServiceWorker } from '../offline.js';
-import { DIST, address, advance, openBlank, browserErrors, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
+import { DIST, address, advance, openBlankPage, browserErrors, waitUntil, repeatUntil, serveInTest, stopServer, useBrowser, chooseRobot, openStored } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 useBrowser();
@@ -85,7 +85,7 @@ test('an incomplete newer page is rejected, and the stored page stays in use', a
 
 test('the first load is below 500 KB compressed, and nothing is requested from another origin', async () => {
   const { server, requestedPaths } = await serveCopy();
-  const page = await openBlank();
+  const page = await openBlankPage();
   const foreignUrls = [];
   page.on('request', (request) => {
     if (!request.url().startsWith(address(server)) && !/^(data|blob):/.test(request.url())) foreignUrls.push(request.url());

@@ -10,7 +10,7 @@ import { gzipSync } from 'node:zlib';
 
 import { unzipSync } from 'fflate';
 
-import { advance, openBlank, address, browserErrors, openStanding, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
+import { advance, openBlankPage, address, browserErrors, openStanding, sendLine, unfold, withTimeout, repeatUntil, useBrowser, typeLength, download } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
 const ROOT = new URL('../../', import.meta.url).pathname;
@@ -166,7 +166,7 @@ test('the page lists the files that a changed length affects, and downloads only
 });
 
 test('opening the page loads no parts, and less than 500 KB compressed', async () => {
-  const page = await openBlank();
+  const page = await openBlankPage();
   const bodies = new Map();
   page.on('response', (response) => bodies.set(response.url().replace(address(), ''), response.body()));
   await page.goto(address());

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, advance, browserErrors, openBlank, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, browserErrors, openBlankPage, openForbidden, openStanding, openPage, readText, sendLine, unfold, useBrowser, chooseRobot } from './browser.js';
 import { installFakeSerial } from './fake-serial.js';
 
 useBrowser();
@@ -30,7 +30,7 @@ test('the message about an unreadable robot file stays while the previous robot 
 });
 
 test('the page reports an unreadable first robot and accepts another robot', async () => {
-  const page = await openBlank();
+  const page = await openBlankPage();
   await page.route('**/files/robot.toml', (route) => route.fulfill({ status: 404 }));
   await page.goto(address());
   await findProblems(page).getByText('files/robot.toml is missing (status 404)').waitFor();

@@ -1,5 +1,5 @@
-// The robot as text: a mistake is reported with its line; opening a file, dropping a file and following a link load the
-// same robot.
+// The robot as text: a mistake is reported with its line number; opening a file, dropping a file and following a link
+// load the same robot.
 import assert from 'node:assert/strict';
 import { readFile, writeFile } from 'node:fs/promises';
 import { join } from 'node:path';
@@ -11,7 +11,7 @@ import { parse } from 'smol-toml';
 import { address, browserErrors, openPage, openStanding, unfold, waitUntil, useBrowser, chooseRobot } from './browser.js';
 import { makeFolder } from './temporary-folder.js';
 
-const LARGE = new URL('../../robots/large.toml', import.meta.url).pathname;
+const LARGE_PATH = new URL('../../robots/large.toml', import.meta.url).pathname;
 
 useBrowser();
 
@@ -20,7 +20,7 @@ const readToml = (page) => page.evaluate(() => window.lizard.toml);
 const waitForRobot = (page, text) => page.waitForFunction((text) => window.lizard?.toml === text, text);
 
 /** Types a robot.toml and makes it the page's robot. */
-async function takeText(page, toml) {
+async function applyText(page, toml) {
   await findTextBox(page).fill(toml);
   await page.locator('#robot-take').click();
 }
@@ -31,33 +31,33 @@ async function openTextEditor(options) {
   return page;
 }
 
-test('a text with a mistake is refused with its line, and the previous robot stays', async () => {
+test('a text with a mistake is refused with the line number, and the previous robot stays', async () => {
   const page = await openTextEditor();
   const firstToml = await readToml(page);
   assert.equal(await findTextBox(page).inputValue(), firstToml);
-  const wrongToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
-  const line = wrongToml.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
-  await takeText(page, wrongToml);
+  const invalidToml = firstToml.replace('l1 = 30.0', 'l1 = "long"');
+  const line = invalidToml.split('\n').findIndex((text) => text.startsWith('l1 = ')) + 1;
+  await applyText(page, invalidToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   assert.match(await page.locator('#robot-refusal').innerText(), new RegExp(`^robot\\.toml:${line}: links\\.l1`));
   const readSelection = () => findTextBox(page).evaluate((box) => box.value.slice(box.selectionStart, box.selectionEnd));
   assert.match(await readSelection(), /^l1 = "long"/);
   assert.equal(await readToml(page), firstToml);
-  assert.equal(await findTextBox(page).inputValue(), wrongToml, 'the typed text stays');
+  assert.equal(await findTextBox(page).inputValue(), invalidToml, 'the typed text stays');
 });
 
-test('the message about a refused gait names its effect on the robot, then its line', async () => {
+test('the message about a refused gait names its effect on the robot, then the line number', async () => {
   const page = await openTextEditor();
-  const wrongToml = (await readToml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
-  const line = wrongToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
-  await takeText(page, wrongToml);
+  const invalidToml = (await readToml(page)).replace('amplitude = 20.0', 'amplitude = 40.0');
+  const line = invalidToml.split('\n').findIndex((text) => text.startsWith('[gait.walk]')) + 1;
+  await applyText(page, invalidToml);
   await page.getByRole('button', { name: `Go to line ${line}` }).waitFor();
   const refusalText = await page.locator('#robot-refusal').innerText();
   assert.match(refusalText, /^in "walk" the (left|right) (front|hind) leg would lock: margin leg_[lr][fh] -?[0-9.]+ is below 0\.300 at phase [0-9.]+ /i);
   assert.ok(refusalText.endsWith(`(robot.toml:${line}: gait.walk)`), refusalText);
 });
 
-test('a valid text becomes the robot, and undo and redo work step by step', async () => {
+test('a valid text replaces the robot, and undo and redo work step by step', async () => {
   const page = await openTextEditor();
   const firstToml = await readToml(page);
   const secondToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
@@ -93,8 +93,8 @@ test('a valid text becomes the robot, and undo and redo work step by step', asyn
 
 test('a file can be opened, or dropped anywhere on the page', async () => {
   const page = await openTextEditor();
-  const largeToml = await readFile(LARGE, 'utf8');
-  await page.locator('#robot-open').setInputFiles(LARGE);
+  const largeToml = await readFile(LARGE_PATH, 'utf8');
+  await page.locator('#robot-open').setInputFiles(LARGE_PATH);
   await waitForRobot(page, largeToml);
   const droppedToml = largeToml.replace(/^/, '# dropped\n');
   await page.evaluate((text) => {
@@ -103,9 +103,9 @@ test('a file can be opened, or dropped anywhere on the page', async () => {
     document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: transfer, bubbles: true, cancelable: true }));
   }, droppedToml);
   await waitForRobot(page, droppedToml);
-  const pictureFile = join(await makeFolder(), 'x.toml');
-  await writeFile(pictureFile, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
-  await page.locator('#robot-open').setInputFiles(pictureFile);
+  const picturePath = join(await makeFolder(), 'x.toml');
+  await writeFile(picturePath, Buffer.from([0x89, 0x50, 0x4e, 0x47, 0, 0, 0]));
+  await page.locator('#robot-open').setInputFiles(picturePath);
   await page.getByText('x.toml is not a robot.toml.').waitFor();
   assert.equal(await readToml(page), droppedToml);
 });
@@ -118,8 +118,8 @@ async function copyLink(page) {
   return page.evaluate(() => navigator.clipboard.readText());
 }
 
-/** Waits until the page has the robot of a text; the comments may differ, because a link has none. */
-async function waitForSameRobot(page, expectedToml) {
+/** Waits until the page has the robot that a text describes. Comments may differ, because a link omits them. */
+async function waitForRobotIgnoringComments(page, expectedToml) {
   await page.waitForFunction((name) => window.lizard?.toml.includes(`name = "${name}"`), parse(expectedToml).name);
   assert.deepEqual(parse(await readToml(page)), parse(expectedToml));
 }
@@ -144,17 +144,17 @@ async function scanQrCode(page) {
 
 test('a link contains the robot, survives a reload, and equals the text of the QR code', async () => {
   const page = await openTextEditor();
-  const largeToml = await readFile(LARGE, 'utf8');
-  await page.locator('#robot-open').setInputFiles(LARGE);
+  const largeToml = await readFile(LARGE_PATH, 'utf8');
+  await page.locator('#robot-open').setInputFiles(LARGE_PATH);
   await waitForRobot(page, largeToml);
   const link = await copyLink(page);
   assert.ok(link.startsWith(`${address()}#robot=`) && link.length < 1900, `${link.length} characters`);
   const otherPage = await openPage();
   assert.notEqual(await readToml(otherPage), largeToml);
   await otherPage.goto(link);
-  await waitForSameRobot(otherPage, largeToml);
+  await waitForRobotIgnoringComments(otherPage, largeToml);
   await otherPage.reload();
-  await waitForSameRobot(otherPage, largeToml);
+  await waitForRobotIgnoringComments(otherPage, largeToml);
   // An incomplete link is refused with a message.
   await otherPage.goto(link.slice(0, -200));
   await otherPage.getByText('The robot in the address is incomplete').waitFor();
@@ -169,19 +169,19 @@ test('a link contains the robot, survives a reload, and equals the text of the Q
   // Another robot removes the code.
   await qrButton.click();
   await page.getByRole('img', { name: 'QR code' }).waitFor();
-  await takeText(page, largeToml.replace('name = "large"', 'name = "other"'));
+  await applyText(page, largeToml.replace('name = "large"', 'name = "other"'));
   await page.waitForFunction(() => document.querySelector('#robot-drawn svg') === null);
 });
 
 test('a link contains everything except comments', async () => {
   const page = await openTextEditor();
   const toml = `# one\n${(await readToml(page)).replace('name = "paper"', 'name = "paper" # "two"')}\n  # three # "four"\n`;
-  await takeText(page, toml);
+  await applyText(page, toml);
   await waitForRobot(page, toml);
   const link = await copyLink(page);
   const otherPage = await openPage();
   await otherPage.goto(link);
-  await waitForSameRobot(otherPage, toml);
+  await waitForRobotIgnoringComments(otherPage, toml);
   assert.doesNotMatch(await readToml(otherPage), /one|three/);
 });
 
@@ -190,7 +190,7 @@ test('after every change the address contains the shown robot', async () => {
   const firstToml = await readToml(page);
   assert.equal(page.url(), `${address()}#room=build`, 'the page\'s own robot is not in the address');
   const changedToml = firstToml.replace('amplitude = 15.0', 'amplitude = 14.0');
-  await takeText(page, changedToml);
+  await applyText(page, changedToml);
   await page.waitForFunction(() => location.hash.startsWith('#room=build&robot='));
   // A new browser gets the robot from the address alone.
   const otherPage = await openPage();
@@ -217,7 +217,7 @@ test('a hostile file runs no script', async () => {
   page.on('dialog', (dialog) => dialog.dismiss().then(() => dialogs.push(dialog.message())));
   const hostileGait = '[gait."<img src=x onerror=alert(1)>"]\nperiod = 1.0\nwaveform = "still"\n';
   const hostileToml = `${await readToml(page)}\n${hostileGait}`;
-  await takeText(page, hostileToml);
+  await applyText(page, hostileToml);
   await page.waitForFunction((text) => window.lizard.toml === text || !document.querySelector('#robot-refusal').hidden, hostileToml);
   assert.equal(await page.locator('img').count(), 0);
   assert.deepEqual(dialogs, []);
@@ -226,7 +226,7 @@ test('a hostile file runs no script', async () => {
 test('a button restores the user\'s own robot after a link or another robot was opened', async () => {
   const page = await openTextEditor();
   const ownToml = (await readToml(page)).replace('amplitude = 15.0', 'amplitude = 14.0');
-  await takeText(page, ownToml);
+  await applyText(page, ownToml);
   await waitForRobot(page, ownToml);
   const backButton = page.locator('#problems').getByRole('button', { name: 'Back to my own robot' });
   // A link from somebody else, opened in another tab.
@@ -259,7 +259,7 @@ test('the list has the names of the user\'s own robots, and restores each unchan
   for (const name of ['anna', 'bert']) {
     await chooseRobot(page, 'large');
     await chooseRobot(page, 'robot');
-    await takeText(page, makeToml(name));
+    await applyText(page, makeToml(name));
     await waitForRobot(page, makeToml(name));
   }
   assert.deepEqual(await readNames(), ['anna']);

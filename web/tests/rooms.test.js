@@ -102,7 +102,7 @@ test('the three doors of the first screen lead to rooms', async () => {
 
 test('a closed room renders nothing, even if its panels are unfolded', async () => {
   const page = await openStanding();
-  for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#path-editor', '#parts']) await unfold(page, panel);
+  for (const panel of ['#maps', '#margins-panel', '#pulses', '#keep', '#power', '#routines', '#gesture-editor', '#parts']) await unfold(page, panel);
   await page.locator('#button-3d').click();
   // The parts fill their lists when they are loaded.
   await page.waitForFunction(() => document.querySelector('#part').length > 10);

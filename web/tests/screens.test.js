@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { readFile } from 'node:fs/promises';
 import { test } from 'node:test';
 
-import { address, advance, openBlank, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
+import { address, advance, openBlankPage, browserErrors, openPage, measureOverflow, openStanding, readBox, unfold, withTimeout, useBrowser, chooseRobot } from './browser.js';
 
 useBrowser();
 
@@ -148,7 +148,7 @@ test('a touch screen shows no keys, and the list of robots shows full names', as
 });
 
 test('without JavaScript the page states its requirements', async () => {
-  const page = await openBlank({ javaScriptEnabled: false });
+  const page = await openBlankPage({ javaScriptEnabled: false });
   await page.goto(address());
   const message = page.locator('noscript p');
   await message.waitFor();
@@ -156,7 +156,7 @@ test('without JavaScript the page states its requirements', async () => {
 });
 
 test('a page that was opened as a file states its requirement', async () => {
-  const page = await openBlank();
+  const page = await openBlankPage();
   await page.goto(new URL('../dist/index.html', import.meta.url).href);
   await page.locator('#where', { hasText: 'it needs a web server' }).waitFor();
 });
@@ -188,7 +188,7 @@ test('the list of robots ends with the robots for tests, under a heading', async
 });
 
 test('the page reports a word that the core does not have', async () => {
-  const page = await openBlank();
+  const page = await openBlankPage();
   const wasm = await readFile(new URL('../dist/files/lizard.wasm', import.meta.url), 'latin1');
   assert.ok(wasm.includes('factory'));
   const body = Buffer.from(wasm.replaceAll('factory', 'faktory'), 'latin1');

@@ -150,7 +150,7 @@ test('the first connection turns a new UNO into a calibrated robot, and lizard c
   assert.match(stdout, /has accepted and saved the calibration from .*/);
 });
 
-test('a board with another robot is recognized, and gets only the page\'s robot', async () => {
+test('a board with another robot is recognised, and gets only the page\'s robot', async () => {
   const page = await openWithBoard('large', 5000);
   await findDialog(page).getByText('has this firmware and another robot, large ').waitFor();
   await pressAndWait(page, 'Write this robot alone', /^written and verified in [\d.]+ s$/);

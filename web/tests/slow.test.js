@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
-import { address, browserErrors, openBlank, withTimeout, useBrowser } from './browser.js';
+import { address, browserErrors, openBlankPage, withTimeout, useBrowser } from './browser.js';
 
 useBrowser();
 
@@ -27,7 +27,7 @@ async function measureShortest(limitMs, measureMs) {
 
 test('the robot takes its first step within 1.5 s of the request for the page', async (t) => {
   const timeMs = await measureShortest(FIRST_STEP_LIMIT_MS, async () => {
-    const page = await openBlank(WITH_MOTION);
+    const page = await openBlankPage(WITH_MOTION);
     await page.goto(address());
     await page.waitForFunction(isWalking);
     const timeMs = await page.evaluate(() => performance.now());
@@ -40,7 +40,7 @@ test('the robot takes its first step within 1.5 s of the request for the page', 
 
 test('on a slow phone Stop stops the opening walk within 0.3 s', async (t) => {
   const phone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, ...WITH_MOTION };
-  const page = await openBlank(phone);
+  const page = await openBlankPage(phone);
   await (await openDevToolsFor(page)).send('Emulation.setCPUThrottlingRate', { rate: CPU_SLOWDOWN });
   await page.goto(address());
   await page.waitForFunction(isWalking);

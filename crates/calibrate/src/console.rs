@@ -44,7 +44,7 @@ impl<C: Console> Console for &mut C {
 
 /// The error for a reply that is not `ok`.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum BadReply {
+pub enum ReplyError {
     /// The robot refused a line.
     #[error("the robot refuses `{line}`: {reason}")]
     Refused {
@@ -68,7 +68,7 @@ pub enum BadReply {
 pub enum ConsoleError<E> {
     /// The reply is not `ok`.
     #[error(transparent)]
-    Reply(#[from] BadReply),
+    Reply(#[from] ReplyError),
     /// The connection failed before a reply arrived.
     #[error("{0}")]
     Link(E),
@@ -77,14 +77,14 @@ pub enum ConsoleError<E> {
 impl<E> ConsoleError<E> {
     /// True if the robot refused the line.
     pub fn is_refusal(&self) -> bool {
-        matches!(self, Self::Reply(BadReply::Refused { .. }))
+        matches!(self, Self::Reply(ReplyError::Refused { .. }))
     }
 }
 
 /// Sends a line; a refusal is an error.
 ///
 /// # Errors
-/// Fails if the robot refuses the line, or if its answer has an unknown format.
+/// Fails if the connection fails, if the robot refuses the line, or if its answer has an unknown format.
 pub async fn send_command<C: Console>(
     console: &mut C,
     line: &str,
@@ -93,11 +93,11 @@ pub async fn send_command<C: Console>(
     let line = line.to_owned();
     if let Some(reason) = reply.answer.strip_prefix("err ") {
         let reason = reason.to_owned();
-        return Err(BadReply::Refused { line, reason }.into());
+        return Err(ReplyError::Refused { line, reason }.into());
     }
     if !reply.answer.starts_with("ok ") {
         let answer = reply.answer;
-        return Err(BadReply::UnknownFormat { line, answer }.into());
+        return Err(ReplyError::UnknownFormat { line, answer }.into());
     }
     Ok(reply)
 }

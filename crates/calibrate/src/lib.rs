@@ -19,6 +19,6 @@ mod session;
 mod settings;
 mod still;
 
-pub use console::{BadReply, Console, ConsoleError, Reply, send_command};
+pub use console::{Console, ConsoleError, Reply, ReplyError, send_command};
 pub use session::{SCALE_TURNS_DEG, SIGN_TURNS_DEG, Session};
 pub use settings::{SendError, read_settings, replace_settings, send_settings};

@@ -2,7 +2,7 @@
 
 use lizard_robot::{Calibration, Transfer};
 
-use crate::console::{BadReply, Console, ConsoleError, send_command};
+use crate::console::{Console, ConsoleError, ReplyError, send_command};
 
 /// Reads a robot's settings.
 ///
@@ -14,7 +14,7 @@ pub async fn read_settings<C: Console>(
     let reply = send_command(console, "cal").await?;
     Calibration::from_cal_answer(&reply.notes).ok_or_else(|| {
         let (line, answer) = ("cal".to_owned(), reply.notes.join(" / "));
-        BadReply::UnknownFormat { line, answer }.into()
+        ReplyError::UnknownFormat { line, answer }.into()
     })
 }
 

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use lizard_robot::{STILL_FRAMES, Status};
 
-use crate::console::{BadReply, Console, ConsoleError, send_command};
+use crate::console::{Console, ConsoleError, ReplyError, send_command};
 
 /// Interval between two `status` commands.
 const STATUS_INTERVAL: Duration = Duration::from_millis(50);
@@ -46,7 +46,7 @@ async fn read_pose<C: Console>(console: &mut C) -> Result<(u64, [f64; 4]), Conso
     let state = status.and_then(|status| Some((status.frames, status.pose?)));
     state.ok_or_else(|| {
         let (line, answer) = ("status".to_owned(), reply.answer);
-        BadReply::UnknownFormat { line, answer }.into()
+        ReplyError::UnknownFormat { line, answer }.into()
     })
 }
 

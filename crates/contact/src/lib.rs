@@ -67,7 +67,7 @@ pub use motor::{Motor, Motors};
 pub use stance::Stance;
 pub use strut::{SLOT_LENGTH, Strut};
 pub use travel::{Prediction, Travel};
-pub use walker::{Slip, Walker};
+pub use walker::{Contacts, Walker};
 
 /// Asserts that a value differs from the expected one by less than `max_error`.
 #[cfg(test)]

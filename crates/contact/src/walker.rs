@@ -46,16 +46,16 @@ pub struct Walker {
     body_pose: BodyPose,
 }
 
-/// The slides and the loads of the feet in a motion from one pose to the next.
+/// The contacts of the feet with the floor in a motion from one pose to the next: slides and loads.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slip {
+pub struct Contacts {
     /// Distance that each foot slid over the floor, mm.
     pub slid_distances: [f64; 4],
     /// Load of each foot at the end of the motion, relative to the mean.
     pub loads: [f64; 4],
 }
 
-impl Slip {
+impl Contacts {
     const NONE: Self = Self {
         slid_distances: [0.0; 4],
         loads: [1.0; 4],
@@ -137,17 +137,17 @@ impl Walker {
 
     /// Lets motors turn the servos towards these sweeps (deg) for this number of seconds. A servo without a target is
     /// held by the friction of its gears.
-    pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Slip {
-        let mut slip = Slip::NONE;
+    pub fn drive(&mut self, targets: [Option<f64>; 4], seconds: f64, motors: &Motors) -> Contacts {
+        let mut contacts = Contacts::NONE;
         let step_count = (seconds / motors.compute_time_step() - STEP_COUNT_TOLERANCE)
             .ceil()
             .max(1.0);
         for _ in 0..step_count as usize {
             let (pads, displacement) = self.advance_step(targets, seconds / step_count, motors);
             self.body_pose = self.body_pose.moved_by_twist(displacement.twist);
-            slip.add(&pads, &displacement);
+            contacts.add(&pads, &displacement);
         }
-        slip
+        contacts
     }
 
     /// Finds the displacement in a short time step, and updates servos, lags and velocities.
@@ -235,10 +235,10 @@ impl Walker {
     }
 
     /// Moves the servos to these sweeps (deg) in small steps, without inertia.
-    pub fn move_to(&mut self, sweeps: [f64; 4]) -> Slip {
-        let mut slip = Slip::NONE;
-        self.move_servos(sweeps, |pads, displacement| slip.add(pads, displacement));
-        slip
+    pub fn move_to(&mut self, sweeps: [f64; 4]) -> Contacts {
+        let mut contacts = Contacts::NONE;
+        self.move_servos(sweeps, |pads, step| contacts.add(pads, step));
+        contacts
     }
 
     /// Moves the servos to these sweeps (deg) in small steps, without inertia, and calls `visit` after each step.

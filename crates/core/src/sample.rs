@@ -1,7 +1,7 @@
 //! Robots for the tests of this crate, made at run time from floating-point measurements. The tests compare the core's
 //! integer arithmetic with exact results for the same measurements.
 //!
-//! [`Sample::asymmetric`] and the random robots have no symmetry: no two bars have the same length, each kind of limit
+//! [`Sample::asymmetric`] and the random robots have no symmetry: no two links have the same length, each kind of limit
 //! has another value, and every servo has its own gain, neutral width and travel. Therefore a test fails if the code
 //! confuses the numbers of two parts.
 

@@ -195,7 +195,7 @@ impl Main {
         } else if self.control.is_waiting_for_supply() {
             return StepResult::Idle(self.last_tick);
         } else if self.control.is_memory_in_use() {
-            if let Some(outcome) = self.control.advance_memory(board.memory()) {
+            if let Some(outcome) = self.control.advance_operation(board.memory()) {
                 self.console.finish_order(outcome);
             }
         } else if let Some(byte) = board.receive() {

@@ -16,7 +16,7 @@
 //!
 //! [`Main::step`]: crate::step::Main::step
 
-mod converter;
+mod adc;
 mod eeprom;
 mod retained_ram;
 mod running_robot;
@@ -33,7 +33,7 @@ use crate::numbers::rate::BaudRate;
 use crate::numbers::units::{self, CYCLES_PER_US, PulseWidth};
 use crate::step::Board;
 
-pub use converter::{Converter, compute_reading};
+pub use adc::{Adc, compute_reading};
 pub use eeprom::Eeprom;
 pub use retained_ram::RetainedRam;
 pub use running_robot::{RunningRobot, is_answer};
@@ -86,7 +86,7 @@ pub struct VirtualBoard {
     /// The non-volatile memory.
     pub memory: Eeprom,
     /// The analogue-to-digital converter that measures the supplies.
-    pub converter: Converter,
+    pub adc: Adc,
     /// The RAM that survives a reset.
     pub ram: RetainedRam,
     /// True if a boot loader hides the cause of a reset from the program.
@@ -128,7 +128,7 @@ impl VirtualBoard {
             pulled_up_pins: 0,
             transmitter: Transmitter::default(),
             memory,
-            converter: Converter::default(),
+            adc: Adc::default(),
             ram: RetainedRam::default(),
             has_boot_loader: false,
             last_restart: Restart::NONE,
@@ -226,8 +226,8 @@ impl VirtualBoard {
         // The program's start takes longer than writing a byte to the memory.
         memory.complete_write();
         *self = Self {
-            transmitter: core::mem::take(&mut self.transmitter).reset(),
-            converter: core::mem::take(&mut self.converter).reset(),
+            transmitter: core::mem::take(&mut self.transmitter).after_reset(),
+            adc: core::mem::take(&mut self.adc).after_reset(),
             has_boot_loader: self.has_boot_loader,
             closed_pins: self.closed_pins,
             last_restart: ram.begin(reported_cause),
@@ -344,7 +344,7 @@ impl Board for VirtualBoard {
     }
 
     fn read_supply(&mut self) -> Reading {
-        self.converter.advance_frame()
+        self.adc.advance_frame()
     }
 
     fn is_stack_intact(&self) -> bool {

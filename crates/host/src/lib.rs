@@ -1,4 +1,5 @@
-//! The program `lizard`. Its modules are grouped by the user's tasks; `commands` contains the table of commands.
+//! The program `lizard`. Its modules are grouped by the user's tasks: to change a robot.toml, make the parts, drive a
+//! board, measure videos, compute the paper's results, simulate. `commands` contains the table of commands.
 
 mod change;
 pub mod commands;
@@ -16,7 +17,7 @@ mod simulate;
 pub use shared::escape::readable_lines;
 pub use shared::failure::Failure;
 pub use shared::pose_args::PoseArgs;
-pub use shared::robot_file::RobotFile;
+pub use shared::robot_args::RobotArgs;
 
 // Modules that tests and other crates use.
 #[cfg(feature = "console")]

@@ -22,7 +22,7 @@ pub trait Real:
     /// The correctly rounded square root; 0 for a negative number, NaN for NaN.
     fn sqrt_or_zero(self) -> Self;
     /// Sines and cosines of angles in degrees.
-    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
+    fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]);
 }
 
 impl Real for f64 {
@@ -38,7 +38,7 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
+    fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         sin_cos_all(degrees)
     }
 }
@@ -49,7 +49,7 @@ pub struct Lanes<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> Lanes<N> {
     #[inline(always)]
-    fn zip(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
+    fn combine_lanes(self, other: Self, operation: impl Fn(f64, f64) -> f64) -> Self {
         let mut result = self.0;
         for (value, other) in result.iter_mut().zip(other.0) {
             *value = operation(*value, other);
@@ -73,7 +73,7 @@ macro_rules! impl_lane_by_lane {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.zip(other, |a, b| a $symbol b)
+                self.combine_lanes(other, |a, b| a $symbol b)
             }
         }
     )*};
@@ -109,7 +109,7 @@ impl<const N: usize> Real for Lanes<N> {
     }
 
     #[inline(always)]
-    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
+    fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let (mut sines, mut cosines) = (degrees, degrees);
         for i in 0..K {
             (sines[i].0, cosines[i].0) = sin_cos_all(degrees[i].0);

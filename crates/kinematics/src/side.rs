@@ -1,6 +1,6 @@
 //! The two sides of the robot, each with a slider between a front and a rear arm.
 //!
-//! An arm is fixed to its crank at a right angle, away from the robot's middle line. The arm's direction is therefore
+//! An arm is fixed to its crank at a right angle, away from the robot's centre line. The arm's direction is therefore
 //! the crank's, turned by +90 or -90 degrees, and the right side is the mirror image of the left one. The paper prints
 //! theta16 = theta4 + 90 and theta13 = theta8 - 90, which would make the right arms point across the chassis.
 
@@ -47,7 +47,7 @@ impl Side {
         }
     }
 
-    /// The direction of the arm on a front crank of this direction, chassis frame:
+    /// The direction of a front arm whose crank has the direction `crank`, both in the chassis frame:
     /// theta12 = theta1 + 90, theta16 = theta4 - 90.
     #[inline(always)]
     pub fn front_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
@@ -57,7 +57,7 @@ impl Side {
         }
     }
 
-    /// The direction of the arm on a rear crank of this direction, chassis frame:
+    /// The direction of a rear arm whose crank has the direction `crank`, both in the chassis frame:
     /// theta9 = theta5 - 90, theta13 = theta8 + 90.
     #[inline(always)]
     pub fn rear_arm<T: Real>(self, crank: Vector<T>) -> Vector<T> {
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn every_arm_points_outward_when_its_crank_is_parallel_to_the_middle_line() {
+    fn every_arm_points_outward_when_its_crank_is_parallel_to_the_centre_line() {
         let (forward_crank, backward_crank) = (Vector::new(0.0, 1.0), Vector::new(0.0, -1.0));
         for side in Side::ALL {
             let outward_arm = Vector::new(-side.sign(), 0.0);

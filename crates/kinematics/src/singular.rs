@@ -1,9 +1,9 @@
 //! The singular poses of a five-bar, as curves in the plane of its crank angles.
 //!
-//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in every
-//! symmetrical pose, including the neutral one. In fact the determinant of K* is proportional
-//! to sin(theta3 - theta2). Here each curve is a function of the left crank's angle: for a
-//! given left crank, intersections of two circles give the singular right cranks.
+//! The paper finds singular configurations at sin(theta2 + theta3) = 0, which holds in every symmetrical pose,
+//! including the neutral one. In fact the determinant of its matrix K* is proportional to sin(theta3 - theta2). Here
+//! each curve is a function of the left crank's angle: for a given left crank, intersections of two circles give the
+//! singular right cranks.
 
 use crate::angle::wrap;
 use crate::five_bar::{AssemblyMode, FiveBar, FiveBarPose};
@@ -50,12 +50,12 @@ impl FiveBar {
         let couplers = [l2 + l3, (l2 - l3).abs()]
             .into_iter()
             .filter(|reach| *reach > 0.0)
-            .flat_map(move |reach| five_bar.right_cranks_at(tip, reach))
+            .flat_map(move |reach| five_bar.right_thetas_at(tip, reach))
             .map(|theta| (Singularity::Couplers, theta));
         // Type 1, left arm: the end point is the tip of the stretched or folded arm.
         let left_arm = [l2, -l2]
             .into_iter()
-            .flat_map(move |reach| five_bar.right_cranks_at(tip + left * reach, l3))
+            .flat_map(move |reach| five_bar.right_thetas_at(tip + left * reach, l3))
             .map(|theta| (Singularity::LeftArm, theta));
         // Type 1, right arm: the end point is on a circle about the right shaft with radius
         // right crank + l3 or |right crank - l3|.
@@ -96,7 +96,7 @@ impl FiveBar {
     }
 
     /// The right crank angles (degrees) at which the right tip is at distance `reach` from a point.
-    fn right_cranks_at(&self, point: Vector, reach: f64) -> impl Iterator<Item = f64> + use<> {
+    fn right_thetas_at(&self, point: Vector, reach: f64) -> impl Iterator<Item = f64> + use<> {
         let shaft = self.right_shaft();
         circle_intersections(point, reach, shaft, self.right_crank_length)
             .map(move |tip| (tip - shaft).angle())
@@ -104,7 +104,7 @@ impl FiveBar {
 
     /// True if the margin of a candidate vanishes in the assembly mode in which the robot is built;
     /// the same circles also give singular poses of the other mode. A type-2 candidate whose loop
-    /// does not close counts, too: only rounding keeps it from closing.
+    /// does not close also counts, because only rounding keeps it from closing.
     fn is_singular(&self, pose: &SingularPose) -> bool {
         match self.forward_in_mode(AssemblyMode::Ahead, pose.theta_left, pose.theta_right) {
             Err(_) => pose.kind == Singularity::Couplers,
@@ -128,14 +128,14 @@ impl Singularity {
 /// are equal if the circles touch.
 fn circle_intersections(a: Vector, r: f64, b: Vector, s: f64) -> impl Iterator<Item = Vector> {
     let centre_line = b - a;
-    let square = centre_line.length_squared();
-    let foot_ratio = (square + (r - s) * (r + s)) / (2.0 * square);
-    let height_ratio = (r * r / square - foot_ratio * foot_ratio).sqrt();
+    let distance_squared = centre_line.length_squared();
+    let middle_ratio = (distance_squared + (r - s) * (r + s)) / (2.0 * distance_squared);
+    let height_ratio = (r * r / distance_squared - middle_ratio * middle_ratio).sqrt();
     // Circles that do not intersect, or are concentric, give NaN or infinity.
     let points = height_ratio.is_finite().then(|| {
-        let foot = a + centre_line * foot_ratio;
+        let middle = a + centre_line * middle_ratio;
         let height = centre_line.rotated_left() * height_ratio;
-        [foot + height, foot - height]
+        [middle + height, middle - height]
     });
     points.into_iter().flatten()
 }

@@ -108,7 +108,7 @@ impl Assembly {
     /// Returns the first dimension that does not fit, the two parts that overlap most, or a screw without access.
     pub fn check_fit(&self) -> Result<(), BuildError> {
         self.check_dimensions()?;
-        self.prove(|_, _| ()).judge()?;
+        self.prove(|_, _| ()).check()?;
         self.find_access_poses(&build_steps(self.robot().drive().strut().is_some()))?;
         Ok(())
     }

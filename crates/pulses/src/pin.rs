@@ -2,18 +2,18 @@
 //!
 //! The numbers printed on the board differ from the chip's pin numbers, and the pins belong to three ports.
 
-/// A pin of an Arduino UNO or Nano.
+/// A pin D0 to D13 or A0 to A5 of an Arduino UNO or Nano.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pin {
-    /// The data address of the pin's PORT register; the address of DDR is less by one (data sheet, 14.4).
+    /// The data address of the pin's PORT register; DDR is at the address one below (data sheet, 14.4).
     pub(crate) port: u8,
-    /// The pin's bit in its PORT register.
+    /// The bit mask of the pin in its PORT register.
     pub(crate) mask: u8,
 }
 
 impl Pin {
-    /// Creates the pin with this number on the board: 0 to 13 for D0 to D13, 14 to 19 for A0 to A5. Returns `None` for
-    /// any other number. D0 and D1 belong to the serial port, D13 to the LED.
+    /// Returns the pin with this number on the board: 0 to 13 for D0 to D13, 14 to 19 for A0 to A5; `None` for any
+    /// other number. D0 and D1 belong to the serial port, D13 to the LED.
     #[must_use]
     pub const fn arduino(number: u8) -> Option<Self> {
         let (port, bit) = match number {
@@ -34,7 +34,7 @@ impl Pin {
         self.port
     }
 
-    /// The pin's bit in the PORT register.
+    /// The bit mask of the pin in its PORT register.
     #[must_use]
     pub const fn mask(self) -> u8 {
         self.mask
@@ -45,9 +45,9 @@ impl Pin {
 mod tests {
     use super::*;
 
-    /// The number, port and bit of the UNO's sockets D0 to D13 and A0 to A5, from the UNO's circuit diagram. The ports
-    /// are named as in the data sheet.
-    const SOCKETS: [(u8, char, u8); 20] = [
+    /// The number, port and bit of the UNO's header pins D0 to D13 and A0 to A5, from the UNO's circuit diagram. The
+    /// ports are named as in the data sheet.
+    const HEADER_PINS: [(u8, char, u8); 20] = [
         (0, 'D', 0),
         (1, 'D', 1),
         (2, 'D', 2),
@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn every_pin_has_the_port_and_the_bit_of_the_circuit_diagram() {
-        for (number, port, bit) in SOCKETS {
+        for (number, port, bit) in HEADER_PINS {
             let pin = Pin::arduino(number).expect("the UNO has this pin");
             // Data sheet, register summary: PORTB 0x25, PORTC 0x28, PORTD 0x2B.
             let address = match port {
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn a_uno_has_no_pins_with_numbers_above_19() {
+    fn no_pin_has_a_number_above_19() {
         for number in 20..=255 {
             assert_eq!(Pin::arduino(number), None);
         }

@@ -43,7 +43,7 @@ class Solution:
     strokes: Array
     """Strokes of the left and the right slider from nominal, mm, (..., 2)."""
     margins: Array
-    """Sines, named by `MARGINS`, (..., 10): 1 is best, 0 is singular, negative is another assembly mode."""
+    """Sines, named by `MARGINS`, (..., 10): 1 is best, 0 is singular, a negative value means another assembly mode."""
     safe: NDArray[np.bool_]
     """True where the pose is within the limits and the servos' travel, (...)."""
 
@@ -60,7 +60,7 @@ class Mobility:
 
 @dataclass(frozen=True)
 class Gait:
-    """A checked gait, as the firmware sends it: a frame every 20 ms."""
+    """A checked gait, as the firmware outputs it: a frame every 20 ms."""
 
     name: str
     period: float
@@ -103,7 +103,7 @@ class Model:
 
     @staticmethod
     def default() -> Model:
-        """Creates the model of the project's robot.toml, the paper's robot."""
+        """Creates the model of the project's robot.toml, which describes the paper's robot."""
         return Model(_lizard.Robot(default_toml()))
 
     def with_gait(self, table: str) -> Model:
@@ -142,6 +142,7 @@ class Model:
         """Returns a gait by its name; raises KeyError, which lists all names."""
         period, peak_speed, min_margin, times, angles = self._robot.gait(name)
         pulses = self._robot.pulses(angles)
+        # The words of a name may be separated by spaces, as on the console.
         name = name.replace(" ", "-")
         return Gait(
             name, period, times, angles, pulses, peak_speed, min_margin, self._robot
@@ -204,10 +205,10 @@ class Model:
 
         The columns of K (..., 8, 4) belong to theta1, theta4, theta8 and theta5; the columns of K* (..., 8, 8) belong
         to theta2, theta3, theta6 and theta7, and to the directions and strokes (mm per mm) of the left and the right
-        slider. K da + K* dp = 0.
+        slider. For changes da of the servo angles and dp of the other variables, K da + K* dp = 0.
         """
         poses, shape = _to_rows(angles, 4)
-        rows = self._robot.matrices(poses)
+        rows = self._robot.jacobians(poses)
         active, passive = rows[:, :32], rows[:, 32:]
         return active.reshape(*shape, 8, 4), passive.reshape(*shape, 8, 8)
 
@@ -215,7 +216,7 @@ class Model:
         """Computes the body's degrees of freedom for servo angles (..., 4), deg; -1 where a loop does not close."""
         active, passive = self.jacobians(angles)
         closes = np.asarray(np.isfinite(passive).all(axis=(-2, -1)))
-        # Scaled to the size of sines, so that a singular pose with seven digits counts as singular.
+        # Scaled to the size of sines, so that a singular pose given to seven digits still counts as singular.
         scale = np.array([50.0, 50, 50, 50, 50, 1, 50, 1])
         passive = np.where(closes[..., None, None], passive, 0) / scale
         active = np.where(closes[..., None, None], active, 0) / 50
@@ -227,7 +228,7 @@ class Model:
         return Mobility(np.where(closes, freedoms, -1), np.where(closes, locked, -1))
 
     def section(self) -> bytes:
-        """Builds the robot's flash section, with the maps of certified cells."""
+        """Builds the section of flash that describes the robot, including the maps of cells that are proved safe."""
         return self._robot.section()
 
     def image(self, *, only_robot: bool = False) -> str:

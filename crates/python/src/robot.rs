@@ -74,7 +74,7 @@ impl Robot {
 
     /// Computes the matrices K (8 x 4) and K* (8 x 8) of poses: each row has the elements of K, row by row, and then
     /// the elements of K*; NaN if there is no solution.
-    fn matrices<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
+    fn jacobians<'py>(&self, py: Python<'py>, poses: PyReadonlyArray2<'py, f64>) -> Rows<'py> {
         compute_rows(py, &poses, |angles: [f64; 4]| {
             let mut row = [f64::NAN; 96];
             if let Ok(solution) = self.0.lizard().solve(&angles.into()) {

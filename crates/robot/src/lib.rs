@@ -48,8 +48,8 @@ pub use config::{
 pub use file::{Error, MAX_FILE_BYTES, edit, explain_mistake};
 pub use gaits::{Bars, Harmonic, Path, PathLeg, Routine, Stride, Waveform, to_command};
 pub use lizard_contact::{
-    Body, BodyPose, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, GroundContact,
-    JointFriction, Motor, Motors, Prediction, SLOT_LENGTH, Slip, Stance, Strut, Travel, Walker,
+    Body, BodyPose, Contacts, DEFAULT_FRICTION, Drive, DriveKind, Feet, GRAVITY, GroundContact,
+    JointFriction, Motor, Motors, Prediction, SLOT_LENGTH, Stance, Strut, Travel, Walker,
 };
 pub use reports::violations;
 pub use reports::{

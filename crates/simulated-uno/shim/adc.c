@@ -164,7 +164,7 @@ void adc_attach(struct adc *adc, avr_t *avr)
 {
 	*adc = (struct adc){
 		.avr = avr,
-		.stock = (avr_adc_t *)chip_peripheral(avr, "adc"),
+		.stock = (avr_adc_t *)chip_find_peripheral(avr, "adc"),
 		.bandgap_mv = NOMINAL_BANDGAP_MV,
 		.next_is_first = true,
 	};

@@ -25,7 +25,7 @@
 struct uno {
 	avr_t *avr;               /* simavr's model of the chip */
 	avr_io_t io;              /* our entry at the end of simavr's list of parts to reset */
-	bool is_data_sheet;       /* true: behaves as in the data sheet; false: as stock simavr */
+	bool follows_data_sheet;  /* true: behaves as in the data sheet; false: as stock simavr */
 
 	uint64_t now;             /* current cycle; ahead of avr->cycle only while the CPU sleeps */
 	uint64_t sleep_cycles;    /* cycles up to avr->cycle in which the CPU slept */

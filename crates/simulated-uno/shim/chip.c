@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-avr_io_t *chip_peripheral(avr_t *avr, const char *kind)
+avr_io_t *chip_find_peripheral(avr_t *avr, const char *kind)
 {
 	for (avr_io_t *io = avr->io_port; io; io = io->next)
 		if (strcmp(io->kind, kind) == 0)

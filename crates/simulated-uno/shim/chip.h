@@ -35,7 +35,7 @@ enum {
 };
 
 /* Returns simavr's peripheral of this kind, such as "eeprom". Aborts if this libsimavr has none. */
-avr_io_t *chip_peripheral(avr_t *avr, const char *kind);
+avr_io_t *chip_find_peripheral(avr_t *avr, const char *kind);
 
 /* Returns the number of cycles from now until `cycle`, at least 1: the delay for simavr's
  * cycle timers. */

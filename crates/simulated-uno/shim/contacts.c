@@ -13,9 +13,9 @@ static uint8_t read_pin(avr_t *avr, avr_io_addr_t address, void *param)
 	for (int i = 0; i < CONTACT_PORT_COUNT; i++) {
 		if (pin_registers[i] != address)
 			continue;
-		const struct read_hook *stock = &contacts->stock_hooks[i];
-		if (stock->callback)
-			value = stock->callback(avr, address, stock->param);
+		const struct read_hook *stock_hook = &contacts->stock_hooks[i];
+		if (stock_hook->callback)
+			value = stock_hook->callback(avr, address, stock_hook->param);
 		uint8_t input_bits = contacts->contact_bits[i] & ~avr->data[address + DDR];
 		uint8_t high_bits = avr->data[address + PORT] & ~contacts->closed_bits[i];
 		value = (value & ~input_bits) | (high_bits & input_bits);

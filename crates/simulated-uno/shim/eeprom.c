@@ -151,7 +151,7 @@ void eeprom_attach(struct eeprom *eeprom, avr_t *avr)
 {
 	*eeprom = (struct eeprom){
 		.avr = avr,
-		.stock = (avr_eeprom_t *)chip_peripheral(avr, "eeprom"),
+		.stock = (avr_eeprom_t *)chip_find_peripheral(avr, "eeprom"),
 		.operations.item_size = sizeof(struct eeprom_operation),
 	};
 }

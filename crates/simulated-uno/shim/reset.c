@@ -16,18 +16,18 @@ static void write_mcusr(avr_t *avr, avr_io_addr_t address, uint8_t value, void *
 	avr->data[address] = reset->mcusr;
 }
 
-void reset_attach(struct reset *reset, avr_t *avr, bool is_data_sheet)
+void reset_attach(struct reset *reset, avr_t *avr, bool follows_data_sheet)
 {
 	*reset = (struct reset){
 		.avr = avr,
-		.is_data_sheet = is_data_sheet,
+		.follows_data_sheet = follows_data_sheet,
 		.noise_state = INITIAL_NOISE_STATE,
 		.initial_sram = calloc(1, avr->ramend + 1),
 		.events.item_size = sizeof(struct reset_event),
 	};
 	if (!reset->initial_sram)
 		abort();
-	if (is_data_sheet)
+	if (follows_data_sheet)
 		hook_write(avr, REG_MCUSR, write_mcusr, reset);
 }
 
@@ -75,7 +75,7 @@ void reset_record(struct reset *reset, uint8_t causes, uint64_t now)
 	}
 	if (causes & RESET_POWER_ON)
 		reset->mcusr = RESET_POWER_ON;
-	else if (causes && !reset->is_data_sheet)
+	else if (causes && !reset->follows_data_sheet)
 		reset->mcusr = causes; /* stock simavr discards the earlier causes */
 	else
 		reset->mcusr |= causes;

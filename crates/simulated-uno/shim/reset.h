@@ -21,7 +21,7 @@ struct reset_event { uint64_t cycle; uint8_t cause; };
 
 struct reset {
 	avr_t *avr;
-	bool is_data_sheet;
+	bool follows_data_sheet;
 	bool has_boot_loader;     /* a boot loader clears MCUSR before the firmware starts */
 	uint8_t requested_causes; /* causes of the requested reset; 0 if none is requested */
 	bool is_power_cut_requested;
@@ -31,7 +31,7 @@ struct reset {
 	struct list events;       /* all resets, including power-on: struct reset_event */
 };
 
-void reset_attach(struct reset *reset, avr_t *avr, bool is_data_sheet);
+void reset_attach(struct reset *reset, avr_t *avr, bool follows_data_sheet);
 void reset_request(struct reset *reset, enum reset_cause cause);
 void reset_request_power_cut(struct reset *reset);
 /* Stops Timer0, Timer1 and Timer2, which would continue after simavr's reset. */

@@ -33,7 +33,7 @@ bool restart_if_requested(struct uno *uno)
 	return true;
 }
 
-void restart_wait_for_supply(struct uno *uno, uint64_t until)
+void restart_advance_in_reset(struct uno *uno, uint64_t until)
 {
 	avr_t *avr = uno->avr;
 	uint64_t cycles_to_timer = avr_cycle_timer_process(avr);

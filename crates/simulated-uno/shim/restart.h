@@ -6,13 +6,13 @@
 
 #include "board.h"
 
-/* Resets the chip now. `causes`: bits of enum reset_cause; 0 if no reset is to be recorded. */
+/* Resets the chip now. `causes`: bits of enum reset_cause; 0 records no reset. */
 void restart(struct uno *uno, uint8_t causes);
 /* Executes the reset or power cut that a part has requested. Returns false if none is requested. */
 bool restart_if_requested(struct uno *uno);
-/* Advances the clock to the next simavr timer or to `until` while the supply holds the chip in
- * reset. */
-void restart_wait_for_supply(struct uno *uno, uint64_t until);
+/* While the supply holds the chip in reset, advances the clock to the next simavr timer or to
+ * `until`, whichever comes first. */
+void restart_advance_in_reset(struct uno *uno, uint64_t until);
 /* Executes the reset that stock simavr's watchdog requests by replacing avr->run. `normal_run`: the
  * previous value of avr->run. */
 void restart_by_stock_watchdog(struct uno *uno, avr_run_t normal_run);

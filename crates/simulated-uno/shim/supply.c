@@ -58,7 +58,7 @@ static void schedule_check(struct supply *supply)
 	}
 	avr_t *avr = supply->avr;
 	avr_cycle_timer_cancel(avr, check_supply, supply);
-	if (next_check && supply->is_data_sheet)
+	if (next_check && supply->follows_data_sheet)
 		avr_cycle_timer_register(avr, next_check - avr->cycle, check_supply, supply);
 }
 
@@ -81,7 +81,7 @@ static void apply_voltage(struct supply *supply, double mv)
 /* Holds the chip in reset or releases it, according to the current voltage. */
 static void update(struct supply *supply, uint64_t now)
 {
-	if (!supply->is_data_sheet)
+	if (!supply->follows_data_sheet)
 		return;
 	apply_voltage(supply, supply_mv(supply, now));
 	schedule_check(supply);
@@ -102,7 +102,7 @@ static avr_cycle_count_t cut_power(avr_t *avr, avr_cycle_count_t when, void *par
 }
 
 void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
-                   struct eeprom *eeprom, bool is_data_sheet)
+                   struct eeprom *eeprom, bool follows_data_sheet)
 {
 	*supply = (struct supply){
 		.avr = avr,
@@ -111,7 +111,7 @@ void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
 		.from_mv = NOMINAL_MV,
 		.to_mv = NOMINAL_MV,
 		.brown_out_mv = BROWN_OUT_MV,
-		.is_data_sheet = is_data_sheet,
+		.follows_data_sheet = follows_data_sheet,
 	};
 }
 
@@ -162,6 +162,6 @@ void supply_power_on(struct supply *supply)
 {
 	supply->holds_reset = supply->has_lost_sram = false;
 	double mv = supply_mv(supply, supply->avr->cycle);
-	if (supply->is_data_sheet && mv < release_above_mv(supply))
+	if (supply->follows_data_sheet && mv < release_above_mv(supply))
 		supply->holds_reset = supply->has_lost_sram = true;
 }

@@ -16,14 +16,14 @@ struct supply {
 	double to_mv;            /* voltage from cycle `ramp_end` on; it changes linearly between */
 	uint64_t ramp_start, ramp_end;
 	double brown_out_mv;     /* brown-out level; 0: brown-out detection is off */
-	bool is_data_sheet;
+	bool follows_data_sheet;
 	bool holds_reset;        /* the supply is too low and holds the chip in reset */
 	bool has_lost_sram;      /* the supply has been too low for the SRAM to keep its contents */
 	uint64_t power_cut_at;   /* cycle at which the power is cut; 0: never */
 };
 
 void supply_attach(struct supply *supply, avr_t *avr, struct reset *reset,
-                   struct eeprom *eeprom, bool is_data_sheet);
+                   struct eeprom *eeprom, bool follows_data_sheet);
 /* The voltage at a cycle, from the start of the last ramp on. */
 double supply_mv(const struct supply *supply, uint64_t cycle);
 /* Changes the voltage linearly to `mv` over `cycles` from now. */

@@ -18,8 +18,8 @@
 #include "board.h"
 #include "restart.h"
 
-/* The largest number of cycles that simavr runs without returning to the loop, and by which a run
- * may end too late. */
+/* The largest number of cycles that simavr runs without returning to the loop. A run may end late
+ * by as much. */
 #define MAX_SLICE_CYCLES 256
 
 static void on_log(avr_t *avr, const int level, const char *format, va_list args)
@@ -43,7 +43,7 @@ static void on_reset(struct avr_io_t *io)
 	disable_level_polling(uno->avr);
 	handlers_reset(&uno->handlers);
 	call_timer_reset(&uno->call_timer);
-	if (uno->is_data_sheet) {
+	if (uno->follows_data_sheet) {
 		timer1_reset(&uno->timer1);
 		usart_reset(&uno->usart);
 		eeprom_reset(&uno->eeprom);
@@ -83,7 +83,7 @@ static void widen_data_space(avr_t *avr)
 	memset(avr->data + size, 0, UINT16_MAX + 1 - size);
 }
 
-struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud)
+struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud)
 {
 	struct uno *uno = calloc(1, sizeof *uno);
 	avr_t *avr = avr_make_mcu_by_name("atmega328p");
@@ -97,7 +97,7 @@ struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud)
 	avr->log = LOG_ERROR;
 
 	uno->avr = avr;
-	uno->is_data_sheet = is_data_sheet;
+	uno->follows_data_sheet = follows_data_sheet;
 	uno->instruction.avr = avr;
 	recorder_attach(&uno->recorder, &uno->instruction, pins);
 	handlers_attach(&uno->handlers, avr);
@@ -106,12 +106,12 @@ struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud)
 	serial_bytes_init(&uno->transmitted);
 	stock_uart_attach(&uno->stock_uart, &uno->instruction, &uno->transmitted);
 	struct receiver receiver = stock_uart_receiver(&uno->stock_uart);
-	reset_attach(&uno->reset, avr, is_data_sheet);
+	reset_attach(&uno->reset, avr, follows_data_sheet);
 	eeprom_attach(&uno->eeprom, avr);
 	adc_attach(&uno->adc, avr);
 	contacts_attach(&uno->contacts, avr);
-	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, is_data_sheet);
-	if (is_data_sheet) {
+	supply_attach(&uno->supply, avr, &uno->reset, &uno->eeprom, follows_data_sheet);
+	if (follows_data_sheet) {
 		interrupts_attach(&uno->interrupts, &uno->instruction);
 		timer1_attach(&uno->timer1, avr);
 		pin_toggle_attach(&uno->pin_toggle, &uno->instruction);
@@ -152,7 +152,7 @@ bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t addr
 	return true;
 }
 
-void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end)
+void uno_set_program_bounds(struct uno *uno, uint32_t code_end, uint16_t data_end)
 {
 	uno->avr->codeend = code_end;
 	uno->data_end = data_end;
@@ -181,12 +181,12 @@ static void run_instructions(struct uno *uno, uint64_t until)
 	instruction_run(&uno->instruction);
 }
 
-/* Sleeps for `cycles`, until simavr's next timer. Returns false if `until` is earlier. In the
- * stock fidelity, the CPU wakes a cycle late, as in simavr. */
+/* Sleeps for `cycles`, until simavr's next timer. Returns false, without sleeping, if the timer is
+ * due after `until`. In the stock fidelity, the CPU wakes a cycle late, as in simavr. */
 static bool sleep_until_timer(struct uno *uno, uint64_t cycles, uint64_t until)
 {
 	avr_t *avr = uno->avr;
-	cycles += uno->is_data_sheet ? 0 : 1;
+	cycles += uno->follows_data_sheet ? 0 : 1;
 	if (avr->cycle + cycles > until)
 		return false;
 	avr->cycle += cycles;
@@ -195,15 +195,15 @@ static bool sleep_until_timer(struct uno *uno, uint64_t cycles, uint64_t until)
 	return true;
 }
 
-static void service_interrupts(struct uno *uno)
+static void serve_interrupts(struct uno *uno)
 {
 	avr_t *avr = uno->avr;
-	if (!uno->is_data_sheet) {
+	if (!uno->follows_data_sheet) {
 		if (avr->interrupt_state)
 			avr_service_interrupts(avr);
 	} else if (avr->interrupt_state || uno->interrupts.needs_check) {
 		if (interrupts_serve(&uno->interrupts))
-			avr_cycle_timer_process(avr); /* the entry into the handler took time */
+			avr_cycle_timer_process(avr); /* the entry took cycles, so a timer may be due */
 	}
 }
 
@@ -212,12 +212,12 @@ static bool is_halted(const struct uno *uno)
 {
 	if (uno->avr->sreg[S_I])
 		return false;
-	return !uno->is_data_sheet ||
+	return !uno->follows_data_sheet ||
 	       !(watchdog_may_reset(&uno->watchdog) || supply_may_reset(&uno->supply));
 }
 
 /* Keeps the CPU asleep if interrupts are disabled: in simavr, an interrupt whose enable bit is set
- * wakes it all the same. */
+ * wakes it anyway. */
 static void stay_asleep(avr_t *avr)
 {
 	if (avr->state == cpu_Running && !avr->sreg[S_I])
@@ -233,7 +233,7 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 	if (restart_if_requested(uno))
 		return !uno->is_powered_off;
 	if (uno->supply.holds_reset) {
-		restart_wait_for_supply(uno, until);
+		restart_advance_in_reset(uno, until);
 		return true;
 	}
 	if (avr->state == cpu_Sleeping)
@@ -260,13 +260,13 @@ static bool step(struct uno *uno, avr_run_t normal_run, uint64_t until)
 		}
 		if (!sleep_until_timer(uno, cycles_to_timer, until))
 			return false;
-		if (uno->is_data_sheet) {
+		if (uno->follows_data_sheet) {
 			avr_cycle_timer_process(avr); /* fires the timer that is due now */
 			stay_asleep(avr);
 		}
 	}
 	disturbance_serve(&uno->disturbance);
-	service_interrupts(uno);
+	serve_interrupts(uno);
 	return true;
 }
 
@@ -288,8 +288,9 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until)
 	bool is_alive = avr->state == cpu_Running || avr->state == cpu_Sleeping;
 	/* The CPU sleeps and nothing is due before `until`, so `until` is the current cycle, ahead
 	 * of simavr's. */
-	bool is_behind = is_alive && !has_line_ended && !uno->is_powered_off && avr->cycle < until;
-	uno->now = is_behind ? until : avr->cycle;
+	bool is_simavr_behind = is_alive && !has_line_ended && !uno->is_powered_off &&
+	                        avr->cycle < until;
+	uno->now = is_simavr_behind ? until : avr->cycle;
 	if (uno->is_powered_off)
 		return STOP_POWER_CUT;
 	if (avr->state == cpu_Done)
@@ -301,8 +302,8 @@ enum stop_reason uno_run(struct uno *uno, uint64_t until)
 
 uint64_t uno_sleep_cycles(const struct uno *uno)
 {
-	bool is_behind = uno->now > uno->avr->cycle;
-	return uno->sleep_cycles + (is_behind ? uno->now - uno->avr->cycle : 0);
+	bool is_simavr_behind = uno->now > uno->avr->cycle;
+	return uno->sleep_cycles + (is_simavr_behind ? uno->now - uno->avr->cycle : 0);
 }
 
 void uno_time_calls(struct uno *uno, bool is_enabled, uint32_t entry_address)

@@ -20,16 +20,16 @@ enum stop_reason {
 
 /* Directs simavr's error messages to the uno that they concern. Call this function once. */
 void uno_set_logger(void);
-/* `is_data_sheet`: true for the data-sheet fidelity (simavr corrected to match the data sheet), false
- * for the stock fidelity (simavr without corrections). `pins`: the pins whose edges are recorded,
- * bit n = Arduino pin n. `baud`: the sender's baud rate. */
-struct uno *uno_new(bool is_data_sheet, uint32_t pins, double baud);
+/* `follows_data_sheet`: true for the data-sheet fidelity (simavr corrected to match the data
+ * sheet), false for the stock fidelity (simavr without corrections). `pins`: the pins whose edges
+ * are recorded, bit n = Arduino pin n. `baud`: the sender's baud rate. */
+struct uno *uno_new(bool follows_data_sheet, uint32_t pins, double baud);
 void uno_free(struct uno *uno);
 /* Copies `size` bytes into flash at a byte address. Returns false if they do not fit. */
 bool uno_load(struct uno *uno, const uint8_t *code, uint32_t size, uint32_t address);
 /* Must be called after the last uno_load. The code in flash ends before byte address `code_end`, and
  * the static data before data address `data_end`. */
-void uno_finish_loading(struct uno *uno, uint32_t code_end, uint16_t data_end);
+void uno_set_program_bounds(struct uno *uno, uint32_t code_end, uint16_t data_end);
 /* Runs until cycle `until`, or until another stop reason occurs. */
 enum stop_reason uno_run(struct uno *uno, uint64_t until);
 /* While `is_enabled`, a run ends as soon as the firmware has sent a complete line. */

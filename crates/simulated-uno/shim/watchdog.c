@@ -112,7 +112,7 @@ void watchdog_attach(struct watchdog *watchdog, const struct instruction *instru
 		.instruction = instruction,
 		.interrupts = interrupts,
 		.reset = reset,
-		.stock = (avr_watchdog_t *)chip_peripheral(avr, "watchdog"),
+		.stock = (avr_watchdog_t *)chip_find_peripheral(avr, "watchdog"),
 	};
 	avr_register_io(avr, &watchdog->io); /* precedes simavr's own watchdog in the list */
 	hook_write(avr, REG_WDTCSR, write_control, watchdog);

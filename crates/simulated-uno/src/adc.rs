@@ -14,7 +14,7 @@ impl Uno {
             (1000.0..=1200.0).contains(&mv),
             "the bandgap reference must be between 1000 and 1200 mV, but is {mv} mV"
         );
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
         unsafe { ffi::uno_set_bandgap(self.raw, mv) }
     }
 
@@ -25,7 +25,7 @@ impl Uno {
     pub fn set_analog_mv(&mut self, pin: Pin, mv: u16) {
         let channel = pin.number().checked_sub(Pin::a(0).number());
         let channel = channel.unwrap_or_else(|| panic!("{pin} is not an analogue pin"));
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim takes the channel modulo the
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim takes the channel modulo the
         // number of channels.
         unsafe { ffi::uno_set_analog(self.raw, channel, mv) }
     }

@@ -6,13 +6,13 @@ use crate::{FLASH_SIZE, Fidelity, Image, Uno};
 
 impl Uno {
     /// Returns a board with only a boot loader in its flash, at the moment of power-on. Every reset starts the chip at
-    /// the boot loader's first byte, as the fuse BOOTRST does.
+    /// the boot loader's first byte, as if the fuse BOOTRST were programmed.
     #[must_use]
     pub fn with_boot_loader(loader: Image, fidelity: Fidelity) -> Self {
         let start = loader.code_start();
         let uno = Self::with_image(loader, fidelity);
-        // SAFETY: `raw` is valid, and `uno` owns it exclusively, see `Uno`; `Image` has checked that its code is inside
-        // flash.
+        // SAFETY: `raw` is valid, and `uno` owns it exclusively (see `Uno`); `Image` has checked that its code is
+        // inside flash.
         unsafe { ffi::uno_set_boot_address(uno.raw, start) }
         uno
     }
@@ -20,16 +20,16 @@ impl Uno {
     /// The contents of all of flash, including the boot loader. A byte that was never written is 0xff.
     #[must_use]
     pub fn flash(&self) -> &[u8] {
-        // SAFETY: `raw` is valid, see `Uno`. The chip has `FLASH_SIZE` bytes of flash, which
+        // SAFETY: `raw` is valid (see `Uno`). The chip has `FLASH_SIZE` bytes of flash, which
         // live as long as `self` and do not change while it is borrowed.
         unsafe { std::slice::from_raw_parts(ffi::uno_flash(self.raw), FLASH_SIZE as usize) }
     }
 
-    /// Changes bytes in flash from outside the program, as worn-out memory cells do.
+    /// Overwrites bytes in flash from outside the program, for example to imitate worn-out memory cells.
     ///
     /// # Panics
     /// If the bytes do not fit into flash.
-    pub fn set_flash(&mut self, address: u16, bytes: &[u8]) {
+    pub fn write_flash(&mut self, address: u16, bytes: &[u8]) {
         let start = usize::from(address);
         // SAFETY: as in `flash`, and `self` is borrowed nowhere else.
         let flash = unsafe {
@@ -40,7 +40,7 @@ impl Uno {
 
     /// Clears the record of received bytes, [`Uno::received_by_uno`], which would otherwise grow as long as the UNO
     /// runs.
-    pub(crate) fn clear_received(&mut self) {
+    pub(crate) fn clear_received_bytes(&mut self) {
         self.clear_items(ffi::uno_received);
     }
 }

@@ -13,7 +13,7 @@ impl Uno {
             number @ 8..=13 => (0x23, number - 8),
             number => (0x26, number - 14),
         };
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps two bits.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps two bits.
         unsafe { ffi::uno_set_contact(self.raw, address, bit, is_closed) }
     }
 }

@@ -60,7 +60,7 @@ impl Uno {
     /// The contents of the EEPROM. A byte that is being programmed still has its old value.
     #[must_use]
     pub fn eeprom(&self) -> [u8; EEPROM_SIZE] {
-        // SAFETY: `raw` is valid, see `Uno`. simavr's buffer has `EEPROM_SIZE` bytes as long as
+        // SAFETY: `raw` is valid (see `Uno`). simavr's buffer has `EEPROM_SIZE` bytes as long as
         // the instance lives, and bytes need no alignment.
         unsafe { *ffi::uno_eeprom(self.raw).cast() }
     }
@@ -91,7 +91,7 @@ impl Uno {
     /// byte.
     pub fn cut_power(&mut self, cut: PowerCut, ones: u8) {
         self.set_torn_bits(ones);
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps numbers.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps numbers.
         unsafe {
             match cut {
                 PowerCut::AtCycle(cycle) => ffi::uno_cut_power_at(self.raw, cycle.max(1)),
@@ -107,14 +107,14 @@ impl Uno {
 
     /// Cancels a power failure that [`Uno::cut_power`] has scheduled and that has not happened yet.
     pub fn cancel_power_cut(&mut self) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim clears what `cut_power` has set.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim clears what `cut_power` has set.
         unsafe { ffi::uno_cancel_power_cut(self.raw) }
     }
 
     /// Sets the bits that remain set in a byte after a power failure other than [`Uno::cut_power`]: a supply below
     /// 1.8 V, or [`Uno::power_cycle`]. For the meaning of `ones`, see [`Uno::cut_power`].
     pub fn set_torn_bits(&mut self, ones: u8) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
         unsafe { ffi::uno_set_torn_bits(self.raw, ones) }
     }
 }

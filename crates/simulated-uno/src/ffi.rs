@@ -54,10 +54,10 @@ pub enum StopReason {
 
 unsafe extern "C" {
     pub fn uno_set_logger();
-    pub fn uno_new(is_data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
+    pub fn uno_new(follows_data_sheet: bool, pins: u32, baud: f64) -> *mut RawUno;
     pub fn uno_free(uno: *mut RawUno);
     pub fn uno_load(uno: *mut RawUno, code: *const u8, size: u32, address: u32) -> bool;
-    pub fn uno_finish_loading(uno: *mut RawUno, code_end: u32, data_end: u16);
+    pub fn uno_set_program_bounds(uno: *mut RawUno, code_end: u32, data_end: u16);
     pub fn uno_set_boot_address(uno: *mut RawUno, address: u32);
     pub fn uno_flash(uno: *mut RawUno) -> *mut u8;
     pub fn uno_run(uno: *mut RawUno, until: u64) -> StopReason;

@@ -168,7 +168,7 @@ impl Port {
         if *uno.state() == State::Alive {
             uno.run_until_cycle(self.update_target_cycle(uno.cycle()));
         }
-        uno.clear_received();
+        uno.clear_received_bytes();
         let arrived_bytes = match &mut self.radio {
             Some(radio) => radio.exchange(uno),
             None => {

@@ -37,7 +37,7 @@ impl Uno {
     ///
     /// The chip's start-up delay (65 ms on a UNO) is not simulated.
     pub fn reset(&mut self) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim may reset the chip at any moment
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim may reset the chip at any moment
         // between two runs, as here.
         unsafe { ffi::uno_reset(self.raw) }
         if self.state != State::Off {
@@ -48,7 +48,7 @@ impl Uno {
     /// Switches the power off and on again at once, at the supply's current voltage. Only the EEPROM survives, and the
     /// byte of an operation in progress is torn (see [`Uno::set_torn_bits`]). SRAM and r0 to r31 contain noise.
     pub fn power_cycle(&mut self) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; as in `reset`.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); as in `reset`.
         unsafe { ffi::uno_power_cycle(self.raw) }
         self.state = State::Alive;
     }
@@ -59,15 +59,15 @@ impl Uno {
     /// external reset. If no cycle has passed yet, the setting also applies to the current start. With
     /// [`Fidelity::Stock`](crate::Fidelity) the watchdog stays on.
     pub fn set_boot_loader(&mut self, is_present: bool) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a flag, and restarts a chip
-        // that has not started.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a flag, and restarts a
+        // chip that has not started.
         unsafe { ffi::uno_set_boot_loader(self.raw, is_present) }
     }
 
     /// Sets the seed of the noise that the next [`Uno::power_cycle`] leaves in SRAM and in r0 to r31. Each further
     /// power-on continues the sequence.
     pub fn set_noise_seed(&mut self, seed: u64) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
         unsafe { ffi::uno_set_noise_seed(self.raw, seed) }
     }
 

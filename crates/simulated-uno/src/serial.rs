@@ -16,7 +16,7 @@ impl Uno {
     /// Queues bytes for the serial line. They are sent back to back at the baud rate, even if the firmware does not
     /// keep up.
     pub fn send(&mut self, bytes: &[u8]) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim copies the bytes of the slice.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim copies the bytes of the slice.
         unsafe { ffi::uno_send(self.raw, bytes.as_ptr(), bytes.len(), false) }
     }
 
@@ -63,7 +63,7 @@ impl Uno {
             (1.0..=1e7).contains(&baud),
             "the baud rate must be between 1 and 10 million, but is {baud}"
         );
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; for a rate in this range, the cycles per
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); for a rate in this range, the cycles per
         // bit can be converted in C.
         unsafe { ffi::uno_set_baud(self.raw, baud) }
     }
@@ -71,21 +71,21 @@ impl Uno {
     /// The current baud rate of the chip's USART, computed from its registers.
     #[must_use]
     pub fn chip_baud(&self) -> f64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads registers.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads registers.
         FREQUENCY as f64 / f64::from(unsafe { ffi::uno_cycles_per_bit(self.raw) })
     }
 
     /// The number of queued bytes that have not yet arrived at the UNO.
     #[must_use]
     pub fn unsent_byte_count(&self) -> usize {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_unsent_count(self.raw) }
     }
 
     /// The number of bytes sent to the UNO so far, including those of a flood.
     #[must_use]
     pub fn sent_byte_count(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_sent_count(self.raw) }
     }
 
@@ -93,7 +93,7 @@ impl Uno {
     /// [`Fidelity::Stock`](crate::Fidelity::Stock).
     #[must_use]
     pub fn overrun_count(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_overrun_count(self.raw) }
     }
 

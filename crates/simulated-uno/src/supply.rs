@@ -10,7 +10,7 @@ impl Uno {
     /// The current supply voltage, mV; 5000 by default.
     #[must_use]
     pub fn supply_mv(&self) -> f64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim computes a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim computes a number.
         unsafe { ffi::uno_supply_mv(self.raw) }
     }
 
@@ -38,7 +38,7 @@ impl Uno {
             (0.0..=10_000.0).contains(&mv),
             "the supply voltage must be between 0 and 10 000 mV, but is {mv} mV"
         );
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps numbers, and a voltage in
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps numbers, and a voltage in
         // this range can be converted in C.
         unsafe { ffi::uno_ramp_supply(self.raw, mv, cycles) }
     }
@@ -47,14 +47,14 @@ impl Uno {
     /// UNO's fuses; the level of a given chip may be 2500 to 2900 mV. Without brown-out detection, the chip runs down
     /// to 1.3 V and starts above 1.4 V.
     pub fn set_brown_out_mv(&mut self, level_mv: Option<f64>) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim keeps a number.
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim keeps a number.
         unsafe { ffi::uno_set_brown_out(self.raw, level_mv.unwrap_or(0.0)) }
     }
 
     /// True while the supply holds the chip in reset.
     #[must_use]
     pub fn is_held_in_reset(&self) -> bool {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a flag.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a flag.
         unsafe { ffi::uno_is_held_in_reset(self.raw) }
     }
 }

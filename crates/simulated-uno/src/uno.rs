@@ -86,7 +86,7 @@ impl Uno {
                 let fits = ffi::uno_load(raw, bytes.as_ptr(), bytes.len() as u32, *address);
                 assert!(fits, "every segment of an image is inside flash");
             }
-            ffi::uno_finish_loading(raw, image.code_end(), image.data_end());
+            ffi::uno_set_program_bounds(raw, image.code_end(), image.data_end());
             raw
         };
         Self {
@@ -105,7 +105,7 @@ impl Uno {
     /// The number of cycles since power-on.
     #[must_use]
     pub fn cycle(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_now(self.raw) }
     }
 
@@ -161,7 +161,7 @@ impl Uno {
     /// Runs until the cycle `end_cycle` or, if `stop_at_line`, until the firmware has sent a complete line. Returns
     /// true if a line ended the run.
     pub(crate) fn run_until_cycle_or_line(&mut self, end_cycle: u64, stop_at_line: bool) -> bool {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim stops at any cycle, and every
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim stops at any cycle, and every
         // value that it returns is one of `StopReason`.
         let stop_reason = unsafe {
             ffi::uno_set_stop_at_line(self.raw, stop_at_line);
@@ -173,7 +173,7 @@ impl Uno {
             ffi::StopReason::Halted => self.state = State::Halted,
             ffi::StopReason::PowerCut => self.state = State::Off,
             ffi::StopReason::Crashed => {
-                // SAFETY: `raw` is valid, see `Uno`. The message is inside the instance and
+                // SAFETY: `raw` is valid (see `Uno`). The message is inside the instance and
                 // ends with a NUL, and nothing changes it while it is copied.
                 let message = unsafe { CStr::from_ptr(ffi::uno_error_message(self.raw)) };
                 self.state = State::Crashed {
@@ -205,7 +205,7 @@ impl Uno {
     /// True while a pin (D2 to D13, A0 to A5) is high.
     #[must_use]
     pub fn is_high(&self, pin: Pin) -> bool {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         let levels = unsafe { ffi::uno_pin_levels(self.raw) };
         levels & (1 << pin.number()) != 0
     }
@@ -225,7 +225,7 @@ impl Uno {
     /// Slower than [`Uno::run_cycles`], because it checks every instruction. A recursive call counts as part of the
     /// outermost call.
     pub fn time_calls(&mut self, entry_address: u32, cycles: u64) -> Vec<Call> {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; the shim compares the address with the
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); the shim compares the address with the
         // program counter and never follows it.
         unsafe { ffi::uno_time_calls(self.raw, true, entry_address) };
         self.run_cycles(cycles);
@@ -237,7 +237,7 @@ impl Uno {
     /// The number of cycles since power-on in which the CPU slept.
     #[must_use]
     pub fn sleep_cycles(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_sleep_cycles(self.raw) }
     }
 
@@ -250,7 +250,7 @@ impl Uno {
     /// The number of resets by the watchdog so far. [`Uno::reset_events`] lists all resets.
     #[must_use]
     pub fn watchdog_resets(&self) -> u64 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_watchdog_resets(self.raw) }
     }
 
@@ -269,21 +269,21 @@ impl Uno {
 
     /// The lowest SRAM address that the stack has reached.
     fn lowest_stack_address(&self) -> u16 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim looks through the chip's own SRAM.
+        // SAFETY: `raw` is valid (see `Uno`); the shim looks through the chip's own SRAM.
         unsafe { ffi::uno_lowest_stack_address(self.raw) }
     }
 
     /// The byte address in flash of the next instruction.
     #[must_use]
     pub fn pc(&self) -> u32 {
-        // SAFETY: `raw` is valid, see `Uno`; the shim reads a number.
+        // SAFETY: `raw` is valid (see `Uno`); the shim reads a number.
         unsafe { ffi::uno_pc(self.raw) }
     }
 
     /// The byte at a data address (registers, I/O or SRAM); 0 beyond SRAM.
     #[must_use]
     pub fn peek(&self, address: u16) -> u8 {
-        // SAFETY: `raw` is valid, see `Uno`. The data space has `uno_data_size` bytes as long
+        // SAFETY: `raw` is valid (see `Uno`). The data space has `uno_data_size` bytes as long
         // as the instance lives, and nothing runs while they are borrowed.
         let data = unsafe {
             let size = ffi::uno_data_size(self.raw) as usize;
@@ -295,7 +295,7 @@ impl Uno {
     /// Statistics of every interrupt that has been served at least once.
     #[must_use]
     pub fn interrupt_stats(&self) -> Vec<VectorStats> {
-        // SAFETY: `raw` is valid, see `Uno`. The shim returns an array of `VECTOR_COUNT` items inside
+        // SAFETY: `raw` is valid (see `Uno`). The shim returns an array of `VECTOR_COUNT` items inside
         // the instance, and nothing runs while they are borrowed.
         let vectors =
             unsafe { std::slice::from_raw_parts(ffi::uno_vectors(self.raw), ffi::VECTOR_COUNT) };
@@ -314,7 +314,7 @@ impl Uno {
 
     /// Copies the items of one of the shim's lists.
     pub(crate) fn copy_items<Item: Copy>(&self, list_getter: ListGetter) -> Vec<Item> {
-        // SAFETY: `raw` is valid, see `Uno`. The callers pair each list with its item type,
+        // SAFETY: `raw` is valid (see `Uno`). The callers pair each list with its item type,
         // whose size is compared; the first `count` items are initialised, and nothing runs
         // while they are copied.
         unsafe {
@@ -336,7 +336,7 @@ impl Uno {
 
     /// Empties one of the shim's lists.
     pub(crate) fn clear_items(&mut self, list_getter: ListGetter) {
-        // SAFETY: `raw` is valid, and `self` owns it exclusively, see `Uno`; a list is inside the instance, and the
+        // SAFETY: `raw` is valid, and `self` owns it exclusively (see `Uno`); a list is inside the instance, and the
         // shim appends at `count`, so 0 empties the list.
         unsafe { (*list_getter(self.raw)).count = 0 }
     }
@@ -347,7 +347,7 @@ type ListGetter = unsafe extern "C" fn(*mut RawUno) -> *mut RawList;
 
 impl Drop for Uno {
     fn drop(&mut self) {
-        // SAFETY: `raw` comes from `uno_new`, see `Uno`, and is freed only here.
+        // SAFETY: `raw` comes from `uno_new` (see `Uno`), and is freed only here.
         unsafe { ffi::uno_free(self.raw) }
     }
 }

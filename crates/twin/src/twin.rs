@@ -22,7 +22,7 @@ pub struct Twin {
 }
 
 impl Twin {
-    /// Creates a twin that stands at neutral without pulses; its legs do not lag.
+    /// Creates a twin in the neutral pose, without pulses and without lag in its legs.
     pub fn new(robot: &Robot, servo_model: ServoModel) -> Self {
         Self {
             robot: robot.clone(),
@@ -33,8 +33,8 @@ impl Twin {
         }
     }
 
-    /// Simulates a frame of 20 ms with the given pulse widths, us. A servo with `None` has no pulse and does not turn,
-    /// because its gears hold it.
+    /// Simulates a frame of 20 ms with the given pulse widths, us. `None` means that a servo has no pulse: its gears
+    /// hold it where it is.
     pub fn simulate_pulses(&mut self, widths_us: [Option<f64>; 4]) -> State {
         let servos = self.robot.servos();
         let targets = std::array::from_fn(|i| widths_us[i].map(|width| servos[i].sweep(width)));
@@ -57,14 +57,14 @@ impl Twin {
             let (min, max) = servos[i].travel();
             targets[i].map(|target| target.clamp(min, max))
         });
-        let slip = match self.servo_model {
+        let contacts = match self.servo_model {
             ServoModel::Motors(motors) => {
                 let forward_targets =
                     std::array::from_fn(|i| targets[i].map(|target| FORWARD_TURN_SIGN[i] * target));
-                let slip = self.walker.drive(forward_targets, FRAME_PERIOD_S, &motors);
+                let contacts = self.walker.drive(forward_targets, FRAME_PERIOD_S, &motors);
                 let servo_sweeps = self.walker.servo_sweeps();
                 self.sweeps = std::array::from_fn(|i| FORWARD_TURN_SIGN[i] * servo_sweeps[i]);
-                slip
+                contacts
             }
             ServoModel::Ideal | ServoModel::Unloaded(_) => {
                 for i in 0..4 {
@@ -101,8 +101,8 @@ impl Twin {
                 .feet
                 .positions(self.walker.leg_sweeps())
                 .map(|foot| body_pose.to_floor(foot)),
-            slips: slip.slid_distances,
-            loads: slip.loads.map(|fraction| fraction * mean_load),
+            slips: contacts.slid_distances,
+            loads: contacts.loads.map(|fraction| fraction * mean_load),
             margins: solution.map(|solution| solution.margins),
             strokes: solution.map(|solution| [solution.left.s, solution.right.s]),
         }
@@ -139,7 +139,7 @@ impl Twin {
     }
 
     /// Simulates two cycles of a gait at its nominal rate from neutral, with the current ground and servos, and returns
-    /// the totals of the second cycle. This twin does not move.
+    /// the totals of the second cycle. Does not change this twin.
     pub fn simulate_cycle(&self, gait: &CheckedGait) -> Totals {
         let mut twin = Self::new(&self.robot, self.servo_model);
         twin.set_ground(*self.ground());

@@ -31,7 +31,7 @@ pub struct Target {
 /// The error for an image that reaches into the boot section of a Nano, or of a board that may be one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{} bytes of flash are needed, but a Nano has only {NANO_BOOT_ADDRESS} before its boot section{}. \
-         Nothing was written", .end_address, if *.is_in_doubt {
+         Nothing was written", .end_address, if *.is_model_uncertain {
     "; according to its USB chip, this board may be a Nano"
 } else {
     ". Gaits can be left out of robot.toml until it fits"
@@ -40,13 +40,13 @@ pub struct ImageTooLong {
     /// The address after the image's last byte.
     end_address: usize,
     /// True if the board may also be a UNO, which has enough room.
-    is_in_doubt: bool,
+    is_model_uncertain: bool,
 }
 
 impl ImageTooLong {
-    /// True if the board may also be a UNO, which has room.
-    pub fn is_in_doubt(self) -> bool {
-        self.is_in_doubt
+    /// True if the board may also be a UNO, which has enough room.
+    pub fn is_model_uncertain(self) -> bool {
+        self.is_model_uncertain
     }
 }
 
@@ -65,8 +65,8 @@ impl Target {
     /// Fails if the board has too little room, or may have too little room.
     pub fn check_room(self, image: &Image, loader: LoaderKind) -> Result<(), ImageTooLong> {
         let is_nano = self.model == Some(Model::Nano) || loader == LoaderKind::AtmegaBoot;
-        let is_in_doubt = !is_nano && self.model.is_none() && self.may_be_nano;
-        let room = if is_nano || is_in_doubt {
+        let is_model_uncertain = !is_nano && self.model.is_none() && self.may_be_nano;
+        let room = if is_nano || is_model_uncertain {
             NANO_BOOT_ADDRESS
         } else {
             BOOT_ADDRESS
@@ -75,7 +75,7 @@ impl Target {
         if end_address > room {
             return Err(ImageTooLong {
                 end_address,
-                is_in_doubt,
+                is_model_uncertain,
             });
         }
         Ok(())

@@ -26,7 +26,7 @@ fn max_margin_error(type2: f64) -> f64 {
         (End::Tail, kinematics::End::Tail),
     ];
     let bands = ends.map(|(end, kinematic_end)| {
-        let step = 1.0 / f64::from(1 << robot().firmware().five_bar(end).bars().scale().bits);
+        let step = 1.0 / f64::from(1 << robot().firmware().link_lengths(end).scale().bits);
         margin_band(&robot().lizard().end(kinematic_end), type2, step)
     });
     bands[0].max(bands[1])

@@ -4,7 +4,7 @@ use lizard_core::numbers::units::Sweep;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot, robots};
 use lizard_robot::{FRAMES_PER_SECOND, STEPS_PER_DEGREE};
 
-use crate::truth::to_degrees;
+use crate::reference::to_degrees;
 
 #[test]
 fn neutral_angle_scale_and_pin_of_each_servo_match_the_robot_file() {

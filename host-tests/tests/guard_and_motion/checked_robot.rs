@@ -12,7 +12,7 @@ use lizard_core::virtual_board::RunningRobot;
 use lizard_host_tests::{CYCLES_PER_US, NamedRobot};
 use lizard_robot::Robot;
 
-use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
+use crate::reference::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Number of frames after which all servos are awake.
 pub const WAKING_FRAMES: u32 = 20;

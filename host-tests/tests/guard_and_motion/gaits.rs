@@ -8,7 +8,7 @@ use lizard_kinematics::End;
 use lizard_robot::servo::{FORWARD_TURN_SIGN, LEG_NAMES, OPPOSITE_SERVO};
 use lizard_robot::{CheckedGait, Robot, STEPS_PER_DEGREE, Waveform};
 
-use crate::truth::is_safe;
+use crate::reference::is_safe;
 
 /// Number of phases per cycle that the wave tables distinguish.
 const PHASE_COUNT: u32 = 65_536;

@@ -7,7 +7,7 @@ use lizard_core::numbers::units::Sine;
 use lizard_host_tests::{NamedRobot, robots};
 use lizard_robot::Robot;
 
-use crate::truth::{MARGINS, steps_per_mm, to_sine};
+use crate::reference::{MARGINS, steps_per_mm, to_sine};
 
 /// Returns the limits of the ten margins from robot.toml.
 fn margin_limits(robot: &Robot) -> [f64; 10] {

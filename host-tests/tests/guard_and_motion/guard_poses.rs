@@ -11,10 +11,9 @@ use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::Robot;
 
-use crate::truth::{
-    ErrorStatistics, ExactConditions, MARGIN_FIVE_BARS, MARGINS, MIN_TYPE2_LIMIT,
-    chassis_angles_deg, find_unclosed_five_bar, is_safe, random_pose, random_pose_within,
-    steps_per_mm, to_sine,
+use crate::reference::{
+    ErrorStatistics, MARGIN_FIVE_BARS, MARGINS, MIN_TYPE2_LIMIT, Reference, chassis_angles_deg,
+    find_unclosed_five_bar, is_safe, random_pose, random_pose_within, steps_per_mm, to_sine,
 };
 
 /// Number of poses tested for each robot.
@@ -22,8 +21,7 @@ const POSE_COUNT: usize = 40_000;
 /// Number of pairs of neighbouring poses, one on each side of a limit, tested for each robot.
 const PAIR_COUNT: usize = 1500;
 
-/// The guard's errors and decisions for many poses of one robot. A condition's band is the guard's largest allowed
-/// error in this condition.
+/// The guard's errors and decisions for many poses of one robot.
 #[derive(Default)]
 struct Findings {
     type2: ErrorStatistics,
@@ -31,20 +29,21 @@ struct Findings {
     leg: ErrorStatistics,
     /// The errors of the strokes, in steps of the side's scale.
     stroke: ErrorStatistics,
-    /// The largest error of each margin, in bands.
-    max_margin_error_bands: [f64; 10],
+    /// The largest error of each margin, in units of its tolerance.
+    max_margin_errors: [f64; 10],
     safe_count: usize,
     refused_count: usize,
     /// The number of poses for which the guard and floating point decide differently.
     disagreement_count: usize,
-    /// The largest distance of a pose with a disagreement from its nearest limit, in bands.
-    max_disagreement_bands: f64,
+    /// The largest distance of a pose with a disagreement from its nearest limit, in tolerances.
+    max_disagreement: f64,
     /// The number of refusals for each of the twelve conditions.
     hazard_counts: [usize; 12],
 }
 
 impl Findings {
-    /// Adds the guard's errors and decision for a pose, and asserts that the decision is correct outside the bands.
+    /// Adds the guard's errors and decision for a pose, and asserts that the decision is correct outside the
+    /// tolerances.
     fn add_pose(&mut self, robot: &Robot, pose: &Pose) {
         let firmware = robot.firmware();
         let clearance = Clearance::measure(firmware, pose);
@@ -57,8 +56,8 @@ impl Findings {
                 self.hazard_counts[index] += 1;
             }
         }
-        let truth = match ExactConditions::compute(robot, chassis_angles_deg(firmware, pose)) {
-            Ok(truth) => truth,
+        let reference = match Reference::compute(robot, chassis_angles_deg(firmware, pose)) {
+            Ok(reference) => reference,
             Err(error) => {
                 // Index 0 is the head's type-2 margin, and index 1 is the tail's. If the tail does not close, the guard
                 // may name the head.
@@ -71,22 +70,22 @@ impl Findings {
                 return;
             }
         };
-        self.compare_values(robot, &clearance, &truth);
-        let distances = truth.distances_from_limits();
-        for (distance, is_violated) in distances.into_iter().zip(truth.are_violated) {
+        self.compare_values(robot, &clearance, &reference);
+        let distances = reference.distances_from_limits();
+        for (distance, is_violated) in distances.into_iter().zip(reference.violated) {
             assert!(
                 distance.abs() <= 1.0 || is_violated == (distance < 0.0),
-                "{truth:?}"
+                "{reference:?}"
             );
         }
         let min_distance = distances.into_iter().fold(f64::INFINITY, f64::min);
         if hazard.is_none() != (min_distance >= 0.0) {
             self.disagreement_count += 1;
-            self.max_disagreement_bands = self.max_disagreement_bands.max(min_distance.abs());
+            self.max_disagreement = self.max_disagreement.max(min_distance.abs());
         }
         assert!(
             min_distance.abs() <= 1.0 || hazard.is_none() == (min_distance > 0.0),
-            "{pose:?} is {min_distance} bands from the nearest limit, but the guard reports {hazard:?}"
+            "{pose:?} is {min_distance} tolerances from the nearest limit, but the guard reports {hazard:?}"
         );
         let Some(hazard_index) = hazard_index else {
             return;
@@ -94,30 +93,31 @@ impl Findings {
         // The named condition is violated, and all conditions that the guard checks earlier are satisfied.
         assert!(
             distances[hazard_index] <= 1.0,
-            "{pose:?}: {hazard:?}, {truth:?}"
+            "{pose:?}: {hazard:?}, {reference:?}"
         );
         let earlier_conditions_hold = distances[..hazard_index]
             .iter()
             .all(|distance| *distance >= -1.0);
         assert!(
             earlier_conditions_hold,
-            "{pose:?}: {hazard:?} is not the first violated condition, {truth:?}"
+            "{pose:?}: {hazard:?} is not the first violated condition, {reference:?}"
         );
     }
 
     /// Compares the guard's margins and strokes with floating point, and records the errors.
-    fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, truth: &ExactConditions) {
-        for (index, (value, expected)) in clearance.margins.iter().zip(truth.margins).enumerate() {
+    fn compare_values(&mut self, robot: &Robot, clearance: &Clearance, reference: &Reference) {
+        for (index, (value, exact)) in clearance.margins.iter().zip(reference.margins).enumerate() {
             let five_bar = MARGIN_FIVE_BARS.get(index).copied();
             if let Some(five_bar) = five_bar
-                && (truth.margins[five_bar] < MIN_TYPE2_LIMIT || truth.is_at_crossing(five_bar))
+                && (reference.margins[five_bar] < MIN_TYPE2_LIMIT
+                    || reference.is_at_crossing(five_bar))
             {
                 // This close to a type-2 singularity, the guard must only detect that the margin is small.
-                let max_margin = MIN_TYPE2_LIMIT + truth.bands[five_bar];
+                let max_margin = MIN_TYPE2_LIMIT + reference.tolerances.margins[five_bar];
                 assert!(
-                    truth.is_at_crossing(five_bar)
+                    reference.is_at_crossing(five_bar)
                         || to_sine(clearance.margins[five_bar]) < max_margin,
-                    "{truth:?}"
+                    "{reference:?}"
                 );
                 continue;
             }
@@ -126,16 +126,16 @@ impl Findings {
                 2..6 => &mut self.type1,
                 _ => &mut self.leg,
             };
-            let error = to_sine(*value) - expected;
+            let error = to_sine(*value) - exact;
             statistics.add(error);
-            self.max_margin_error_bands[index] =
-                self.max_margin_error_bands[index].max(error.abs() / truth.bands[index]);
+            self.max_margin_errors[index] = self.max_margin_errors[index]
+                .max(error.abs() / reference.tolerances.margins[index]);
         }
         for (side, (length_sq, stroke)) in Side::ALL.into_iter().zip(
             clearance
                 .slider_lengths_sq
                 .into_iter()
-                .zip(truth.strokes_mm),
+                .zip(reference.strokes_mm),
         ) {
             let slider = robot.firmware().slider(side);
             let steps = f64::from(length_sq).sqrt() - f64::from(slider.nominal_length);
@@ -143,11 +143,11 @@ impl Findings {
         }
     }
 
-    /// Prints the findings, and asserts that every error is within its band.
+    /// Prints the findings, and asserts that every error is within its tolerance.
     fn print_and_check(&self, name: &str) {
         println!(
             "{name}: type-2 {}, type-1 {}, leg {}, stroke {} steps; {} safe, {} refused, \
-             {} disagreements within {:.3} bands, margins within {:.3}; refusals per condition {:?}",
+             {} disagreements within {:.3} tolerances, margins within {:.3}; refusals per condition {:?}",
             self.type2,
             self.type1,
             self.leg,
@@ -155,18 +155,18 @@ impl Findings {
             self.safe_count,
             self.refused_count,
             self.disagreement_count,
-            self.max_disagreement_bands,
-            self.max_margin_error_bands.into_iter().fold(0.0, f64::max),
+            self.max_disagreement,
+            self.max_margin_errors.into_iter().fold(0.0, f64::max),
             self.hazard_counts
         );
-        for (margin, error_bands) in MARGINS.iter().zip(self.max_margin_error_bands) {
+        for (margin, max_error) in MARGINS.iter().zip(self.max_margin_errors) {
             assert!(
-                error_bands <= 1.0,
-                "{name}: {margin:?} is {error_bands} bands off"
+                max_error <= 1.0,
+                "{name}: {margin:?} is {max_error} tolerances off"
             );
         }
         assert!(
-            self.stroke.max <= LENGTH_BAND_STEPS,
+            self.stroke.max_abs <= LENGTH_BAND_STEPS,
             "{name}: a stroke is {} steps off",
             self.stroke
         );
@@ -307,14 +307,14 @@ fn the_smallest_margin_matches_kinematics() {
             }
             safe_count += 1;
             let chassis_angles = chassis_angles_deg(robot.firmware(), &pose);
-            let truth = ExactConditions::compute(robot, chassis_angles)
-                .expect("a safe pose closes all loops");
-            let smallest_margin = truth.margins.into_iter().fold(f64::INFINITY, f64::min);
+            let reference =
+                Reference::compute(robot, chassis_angles).expect("a safe pose closes all loops");
+            let smallest_margin = reference.margins.into_iter().fold(f64::INFINITY, f64::min);
             let error =
                 to_sine(Clearance::measure(robot.firmware(), &pose).min_margin()) - smallest_margin;
-            let largest_band = truth.bands[..10].iter().copied().fold(0.0, f64::max);
+            let max_tolerance = reference.tolerances.margins.into_iter().fold(0.0, f64::max);
             assert!(
-                error.abs() <= largest_band,
+                error.abs() <= max_tolerance,
                 "{name}: {pose:?} is {error} off"
             );
         }

@@ -1,7 +1,7 @@
 //! Tests of the core's guard, gaits and motion on this machine, compared with floating point. The tests use the robot
 //! under test, every robot in robots/, and random robots without symmetry.
 //!
-//! `truth` computes the expected values without the core. `checked_robot` commands a robot through its console and
+//! `reference` computes the expected values without the core. `checked_robot` commands a robot through its console and
 //! checks every frame that the robot sends.
 
 mod calibration;
@@ -13,5 +13,5 @@ mod guard_poses;
 mod motion;
 mod motion_guard;
 mod paper_conditions;
+mod reference;
 mod running_gaits;
-mod truth;

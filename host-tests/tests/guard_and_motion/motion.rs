@@ -9,7 +9,7 @@ use lizard_host_tests::{NamedRobot, rng, robots};
 use crate::checked_robot::{
     CheckedRobot, WAKING_FRAMES, final_activity, max_speed_change, random_command, settling_frames,
 };
-use crate::truth::random_safe_pose;
+use crate::reference::random_safe_pose;
 
 /// Number of random dialogues with each robot.
 const DIALOGUE_COUNT: u64 = 30;

@@ -10,7 +10,7 @@ use lizard_host_tests::{NamedRobot, rng, robots};
 use lizard_robot::{CoreRobot, Robot};
 
 use crate::checked_robot::{CheckedRobot, settling_frames};
-use crate::truth::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
+use crate::reference::{Verdict, chassis_angles_deg, is_safe, random_pose_within};
 
 /// Number of random pairs of poses that are tried for each robot. Some robots have no unsafe path between safe poses.
 const ATTEMPT_COUNT: usize = 6000;

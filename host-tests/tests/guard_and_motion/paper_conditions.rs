@@ -9,7 +9,7 @@ use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::units::{Angle, Sweep};
 use lizard_host_tests::paper_robot;
 
-use crate::truth::{chassis_angles_deg, is_safe};
+use crate::reference::{chassis_angles_deg, is_safe};
 
 /// The head's crank angles at which the two crank tips coincide. At this real singularity, the couplers overlap, and
 /// the head can swing freely.

@@ -116,7 +116,7 @@ fn begin_upload(board: &mut ConnectedBoard) -> Shell {
 /// Returns a board with the firmware, which was placed in its flash without an upload.
 fn prepare_board_with_firmware() -> ConnectedBoard {
     let mut board = ConnectedBoard::with_new_uno();
-    board.uno.set_flash(0, &firmware());
+    board.uno.write_flash(0, &firmware());
     board
 }
 
@@ -134,7 +134,7 @@ fn a_blank_board_is_flashed_and_its_robot_reports_the_firmware() {
 fn a_board_whose_program_sends_bytes_forever_is_flashed_and_keeps_its_eeprom() {
     let mut board = ConnectedBoard::with_new_uno();
     let program = SENDER_IMAGE.flash();
-    board.uno.set_flash(0, &program);
+    board.uno.write_flash(0, &program);
     let eeprom: [u8; 1024] = std::array::from_fn(|index| (index * 7 + index / 256) as u8);
     board.uno.set_eeprom(&eeprom);
     let shell = start_lizard_flash(&board, &[]);
@@ -162,7 +162,7 @@ fn a_board_that_has_the_image_stays_unchanged() {
 fn only_a_page_that_differs_is_written() {
     let mut board = prepare_board_with_firmware();
     let old_byte = board.uno.flash()[0x2005];
-    board.uno.set_flash(0x2005, &[old_byte ^ 0x10]);
+    board.uno.write_flash(0x2005, &[old_byte ^ 0x10]);
     let shell = start_lizard_flash(&board, &[]);
     let screen = expect_success(&mut board, &shell);
     let board_text = "the board has another build of lizard";
@@ -175,7 +175,7 @@ fn only_a_page_that_differs_is_written() {
 #[test]
 fn a_board_unplugged_during_an_upload_does_nothing_until_it_is_flashed_again() {
     let mut board = ConnectedBoard::with_new_uno();
-    board.uno.set_flash(0, &SENDER_IMAGE.flash());
+    board.uno.write_flash(0, &SENDER_IMAGE.flash());
     let shell = begin_upload(&mut board);
     replug(&mut board);
     let screen = board.run_until_exit(&shell);
@@ -221,7 +221,7 @@ fn a_byte_that_changes_after_its_write_is_rewritten() {
     let has_ended = board.run_until(|uno| {
         // The byte changes long before it is read back.
         if !has_changed && uno.flash()[0x280] != 0xff {
-            uno.set_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
+            uno.write_flash(0x211, &[uno.flash()[0x211] ^ 0x10]);
             has_changed = true;
         }
         shell.has_ended()
@@ -240,7 +240,9 @@ fn a_byte_that_changes_after_its_write_is_rewritten() {
 fn a_board_whose_boot_loader_does_not_answer_gets_an_explanation() {
     let mut board = ConnectedBoard::with_new_uno();
     // Replaces the boot loader with an endless loop: `rjmp .-2`.
-    board.uno.set_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
+    board
+        .uno
+        .write_flash(BOOT_LOADER_START as u16, &[0xff, 0xcf]);
     let shell = start_lizard_flash(&board, &[]);
     let screen = board.run_until_exit(&shell);
     assert!(

@@ -60,7 +60,7 @@ fn after_a_hang_an_old_nano_moves_no_servo_until_its_power_is_cut() {
     let mut board = create_old_nano();
     board
         .uno
-        .set_flash(0, &firmware()[..NANO_BOOT_LOADER_START]);
+        .write_flash(0, &firmware()[..NANO_BOOT_LOADER_START]);
     board.uno.run_ms(2500);
     let take_text = |uno: &mut Uno| decode_text(&uno.take_transmitted());
     let output_text = take_text(&mut board.uno);

@@ -116,7 +116,7 @@ fn a_board_unplugged_during_a_write_has_no_robot_until_the_next_upload() {
 fn no_robot_is_written_to_a_board_with_another_program() {
     let mut board = prepare_board_with_firmware();
     // A sketch replaces the firmware. avrdude writes only the sketch's pages, so the robot's section remains in flash.
-    board.uno.set_flash(0, &SENDER_IMAGE.flash());
+    board.uno.write_flash(0, &SENDER_IMAGE.flash());
     let flash_before = board.uno.flash().to_vec();
     let shell = start_lizard_flash(&board, &["--only-robot"]);
     let screen = board.run_until_exit(&shell);

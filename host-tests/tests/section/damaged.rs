@@ -273,8 +273,8 @@ fn a_robot_whose_servo_cannot_reach_its_neutral_angle_is_refused() {
 }
 
 /// Changes a random number in a section: in the servos, pins or limits, or in the parts after `Numbers` (curves, gaits,
-/// waveforms, maps). Leaves the bars and the offsets of the parts unchanged, because the firmware trusts them after the
-/// host's check.
+/// waveforms, maps). Leaves the link lengths and the offsets of the parts unchanged, because the firmware trusts them
+/// after the host's check.
 fn change_random_number(rng: &mut Rng, section: &mut [u8]) {
     let numbers_start = size_of::<Header>();
     let offset = match rng.u8(..4) {

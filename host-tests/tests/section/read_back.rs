@@ -2,9 +2,9 @@
 //! values come from the robot in floating point, not from the numbers in the section's source.
 
 use lizard_core::guard::clearance::Clearance;
-use lizard_core::numbers::bars::Bars;
 use lizard_core::numbers::curve::{ENTRY_COUNT, Table, argument_at};
 use lizard_core::numbers::gaits::GaitId;
+use lizard_core::numbers::link_lengths::LinkLengths;
 use lizard_core::numbers::part::{End, Servo, Side};
 use lizard_core::numbers::pose::Pose;
 use lizard_core::numbers::robot::Robot;
@@ -182,7 +182,7 @@ fn the_limits_the_slew_limit_and_the_gaits_travel_are_read_back() {
 }
 
 #[test]
-fn the_bars_and_the_sliders_are_read_back() {
+fn the_link_lengths_and_the_sliders_are_read_back() {
     for_each_robot(|name, robot, file_robot, _| {
         let links = file_robot.lizard().links;
         for (end, [base, left, right, a, b]) in [
@@ -195,12 +195,12 @@ fn the_bars_and_the_sliders_are_read_back() {
                 [links.l5, links.l6, links.l9, links.l7, links.l8],
             ),
         ] {
-            let five_bar = robot.five_bar(end);
-            let scale = five_bar.bars().scale();
+            let lengths = robot.link_lengths(end);
+            let scale = lengths.scale();
             let length = |mm: f64| mm_to_steps(mm, scale) as i16;
-            let bars = [base, left, right].map(length);
-            let expected = Bars::new(bars, [a, b].map(length), scale);
-            assert_eq!(*five_bar.bars(), expected, "{name} {end:?}");
+            let base_and_cranks = [base, left, right].map(length);
+            let expected = LinkLengths::new(base_and_cranks, [a, b].map(length), scale);
+            assert_eq!(lengths, expected, "{name} {end:?}");
             // The lengths must fit into the core's numbers at this scale.
             let longest_length = (base + left + right).max(a).max(b);
             let fits = |bits: u32| longest_length * f64::from(1u32 << bits) < 127.0 * 256.0;
@@ -280,7 +280,7 @@ fn the_curves_are_read_back_at_every_point_of_their_tables() {
                 read_numbers(flash).curves[1],
             ),
         ] {
-            let scale = robot.five_bar(end).bars().scale();
+            let scale = robot.link_lengths(end).scale();
             let [a, b] = [a, b].map(|mm| mm_to_steps(mm, scale));
             // The squared distances between the crank tips with stretched and with folded couplers, in units of four
             // squared steps.

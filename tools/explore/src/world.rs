@@ -95,14 +95,14 @@ impl World {
         }
         fingerprint.add(coarse_fingerprint(&board.ram.peek_restart(None)));
         fingerprint.add(u64::from(board.rate as u8) << 2 | u64::from(self.sender_rate as u8));
-        let reading = board.converter.true_reading();
+        let reading = board.adc.true_reading();
         let flags = [
             board.memory.is_worn,
             board.has_boot_loader,
             board.memory.address_in_write().is_some(),
             board.are_pulses_ended(),
             board.is_stack_intact,
-            board.converter.is_complete(),
+            board.adc.is_complete(),
             board.transmitter.is_held,
             board.last_restart().servo_state_before.is_some(),
             board.unread_count() > 0,
@@ -173,7 +173,7 @@ impl World {
             Action::SupplyMv(mv) => {
                 let supplies = self.robot().supplies();
                 let reading = compute_reading(&supplies, u32::from(mv), 0);
-                self.running_robot.board.converter.set_true_reading(reading);
+                self.running_robot.board.adc.set_true_reading(reading);
                 self.observe(Event::SupplyMv(u32::from(mv)));
             }
             Action::WeakSupply(is_weak) => self.is_supply_weak = is_weak,
@@ -332,7 +332,7 @@ impl World {
         let log = &mut self.running_robot.board.memory.log;
         if !log.is_empty() {
             log.clear();
-            if !self.running_robot.board.converter.is_complete() {
+            if !self.running_robot.board.adc.is_complete() {
                 return report_violation(
                     Rule::SafeWrites,
                     "a byte is written before the supply is measured",

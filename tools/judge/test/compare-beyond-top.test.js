@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { ignoreCompareBeyondTop } from '../src/corrections/compare-beyond-top.js';
-import { makeFixedMessage, runProgram } from './program.js';
+import { formatFaultFixed, runProgram } from './program.js';
 
 // Timer 1 counts up to 99 and restarts; OCR1B is `compare`. The program copies the flags to r20.
 const program = (compare) => `
@@ -24,7 +24,7 @@ const OCF1B = 4;
 test('a compare value beyond the top never matches', () => {
   const runForFlags = (corrections, compare) => runProgram(corrections, program(compare), 1000).cpu.data[20];
   for (const value of [100, 1000, 0xffff]) {
-    assert.equal(runForFlags([], value), OCF1A | OCF1B, makeFixedMessage('compare-beyond-top.js'));
+    assert.equal(runForFlags([], value), OCF1A | OCF1B, formatFaultFixed('compare-beyond-top.js'));
     assert.equal(runForFlags([ignoreCompareBeyondTop], value), OCF1A);
   }
   for (const value of [0, 1, 50, 98, 99]) {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { keepTransmitInterruptPending } from '../src/corrections/data-register-empty.js';
-import { makeFixedMessage, runProgram } from './program.js';
+import { formatFaultFixed, runProgram } from './program.js';
 
 // The interrupt handler counts its calls in r16 and sends nothing.
 const program = `
@@ -20,6 +20,6 @@ const program = `
 
 test('the transmit interrupt is repeated until a byte is written', () => {
   const countCalls = (corrections) => runProgram(corrections, program, 200).cpu.data[16];
-  assert.equal(countCalls([]), 1, makeFixedMessage('data-register-empty.js'));
+  assert.equal(countCalls([]), 1, formatFaultFixed('data-register-empty.js'));
   assert.ok(countCalls([keepTransmitInterruptPending]) > 10);
 });

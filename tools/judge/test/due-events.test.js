@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { handleAllDueEvents } from '../src/corrections/due-events.js';
-import { makeFixedMessage, makeUno } from './program.js';
+import { formatFaultFixed, makeUno } from './program.js';
 
 test('two events due at the same cycle are handled at the same cycle', () => {
   const recordEventCycles = (corrections) => {
@@ -12,7 +12,7 @@ test('two events due at the same cycle are handled at the same cycle', () => {
     board.run(20);
     return cycles;
   };
-  assert.deepEqual(recordEventCycles([]), [6, 8], makeFixedMessage('due-events.js'));
+  assert.deepEqual(recordEventCycles([]), [6, 8], formatFaultFixed('due-events.js'));
   assert.deepEqual(recordEventCycles([handleAllDueEvents]), [6, 6]);
 });
 

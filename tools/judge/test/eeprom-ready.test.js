@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { holdEepromInterrupt } from '../src/corrections/eeprom-ready.js';
-import { makeFixedMessage, runProgram } from './program.js';
+import { formatFaultFixed, runProgram } from './program.js';
 
 // The interrupt handler counts its calls in r20 and starts writing a byte in each call.
 const program = `
@@ -24,6 +24,6 @@ const program = `
 test('the EEPROM interrupt waits until the write ends', () => {
   // A byte takes 3.4 ms, so the third call comes after 6.8 ms; the run ends after 10 ms.
   const countCalls = (corrections) => runProgram(corrections, program, 160_000).cpu.data[20];
-  assert.ok(countCalls([]) > 3, makeFixedMessage('eeprom-ready.js'));
+  assert.ok(countCalls([]) > 3, formatFaultFixed('eeprom-ready.js'));
   assert.equal(countCalls([holdEepromInterrupt]), 3);
 });

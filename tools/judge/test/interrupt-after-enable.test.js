@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-after-enable.js';
-import { makeFixedMessage, runProgram } from './program.js';
+import { formatFaultFixed, runProgram } from './program.js';
 
 // Both compare interrupts of timer 0 are pending when the program enables interrupts. Then main counts in r16, and the
 // handlers copy that count to r20 and r21.
@@ -43,7 +43,7 @@ const pointZBelowSreg = 'ldi r30, 0x5e\n ldi r31, 0\n';
 const [std, st] = [`${pointZBelowSreg} std Z+1, r18`, `${pointZBelowSreg} inc r30\n st Z, r18`];
 for (const enableInstruction of ['sei', 'out 0x3f, r18', 'sts 0x5f, r18', std, st]) {
   test(`one instruction runs between \`${enableInstruction}\` and an interrupt, and between two interrupts`, () => {
-    assert.deepEqual([...runForHandlerCounts([], enableInstruction)], [0, 0], makeFixedMessage('interrupt-after-enable.js'));
+    assert.deepEqual([...runForHandlerCounts([], enableInstruction)], [0, 0], formatFaultFixed('interrupt-after-enable.js'));
     assert.deepEqual([...runForHandlerCounts([delayInterruptAfterEnable], enableInstruction)], [1, 2]);
   });
 }

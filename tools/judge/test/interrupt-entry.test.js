@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
-import { makeFixedMessage, runProgram } from './program.js';
+import { formatFaultFixed, runProgram } from './program.js';
 
 // The program reads the timer into r16 before an interrupt; the handler's first instruction reads it into r17.
 const program = `
@@ -29,6 +29,6 @@ function measureEntryCycles(corrections) {
 }
 
 test('the response to an interrupt takes four cycles', () => {
-  assert.equal(measureEntryCycles([]), 2, makeFixedMessage('interrupt-entry.js'));
+  assert.equal(measureEntryCycles([]), 2, formatFaultFixed('interrupt-entry.js'));
   assert.equal(measureEntryCycles([extendInterruptEntry]), 4);
 });

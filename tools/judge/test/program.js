@@ -23,5 +23,5 @@ export function runProgram(corrections, source, endCycle) {
 export const readState = ({ cpu }) => ({ cycles: cpu.cycles, pc: cpu.pc, data: [...cpu.data] });
 
 /** Returns the failure message for the case that avr8js no longer has a fault. */
-export const makeFixedMessage = (file) =>
+export const formatFaultFixed = (file) =>
   `avr8js has fixed this fault: remove tools/judge/src/corrections/${file}, its test and its line in docs/judges.md`;

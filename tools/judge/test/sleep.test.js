@@ -4,7 +4,7 @@ import test from 'node:test';
 import { extendInterruptEntry } from '../src/corrections/interrupt-entry.js';
 import { delayInterruptAfterEnable } from '../src/corrections/interrupt-after-enable.js';
 import { simulateSleep } from '../src/corrections/sleep.js';
-import { makeFixedMessage, makeUno, runProgram } from './program.js';
+import { formatFaultFixed, makeUno, runProgram } from './program.js';
 
 // Timer 1 matches at 200; until then, main repeats a loop that begins with SLEEP. The handler stores the timer's count
 // in r20 and the number of completed iterations in r21.
@@ -37,7 +37,7 @@ const SLEEP_AND_INTERRUPTS = [extendInterruptEntry, delayInterruptAfterEnable, s
 
 test('SLEEP lasts until an interrupt', () => {
   const countIterations = (corrections) => runProgram(corrections, program(1), 400).cpu.data[21];
-  assert.notEqual(countIterations([]), 0, makeFixedMessage('sleep.js'));
+  assert.notEqual(countIterations([]), 0, formatFaultFixed('sleep.js'));
   assert.equal(countIterations([simulateSleep]), 0);
 });
 

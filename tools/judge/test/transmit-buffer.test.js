@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { addTransmitBuffer } from '../src/corrections/transmit-buffer.js';
-import { makeFixedMessage, makeUno } from './program.js';
+import { formatFaultFixed, makeUno } from './program.js';
 
 // The program sends three bytes at 1 Mbaud, 16 cycles per bit. It writes each byte as soon as UDRE0 is set, and copies
 // the status after the first byte to r16.
@@ -33,7 +33,7 @@ function transmit(corrections) {
 }
 
 test('the transmitter accepts a byte while it sends another', () => {
-  assert.equal(transmit([]).isBufferEmpty, 0, makeFixedMessage('transmit-buffer.js'));
+  assert.equal(transmit([]).isBufferEmpty, 0, formatFaultFixed('transmit-buffer.js'));
   assert.equal(transmit([addTransmitBuffer]).isBufferEmpty, 1);
 });
 

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import test from 'node:test';
 
 import { keepUnreadByte } from '../src/corrections/unread-byte.js';
-import { makeFixedMessage, makeUno } from './program.js';
+import { formatFaultFixed, makeUno } from './program.js';
 
 // A byte arrives while the receiver is on; then the program writes UCSR0B. It copies the status before the write to r16
 // and the status after the write to r17.
@@ -31,7 +31,7 @@ function runForReceiveFlag(corrections, control) {
 }
 
 test('an unread byte survives a write to UCSR0B that keeps the receiver on', () => {
-  assert.equal(runForReceiveFlag([], 0x18), 0, makeFixedMessage('unread-byte.js'));
+  assert.equal(runForReceiveFlag([], 0x18), 0, formatFaultFixed('unread-byte.js'));
   assert.equal(runForReceiveFlag([keepUnreadByte], 0x18), 1);
 });
 

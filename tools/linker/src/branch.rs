@@ -45,7 +45,7 @@ pub fn find_edit(
             }
             Some(Edit {
                 offset: branch.offset,
-                removed_bytes: 4,
+                removed_size: 4,
                 // brbs and brbc differ in one bit. The linker inserts the distance.
                 new_words: vec![(branch.first_word ^ 0x0400) & 0xfc07],
                 references: vec![Reference {

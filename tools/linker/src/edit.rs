@@ -22,7 +22,7 @@ pub struct Edit {
     /// Offset from the start of the code, bytes.
     pub offset: u64,
     /// The number of bytes to replace, together with their references.
-    pub removed_bytes: u64,
+    pub removed_size: u64,
     /// The new code, in words.
     pub new_words: Vec<u16>,
     /// The references of the new code, with offsets relative to the start of the new code.
@@ -31,7 +31,7 @@ pub struct Edit {
 
 impl Edit {
     fn end(&self) -> u64 {
-        self.offset + self.removed_bytes
+        self.offset + self.removed_size
     }
 
     fn new_size(&self) -> u64 {
@@ -40,11 +40,16 @@ impl Edit {
 
     /// Returns the number of bytes that the edit saves.
     pub fn saved_bytes(&self) -> i64 {
-        self.removed_bytes as i64 - self.new_size() as i64
+        self.removed_size as i64 - self.new_size() as i64
     }
 
-    /// True if an offset is inside the replaced bytes: after their first byte and before their end.
-    pub fn covers(&self, offset: u64) -> bool {
+    /// True if the byte at an offset is replaced.
+    pub fn replaces(&self, offset: u64) -> bool {
+        self.offset <= offset && offset < self.end()
+    }
+
+    /// True if an offset is inside the replaced bytes, but not at their start.
+    fn splits_at(&self, offset: u64) -> bool {
         self.offset < offset && offset < self.end()
     }
 }
@@ -54,13 +59,13 @@ impl Edit {
 pub struct Edits(Vec<Edit>);
 
 impl Edits {
-    /// Sorts the edits. Returns `None` if two edits overlap, or if an edit covers one of the reference targets.
+    /// Sorts the edits. Returns `None` if two edits overlap, or if an edit splits the bytes at a reference target.
     pub fn new(mut edits: Vec<Edit>, targets: &[u64]) -> Option<Self> {
         edits.sort_by_key(|edit| edit.offset);
         let are_apart = edits.windows(2).all(|pair| pair[0].end() <= pair[1].offset);
         let are_targets_kept = !targets
             .iter()
-            .any(|target| edits.iter().any(|edit| edit.covers(*target)));
+            .any(|target| edits.iter().any(|edit| edit.splits_at(*target)));
         (are_apart && are_targets_kept).then_some(Self(edits))
     }
 
@@ -93,10 +98,7 @@ impl Edits {
 
     /// Returns the references after the edits, with new offsets but old addends.
     pub fn apply_to_references(&self, old_references: &[Reference]) -> Vec<Reference> {
-        let is_replaced = |offset: u64| {
-            let contains_offset = |edit: &Edit| edit.offset <= offset && offset < edit.end();
-            self.0.iter().any(contains_offset)
-        };
+        let is_replaced = |offset: u64| self.0.iter().any(|edit| edit.replaces(offset));
         let kept_references = old_references
             .iter()
             .filter(|reference| !is_replaced(reference.offset));

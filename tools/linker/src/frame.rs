@@ -134,9 +134,9 @@ impl Frame {
 
     /// Builds the edits that make the function use the shared routines.
     pub fn build_edits(&self, routines: Routines) -> Vec<Edit> {
-        let replacement = |offset, removed_bytes, opcode, symbol| Edit {
+        let replacement = |offset, removed_size, opcode, symbol| Edit {
             offset,
-            removed_bytes,
+            removed_size,
             new_words: vec![encode_ldi_r26(self.local_bytes), opcode, 0],
             references: vec![Reference {
                 offset: 2,

@@ -168,8 +168,7 @@ impl Object<'_> {
             let own_edit = edit.filter(|_| table.sh_info_section == Some(section));
             targets.extend(section_relocations(table).iter().filter_map(|relocation| {
                 let offset = relocation.r_offset;
-                let is_replaced =
-                    own_edit.is_some_and(|edit| edit.offset == offset || edit.covers(offset));
+                let is_replaced = own_edit.is_some_and(|edit| edit.replaces(offset));
                 let symbol = relocation.symbol.filter(|_| !is_replaced)?;
                 self.symbol_offset(section, symbol, relocation.r_addend)
             }));

@@ -56,7 +56,7 @@ pub fn to_json(grains: &GrainResults) -> String {
         let lines: Vec<String> = results.iter().map(text::to_json).collect();
         format!("[\n{}\n]", lines.join(",\n"))
     };
-    text::join_lines(grains, format_results) + "\n"
+    text::format_object(grains, format_results) + "\n"
 }
 
 /// Simulates a cycle in the model with level feet. Returns `None` if two feet pull against the other two: the model

@@ -13,7 +13,7 @@ use lizard_physics::mujoco::{MujocoError, WalkBatch};
 use lizard_physics::pads::{self, PadShape, SURFACES, ShapeDisplacements};
 use lizard_physics::servos::{self, ServoResults, Variant, format_servos_table};
 use lizard_physics::surface::{self, Surface, SurfaceDisplacements, format_surfaces_table};
-use lizard_physics::text::{format_blocks, format_lines};
+use lizard_physics::text::{map_to_json, nested_map_to_json};
 use lizard_physics::{
     Displacement, DisplacementPair, LegDrive, ROBOT_NAMES, Walk, WalkResults, crate_dir,
     format_table, list_walks, load_robot,
@@ -264,10 +264,10 @@ fn run(one_in: Option<usize>) -> Result<Vec<String>, MujocoError> {
     if is_writing {
         for (file, text) in [
             ("figures.json", walk_results.to_json()),
-            ("surfaces.json", format_blocks(&surfaces)),
-            ("assumptions.json", format_lines(&by_assumption)),
-            ("pads.json", format_lines(&by_shape)),
-            ("servos.json", format_blocks(&servo_results)),
+            ("surfaces.json", nested_map_to_json(&surfaces)),
+            ("assumptions.json", map_to_json(&by_assumption)),
+            ("pads.json", map_to_json(&by_shape)),
+            ("servos.json", nested_map_to_json(&servo_results)),
         ] {
             std::fs::write(crate_dir().join(file), text)?;
         }

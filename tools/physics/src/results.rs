@@ -6,7 +6,7 @@ use lizard_robot::Travel;
 use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, FootSetup};
-use crate::text::format_nested_blocks;
+use crate::text::doubly_nested_map_to_json;
 
 /// A displacement in one cycle: mm forward, mm to the left, deg counter-clockwise; rounded to two decimals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -106,7 +106,7 @@ impl WalkResults {
     /// # Panics
     /// Never: names and numbers can always be written as JSON.
     pub fn to_json(&self) -> String {
-        format_nested_blocks(&self.0)
+        doubly_nested_map_to_json(&self.0)
     }
 
     /// Returns the results for a robot's gait in a case; `None` if no results are stored.

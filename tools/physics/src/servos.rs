@@ -171,7 +171,7 @@ pub type ServoResults = BTreeMap<String, BTreeMap<String, DisplacementPair>>;
 /// Loads the results stored in `servos.json`.
 ///
 /// # Panics
-/// If `servos.json` does not have the format of [`crate::text::format_blocks`].
+/// If `servos.json` does not have the format of [`crate::text::nested_map_to_json`].
 pub fn load_stored() -> ServoResults {
     serde_json::from_str(include_str!("../servos.json"))
         .expect("servos.json has the expected format")

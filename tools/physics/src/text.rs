@@ -1,5 +1,5 @@
-//! Text files: JSON of stored displacements with one entry per line, so that a diff shows each change, and the tables
-//! in the documentation.
+//! Stored texts: the displacements as JSON, one entry per line, so that a diff shows each change; and the tables in the
+//! documentation.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,35 +9,26 @@ use serde::Serialize;
 use crate::crate_dir;
 
 /// Formats a map as a JSON object with one line per key.
-///
-/// # Panics
-/// Never: the values are names and numbers.
-pub fn format_lines<T: Serialize>(map: &BTreeMap<String, T>) -> String {
-    join_lines(map, to_json) + "\n"
+pub fn map_to_json<T: Serialize>(map: &BTreeMap<String, T>) -> String {
+    format_object(map, to_json) + "\n"
 }
 
 /// Formats a map of maps as a JSON object of objects with one line per inner key.
-///
-/// # Panics
-/// Never: the values are names and numbers.
-pub fn format_blocks<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
-    join_lines(map, |inner| join_lines(inner, to_json)) + "\n"
+pub fn nested_map_to_json<T: Serialize>(map: &BTreeMap<String, BTreeMap<String, T>>) -> String {
+    format_object(map, |inner| format_object(inner, to_json)) + "\n"
 }
 
-/// Formats maps as a JSON object of objects with one line per key of the innermost map.
-///
-/// # Panics
-/// Never: the values are names and numbers.
-pub fn format_nested_blocks<T: Serialize>(
+/// Formats a map of maps of maps as nested JSON objects with one line per key of the innermost maps.
+pub fn doubly_nested_map_to_json<T: Serialize>(
     map: &BTreeMap<String, BTreeMap<String, BTreeMap<String, T>>>,
 ) -> String {
-    join_lines(map, |outer| {
-        join_lines(outer, |inner| join_lines(inner, to_json))
+    format_object(map, |outer| {
+        format_object(outer, |inner| format_object(inner, to_json))
     }) + "\n"
 }
 
-/// Formats a map as a JSON object, without a line feed at its end.
-pub(crate) fn join_lines<T>(
+/// Formats a map as a JSON object, one line per key, without a trailing newline.
+pub(crate) fn format_object<T>(
     map: &BTreeMap<String, T>,
     format_value: impl Fn(&T) -> String,
 ) -> String {
@@ -48,15 +39,15 @@ pub(crate) fn join_lines<T>(
 }
 
 pub(crate) fn to_json<T: Serialize>(value: &T) -> String {
-    serde_json::to_string(value).expect("numbers can be written as JSON")
+    serde_json::to_string(value).expect("the value is serializable as JSON")
 }
 
-/// Compares the text between `begin` and `end` in one of the project's files with `expected_text`. Replaces the text
-/// instead if `BLESS_PHYSICS` is set.
+/// Asserts that the text between `begin` and `end` in one of the project's files equals `expected_text`; if
+/// `BLESS_PHYSICS` is set, updates the file instead.
 ///
 /// # Panics
-/// If the texts differ, or if `begin` or `end` is missing.
-pub fn check_block(path: &str, begin: &str, end: &str, expected_text: &str) {
+/// Panics if the texts differ, or if `begin` or `end` is missing.
+pub fn check_or_update_block(path: &str, begin: &str, end: &str, expected_text: &str) {
     let file = crate_dir().join("../..").join(path);
     let text = fs::read_to_string(&file).expect(path);
     let start = text.find(begin).expect(begin) + begin.len();

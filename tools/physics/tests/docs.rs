@@ -8,7 +8,7 @@ use lizard_robot::Robot;
 use lizard_physics::assumptions::{self, Assumption};
 use lizard_physics::pads::{self, PadShape, SURFACES};
 use lizard_physics::surface::{self, Surface, format_surfaces_table};
-use lizard_physics::text::{check_block, format_blocks, format_lines};
+use lizard_physics::text::{check_or_update_block, map_to_json, nested_map_to_json};
 use lizard_physics::{
     Case, Crossing, Displacement, FootSetup, LegDrive, ROBOT_NAMES, WalkResults, crate_dir,
     format_displacement_table, format_expected_table, format_table, list_walks, load_robot,
@@ -17,7 +17,7 @@ use lizard_physics::{
 /// Compares the text between a marker and the next end marker of a page with `expected_text`.
 fn check_page(page: &str, marker: &str, expected_text: &str) {
     let begin = format!("<!-- {marker} -->\n");
-    check_block(page, &begin, "<!-- end -->", expected_text);
+    check_or_update_block(page, &begin, "<!-- end -->", expected_text);
 }
 
 #[test]
@@ -198,9 +198,9 @@ fn results_of_all_assumptions_and_pad_shapes_are_stored_as_they_are_formatted() 
     }
     assert_eq!(shapes.len(), PadShape::ALL.len());
     for (file, text) in [
-        ("assumptions.json", format_lines(&stored_assumptions)),
-        ("pads.json", format_lines(&shapes)),
-        ("surfaces.json", format_blocks(&surface::load_stored())),
+        ("assumptions.json", map_to_json(&stored_assumptions)),
+        ("pads.json", map_to_json(&shapes)),
+        ("surfaces.json", nested_map_to_json(&surface::load_stored())),
     ] {
         assert_eq!(
             std::fs::read_to_string(crate_dir().join(file)).expect(file),

@@ -3,7 +3,7 @@
 //! With `BLESS_PHYSICS=1`, as in `make docs`, the tests write the speeds into docs/gaits.md and robots/grain.toml.
 
 use lizard_physics::grains::{self, GAITS, GrainResults, RATIOS};
-use lizard_physics::text::check_block;
+use lizard_physics::text::check_or_update_block;
 use lizard_physics::{crate_dir, load_robot};
 
 /// Returns a gait's speeds at a friction ratio: the model's, if the model has a result, and MuJoCo's. `component` is
@@ -25,10 +25,10 @@ fn compute_speeds(stored: &GrainResults, gait: &str, ratio: f64, component: usiz
 fn the_documentation_and_the_robot_file_have_the_stored_speeds() {
     let table = grains::format_table(&load_robot(grains::ROBOT), &grains::load_stored());
     let begin = "<!-- speeds of robots/grain.toml -->\n```text\n";
-    check_block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
+    check_or_update_block("docs/gaits.md", begin, "```\n<!-- end -->", &table);
     let comment: String = table.lines().map(|line| format!("# {line}\n")).collect();
     let begin = "# leads nowhere.\n#\n";
-    check_block("robots/grain.toml", begin, "#\n# Fit all", &comment);
+    check_or_update_block("robots/grain.toml", begin, "#\n# Fit all", &comment);
 }
 
 #[test]

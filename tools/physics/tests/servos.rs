@@ -4,7 +4,7 @@
 
 use lizard_physics::crate_dir;
 use lizard_physics::servos::{GAITS, Variant, format_servos_table, load_stored};
-use lizard_physics::text::{check_block, format_blocks};
+use lizard_physics::text::{check_or_update_block, nested_map_to_json};
 
 #[test]
 fn the_model_matches_mujoco_for_lagging_servos() {
@@ -42,12 +42,12 @@ fn the_model_matches_mujoco_for_lagging_servos() {
     assert_eq!(stored_count, result_count, "no other results may be stored");
     let text =
         std::fs::read_to_string(crate_dir().join("servos.json")).expect("servos.json is readable");
-    assert_eq!(text, format_blocks(&stored));
+    assert_eq!(text, nested_map_to_json(&stored));
 }
 
 #[test]
 fn the_documentation_has_the_stored_displacements() {
     let begin = "<!-- servos of robots/paper.toml -->\n";
     let table = format_servos_table(&load_stored());
-    check_block("docs/judges.md", begin, "<!-- end -->", &table);
+    check_or_update_block("docs/judges.md", begin, "<!-- end -->", &table);
 }

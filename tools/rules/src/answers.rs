@@ -53,7 +53,9 @@ impl Observer {
                     ));
                 }
                 let min_good_mv = self.limits.min_good_mv();
-                let is_good = self.supply.is_good_since(self.first_rest_at, min_good_mv);
+                let is_good = self
+                    .supply
+                    .has_been_good_since(self.first_rest_at, min_good_mv);
                 let is_repeated = self.first_rest_at > self.started_at
                     && sent_at > self.first_rest_at + MAX_SAVE_TIME;
                 if is_repeated && is_good && self.limits.is_memory_reliable {
@@ -120,7 +122,7 @@ impl Observer {
         let min_good_mv = self.limits.min_good_mv();
         self.limits.is_memory_reliable
             && self.now - pulse_start > MAX_SAVE_TIME
-            && self.supply.is_good_since(pulse_start, min_good_mv)
+            && self.supply.has_been_good_since(pulse_start, min_good_mv)
             && self.disturbed_until <= pulse_start
             && !self.has_unsaved_settings
     }

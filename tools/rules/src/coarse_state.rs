@@ -68,7 +68,7 @@ impl Observer {
                 is_within_ms(self.disturbed_until, 300),
             ),
             self.supply
-                .times_since_crossed(self.limits.levels_mv, self.now)
+                .signed_times_since_crossing(self.limits.levels_mv, self.now)
                 .map(rounded_signed_age),
             (
                 self.reports.stopped_at.map(rounded_age),

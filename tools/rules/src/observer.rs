@@ -321,7 +321,7 @@ impl Observer {
             }
             Event::LinePrinted(first_byte_at, line) => self.check_printed_line(first_byte_at, line),
             Event::Pulse(pulse) => self.check_pulse(pulse),
-            Event::ByteWritten => self.check_write(),
+            Event::ByteWritten => self.check_eeprom_write(),
             Event::Fault => self.reports.record_stop(time),
         }
     }
@@ -337,7 +337,7 @@ impl Observer {
         let is_undisturbed = low_since > self.started_at && self.disturbed_until < low_since;
         if self.reports.stopped_at.is_none()
             && is_undisturbed
-            && self.supply.is_low_since(stop_mv, low_since)
+            && self.supply.has_been_low_since(stop_mv, low_since)
         {
             self.reports.record_stop(self.now);
         }

@@ -167,7 +167,9 @@ impl Observer {
         }
         let stop_mv = self.limits.levels_mv[1].saturating_sub(self.limits.supply_error_mv);
         let low_since = now - 340 * MS;
-        if !has_fault && low_since > self.started_at && self.supply.is_low_since(stop_mv, low_since)
+        if !has_fault
+            && low_since > self.started_at
+            && self.supply.has_been_low_since(stop_mv, low_since)
         {
             self.record_violation(Rule::StopReported, format!("the supply is low: {answer}"));
         }

@@ -4,30 +4,30 @@ use crate::event::{MS, NEVER, Time};
 use crate::observer::Observer;
 use crate::rule::Rule;
 
-/// Time for which the supply must be low before the robot may react: six frames, minus one frame each before the first
-/// reading and after the last.
+/// Time for which the supply must be low before the robot may react: six frames, minus up to one frame before the first
+/// reading and up to one after the last.
 const MIN_LOW_TIME: Time = 80 * MS;
 
 /// Time within which the robot must detect a low supply: six frames and two readings.
 const MAX_LOW_DETECTION_TIME: Time = 220 * MS;
 
-/// Time from a start to the first reading, which is in the second frame.
+/// Time from the firmware's start to the first reading, which is in the second frame.
 const FIRST_READING_TIME: Time = 20 * MS;
 
-/// The history of the supply voltage over two seconds.
+/// The history of the supply voltage over the last two seconds.
 #[derive(Clone, Debug)]
 pub(crate) struct SupplyHistory {
-    /// The voltages in mV, each with the time of its start.
+    /// The voltages in mV, each with the time at which it began.
     voltages: Vec<(Time, u32)>,
     /// The time of the last change to or from a voltage below the good range.
-    pub last_poor_change: Time,
+    pub last_change_below_good: Time,
 }
 
 impl Default for SupplyHistory {
     fn default() -> Self {
         Self {
             voltages: Vec::new(),
-            last_poor_change: NEVER,
+            last_change_below_good: NEVER,
         }
     }
 }
@@ -35,11 +35,11 @@ impl Default for SupplyHistory {
 impl SupplyHistory {
     pub(crate) fn record(&mut self, time: Time, mv: u32, min_good_mv: u32) {
         if self.current_mv() < min_good_mv || mv < min_good_mv {
-            self.last_poor_change = time;
+            self.last_change_below_good = time;
         }
         let is_old = |pair: &[(Time, u32)]| pair[1].0 < time - 2_000 * MS;
-        let old_count = self.voltages.windows(2).take_while(|pair| is_old(pair));
-        let old_count = old_count.count();
+        let old_spans = self.voltages.windows(2).take_while(|pair| is_old(pair));
+        let old_count = old_spans.count();
         self.voltages.drain(..old_count);
         self.voltages.push((time, mv));
     }
@@ -49,8 +49,8 @@ impl SupplyHistory {
     }
 
     /// True if the supply has been at or above `min_good_mv` since a time.
-    pub(crate) fn is_good_since(&self, since: Time, min_good_mv: u32) -> bool {
-        self.current_mv() >= min_good_mv && self.last_poor_change <= since
+    pub(crate) fn has_been_good_since(&self, since: Time, min_good_mv: u32) -> bool {
+        self.current_mv() >= min_good_mv && self.last_change_below_good <= since
     }
 
     /// Returns the total time in `from..to` during which the supply was below `mv`.
@@ -64,7 +64,7 @@ impl SupplyHistory {
     }
 
     /// True if the supply has been below `mv` since a time.
-    pub(crate) fn is_low_since(&self, mv: u32, since: Time) -> bool {
+    pub(crate) fn has_been_low_since(&self, mv: u32, since: Time) -> bool {
         let last_above = self
             .voltages
             .iter()
@@ -73,9 +73,9 @@ impl SupplyHistory {
         first_low.is_some_and(|(start, _)| *start <= since)
     }
 
-    /// Returns the time since the supply last crossed each level: a positive time while the supply is below the level,
-    /// otherwise a time of zero or less.
-    pub(crate) fn times_since_crossed(&self, levels_mv: [u32; 3], now: Time) -> [Time; 3] {
+    /// Returns, for each level, the time since the supply last crossed it: plus 1 if the supply is now below the level,
+    /// otherwise negated.
+    pub(crate) fn signed_times_since_crossing(&self, levels_mv: [u32; 3], now: Time) -> [Time; 3] {
         levels_mv.map(|mv| {
             let is_low = self.current_mv() < mv;
             let is_same_side = |(_, span_mv): &&(Time, u32)| (*span_mv < mv) == is_low;
@@ -87,7 +87,7 @@ impl SupplyHistory {
 }
 
 impl Observer {
-    /// Checks a report on the console that the robot stopped or rested because of the supply.
+    /// Checks a report on the console that a low supply has made the robot stop or rest.
     pub(crate) fn check_supply_report(&mut self, report: &str) {
         let [_, stop_mv, rest_mv] = self.limits.levels_mv;
         let level_mv = match () {
@@ -106,22 +106,20 @@ impl Observer {
         }
     }
 
-    /// Checks the write of a byte to the EEPROM.
-    pub(crate) fn check_write(&mut self) {
+    /// Checks a byte write to the EEPROM.
+    pub(crate) fn check_eeprom_write(&mut self) {
         let now = self.now;
         if now - self.started_at < FIRST_READING_TIME {
             let us = (now - self.started_at) / 16;
             self.record_violation(
                 Rule::SafeWrites,
-                format!("a byte is written {us} us after a start"),
+                format!("a byte is written {us} us after the start"),
             );
         }
         let slow_mv = self.limits.levels_mv[0].saturating_sub(self.limits.supply_error_mv);
-        // Main takes no readings while it is stalled.
-        if self.supply.is_low_since(
-            slow_mv,
-            now - MAX_LOW_DETECTION_TIME - self.stalled_time_before(now),
-        ) {
+        // The main loop takes no readings while it is stalled.
+        let since = now - MAX_LOW_DETECTION_TIME - self.stalled_time_before(now);
+        if self.supply.has_been_low_since(slow_mv, since) {
             self.record_violation(
                 Rule::SafeWrites,
                 "a byte is written while the supply is too low",

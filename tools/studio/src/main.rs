@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     ) = (800.0, 15.0, 90.0);
     (studio.camera_roll, studio.aim) = (0.0, [0.0; 2]);
     studio.deck_tag_height = 95.0;
-    studio.hidden_tags = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
+    studio.covered_tags = arguments.map(|id| id.parse()).collect::<Result<_, _>>()?;
     let gait = paper_gait("walk");
     let truth = true_displacement(&gait);
     let start = -truth.forward * cycle_count as f64 / 2.0;

@@ -1,4 +1,4 @@
-//! Renders frames as a camera would take them of the sheet and the robot, with noise, blur, distortion and uneven
+//! Renders frames of the sheet and the robot as a camera would take them, with noise, blur, distortion and uneven
 //! light.
 //!
 //! The renderer and the tested code have only the design of the sheet in common: the renderer traces rays and uses no
@@ -31,10 +31,11 @@ const PIXEL_SAMPLES: usize = 3;
 const SHUTTER_SAMPLES: usize = 3;
 /// Number of random numbers for the noise.
 const NOISE_COUNT: usize = 1 << 16;
-/// Number of successive pixels that use successive random numbers.
+/// Number of successive pixels that use one run of random numbers.
 const NOISE_RUN_LENGTH: usize = 64;
 
-/// The scene: the floor, the sheet and the camera.
+/// The studio: the floor, the two strips of the sheet, and the camera. The robot carries the sheet's card with the deck
+/// tag.
 #[derive(Clone)]
 pub struct Studio {
     /// Width and height of the frame, pixels.
@@ -65,7 +66,7 @@ pub struct Studio {
     /// Height of the deck tag, mm.
     pub deck_tag_height: f64,
     /// Ids of the tags that are covered.
-    pub hidden_tags: Vec<usize>,
+    pub covered_tags: Vec<usize>,
     /// Round objects or reflections on the floor: x, y, radius, mm, and their grey.
     pub discs: Vec<[f64; 4]>,
     /// Exposure time, s.
@@ -86,7 +87,7 @@ impl Studio {
     /// Returns a studio with a random camera that sees both strips completely.
     pub fn random(rng: &mut Rng) -> Self {
         loop {
-            let studio = Self::random_camera(rng);
+            let studio = Self::with_random_camera(rng);
             if studio.sees_strips() {
                 return studio;
             }
@@ -112,7 +113,7 @@ impl Studio {
     }
 
     /// Returns a studio with a random camera, which may not see the strips.
-    fn random_camera(rng: &mut Rng) -> Self {
+    fn with_random_camera(rng: &mut Rng) -> Self {
         let mut random_between = |min: f64, max: f64| min + (max - min) * rng.f64();
         Self {
             size: [1280, 720],
@@ -139,7 +140,7 @@ impl Studio {
             print_scale: [1.0; 2],
             tag_distance_factor: 1.0,
             deck_tag_height: 83.0,
-            hidden_tags: Vec::new(),
+            covered_tags: Vec::new(),
             discs: Vec::new(),
             exposure_s: 1.0 / 80.0,
             readout_s: 0.0,
@@ -205,11 +206,12 @@ impl Studio {
                 let [u, v] = LocalAxes::new(self.strips[strip]).to_local(pixel_centre);
                 u.abs() < sheet::STRIP_SIZE[0] && v.abs() < sheet::STRIP_SIZE[1]
             });
-            *grey = match is_near {
-                true => average_over_pixel(|dx, dy| {
+            *grey = if is_near {
+                average_over_pixel(|dx, dy| {
                     self.floor_grey_at(optics.point_at_height([x + dx, y + dy], 0.0))
-                }) as f32,
-                false => self.floor_grey as f32,
+                }) as f32
+            } else {
+                self.floor_grey as f32
             };
         }
         Background {
@@ -237,8 +239,8 @@ impl Studio {
             }
             for id in 2 * strip..2 * strip + 2 {
                 let [x, y] = sheet::centre_on_strip(id);
-                if let Some(grey) = tag_grey(id, [u - self.tag_distance_factor * x, v - y]) {
-                    return if self.hidden_tags.contains(&id) {
+                if let Some(grey) = tag_grey_at(id, [u - self.tag_distance_factor * x, v - y]) {
+                    return if self.covered_tags.contains(&id) {
                         BLACK_GREY
                     } else {
                         grey
@@ -258,8 +260,8 @@ impl Studio {
         if x.abs() > sheet::CARD_SIZE[0] / 2.0 || y < min_y || y > min_y + sheet::CARD_SIZE[1] {
             return None;
         }
-        Some(match tag_grey(sheet::DECK_TAG_ID, [x, y]) {
-            Some(_) if self.hidden_tags.contains(&sheet::DECK_TAG_ID) => PAPER_GREY,
+        Some(match tag_grey_at(sheet::DECK_TAG_ID, [x, y]) {
+            Some(_) if self.covered_tags.contains(&sheet::DECK_TAG_ID) => PAPER_GREY,
             Some(grey) => grey,
             None => PAPER_GREY,
         })
@@ -330,14 +332,9 @@ impl Optics {
 }
 
 impl Background {
-    /// Renders a frame with the robot; the exposure is centred on `seconds`. `pose_at` returns the robot's pose at a
+    /// Renders a frame with the robot; `time_s` is the middle of the exposure. `pose_at` returns the robot's pose at a
     /// time.
-    pub fn render_frame(
-        &self,
-        seconds: f64,
-        pose_at: impl Fn(f64) -> Pose,
-        rng: &mut Rng,
-    ) -> Frame {
+    pub fn render_frame(&self, time_s: f64, pose_at: impl Fn(f64) -> Pose, rng: &mut Rng) -> Frame {
         let studio = &self.studio;
         let [width, height] = studio.size;
         let mut grey_levels = self.grey_levels.clone();
@@ -347,7 +344,7 @@ impl Background {
             std::array::from_fn(|i| {
                 let shutter_delay =
                     ((i as f64 + 0.5) / SHUTTER_SAMPLES as f64 - 0.5) * studio.exposure_s;
-                LocalAxes::new(pose_at(seconds + row_delay + shutter_delay))
+                LocalAxes::new(pose_at(time_s + row_delay + shutter_delay))
             })
         };
         let rows: Vec<_> = (0..height).map(poses_in_row).collect();
@@ -400,11 +397,11 @@ impl Background {
         Frame::new(width, height, grey).expect("the frame has a grey for each pixel")
     }
 
-    /// Calls `visit` for every pixel around the robot's body or card, with the pixel's index, column and row.
-    /// `half_size` is half the width and length of the body or card, mm.
+    /// Calls `visit` for every pixel of the rectangle around the robot's body or card, with the pixel's index, column
+    /// and row. `half_size` is half the width and length of the body or card, mm.
     fn for_each_pixel(
         &self,
-        LocalAxes([x, y], [cos, sin]): LocalAxes,
+        LocalAxes { x, y, cos, sin }: LocalAxes,
         half_size: [f64; 2],
         height: f64,
         mut visit: impl FnMut(usize, [f64; 2]),
@@ -441,7 +438,7 @@ fn average_over_pixel(sample: impl Fn(f64, f64) -> f64) -> f64 {
 }
 
 /// Returns the grey of a tag at a point relative to the tag's centre; `None` outside the tag.
-fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
+fn tag_grey_at(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
     let cell = sheet::tag_edge(id) / sheet::CELLS_PER_SIDE as f64;
     let half_count = sheet::CELLS_PER_SIDE as f64 / 2.0;
     let [column, row] = [x / cell + half_count, half_count - y / cell].map(f64::floor);
@@ -457,16 +454,22 @@ fn tag_grey(id: usize, [x, y]: [f64; 2]) -> Option<f64> {
 
 /// The axes of a pose: the origin, and the cosine and sine of the heading.
 #[derive(Clone, Copy)]
-struct LocalAxes([f64; 2], [f64; 2]);
+struct LocalAxes {
+    x: f64,
+    y: f64,
+    cos: f64,
+    sin: f64,
+}
 
 impl LocalAxes {
     fn new([x, y, heading]: Pose) -> Self {
-        Self([x, y], [heading.cos(), heading.sin()])
+        let (sin, cos) = heading.sin_cos();
+        Self { x, y, cos, sin }
     }
 
     /// Converts a point on the floor to these axes: along the heading, and to the left.
     fn to_local(self, point: [f64; 2]) -> [f64; 2] {
-        let Self([x, y], [cos, sin]) = self;
+        let Self { x, y, cos, sin } = self;
         let (dx, dy) = (point[0] - x, point[1] - y);
         [dx * cos + dy * sin, dy * cos - dx * sin]
     }

@@ -1,4 +1,4 @@
-// The link to a simulated UNO, which runs its image cycle by cycle, only in `advance`.
+// The link to a simulated UNO. The UNO runs its image cycle by cycle, and only while `advance` is called.
 import type { Four } from '../robot';
 import { SimulatedBoard, FREQUENCY_HZ } from '../uno/simulated-board';
 import { FrameCollector } from '../uno/frame-collector';
@@ -11,9 +11,9 @@ const SLICE_MS = 2;
 /** Callbacks for the servo pulses of the simulated board. */
 export interface UnoListener {
   /** Receives a frame: the pulse width of each servo in cycles, 0 for none, and the cycle of the first rising edge. */
-  onFrame(widths: Four<number>, cycle: number): void;
+  onFrame(widths: Four<number>, startCycle: number): void;
   /** Receives a pulse: the Arduino number of its pin, the cycle of its rising edge, and its width in cycles. */
-  onPulse(pin: number, rise: number, width: number): void;
+  onPulse(pin: number, riseCycle: number, width: number): void;
 }
 
 export class UnoLink implements Link {
@@ -24,7 +24,7 @@ export class UnoLink implements Link {
   private readonly frameCollector: FrameCollector;
   /** Bytes that the board has sent in the current slice. */
   private bytesFromBoard: number[] = [];
-  /** Remaining cycles to run; negative if the chip has run too far. */
+  /** Remaining cycles to run; negative if the chip has overrun its time. */
   private cyclesToRun = 0;
 
   /** `pins` are the Arduino numbers of the pins of servos A1 to A4. */
@@ -35,9 +35,9 @@ export class UnoLink implements Link {
   ) {
     this.frameCollector = new FrameCollector(pins, listener.onFrame);
     board.onByte = (byte) => this.bytesFromBoard.push(byte);
-    board.onPulse = (pin, rise, width) => {
-      listener.onPulse(pin, rise, width);
-      this.frameCollector.add(pin, rise, width);
+    board.onPulse = (pin, riseCycle, width) => {
+      listener.onPulse(pin, riseCycle, width);
+      this.frameCollector.add(pin, riseCycle, width);
     };
   }
 

@@ -1,4 +1,4 @@
-// The panel of the servos' calibration: `cal` reads the settings, the inputs change them, and `save` stores them.
+// The servo calibration panel: `cal` reads the settings, the inputs change them, and `save` stores them.
 import { loadBoardModule } from '../board-module';
 import type { ServoSettings } from '../robot';
 import type { Session } from '../session';
@@ -8,7 +8,7 @@ import { element, make } from './elements';
 import { isShown } from './rooms';
 
 /** The inputs of a servo. */
-interface Row {
+interface ServoInputs {
   trim: HTMLInputElement;
   scale: HTMLInputElement;
   min: HTMLInputElement;
@@ -17,10 +17,10 @@ interface Row {
 }
 
 export class CalibrationView {
-  private readonly rowBox = element('calibration');
+  private readonly container = element('calibration');
   private readonly message = element('cal-message');
-  private rows: Row[] = [];
-  /** True after an unanswered line: the shown settings may differ from the robot's settings. */
+  private servoInputs: ServoInputs[] = [];
+  /** True after a command without an answer: the shown settings may differ from the robot's settings. */
   private mayBeOutdated = false;
 
   constructor(private readonly session: Session) {
@@ -31,32 +31,38 @@ export class CalibrationView {
     }
     const panel = element<HTMLDetailsElement>('calibrate');
     panel.addEventListener('toggle', () => isShown(panel) && void this.read());
-    session.state.status.subscribe(() => this.refresh());
+    session.state.status.subscribe(() => this.rereadIfOutdated());
   }
 
   /** Reads the robot's settings and shows them. */
   async read(): Promise<void> {
     const answer = await this.session.ask(WORDS.cal, true);
-    const board = await loadBoardModule().catch((error: unknown) => (this.message.textContent = getMessage(error)));
-    const settings = answer && typeof board === 'object' && board.readCalibration(answer.notes);
+    let board;
+    try {
+      board = await loadBoardModule();
+    } catch (error) {
+      this.message.textContent = getMessage(error);
+      return;
+    }
+    const settings = answer && board.readCalibration(answer.notes);
     if (!settings) return;
     this.mayBeOutdated = false;
-    if (this.rows.length === 0) this.buildRows();
-    settings.servos.forEach((servo, n) => this.showServo(n, servo));
+    if (this.servoInputs.length === 0) this.buildInputs();
+    settings.servos.forEach((servo, index) => this.showServo(index, servo));
   }
 
   /** Reads the settings again if the shown settings may be outdated; called when the robot answers. */
-  private refresh(): void {
+  private rereadIfOutdated(): void {
     if (this.mayBeOutdated) void this.read();
   }
 
-  private showServo(servo: number, { trim, limit, dir, scale }: ServoSettings): void {
-    const row = this.rows[servo];
-    row.trim.value = String(trim);
-    row.trim.dispatchEvent(new Event('shown'));
-    row.scale.value = String(scale);
-    [row.min.value, row.max.value] = limit.map(String);
-    row.dir.value = dir;
+  private showServo(index: number, { trim, limit, dir, scale }: ServoSettings): void {
+    const inputs = this.servoInputs[index];
+    inputs.trim.value = String(trim);
+    inputs.trim.dispatchEvent(new Event('value-set'));
+    inputs.scale.value = String(scale);
+    [inputs.min.value, inputs.max.value] = limit.map(String);
+    inputs.dir.value = dir;
   }
 
   private async send(line: string): Promise<void> {
@@ -66,13 +72,13 @@ export class CalibrationView {
     if (answer && !answer.ok) await this.read();
   }
 
-  private buildRows(): void {
-    this.rows = [1, 2, 3, 4].map((servo) => {
-      const group = make('fieldset', {}, make('legend', {}, `A${servo}`));
-      const trim = this.makeTrim(group, servo);
+  private buildInputs(): void {
+    this.servoInputs = [1, 2, 3, 4].map((servoNumber) => {
+      const group = make('fieldset', {}, make('legend', {}, `A${servoNumber}`));
+      const trim = this.makeTrim(group, servoNumber);
       const numbers = make('div', { className: 'numbers' });
       group.append(numbers);
-      this.rowBox.append(group);
+      this.container.append(group);
       const addNumber = (label: string, step: string) => {
         const input = make('input', { type: 'number', step });
         numbers.append(make('label', {}, label, input));
@@ -84,22 +90,22 @@ export class CalibrationView {
       const dir = make('select', {}, new Option('left (+)', '+'), new Option('right (−)', '-'));
       numbers.append(make('label', {}, 'longer pulse turns', dir));
       for (const input of [min, max]) {
-        input.addEventListener('change', () => void this.send(`${WORDS.limit} ${servo} ${min.value} ${max.value}`));
+        input.addEventListener('change', () => void this.send(`${WORDS.limit} ${servoNumber} ${min.value} ${max.value}`));
       }
-      scale.addEventListener('change', () => void this.send(`${WORDS.scale} ${servo} ${scale.value}`));
-      dir.addEventListener('change', () => void this.send(`${WORDS.dir} ${servo} ${dir.value}`));
+      scale.addEventListener('change', () => void this.send(`${WORDS.scale} ${servoNumber} ${scale.value}`));
+      dir.addEventListener('change', () => void this.send(`${WORDS.dir} ${servoNumber} ${dir.value}`));
       return { trim, scale, min, max, dir };
     });
   }
 
-  private makeTrim(group: HTMLElement, servo: number): HTMLInputElement {
+  private makeTrim(group: HTMLElement, servoNumber: number): HTMLInputElement {
     const trim = make('input', { type: 'range', min: '-20', max: '20', step: '0.25' });
     const output = make('output', {});
     group.append(make('label', { className: 'slider' }, 'trim ', trim, output));
     const showTrim = () => (output.textContent = `${Number(trim.value).toFixed(2)}°`);
     trim.addEventListener('input', showTrim);
-    trim.addEventListener('shown', showTrim);
-    trim.addEventListener('change', () => void this.send(`${WORDS.trim} ${servo} ${trim.value}`));
+    trim.addEventListener('value-set', showTrim);
+    trim.addEventListener('change', () => void this.send(`${WORDS.trim} ${servoNumber} ${trim.value}`));
     return trim;
   }
 }

@@ -8,10 +8,10 @@ import type { Session } from '../session';
 import { WORDS } from '../words';
 import { element, make, showMessage } from './elements';
 
-/** Number of characters that fit on a button of normal width. */
-const BUTTON_CHARACTERS = 13;
-/** Load from which the page warns of little reserve. */
-const HIGH_UTILISATION = 0.9;
+/** Largest number of characters that fit on a button of normal width. */
+const MAX_BUTTON_CHARACTERS = 13;
+/** Load at which the page starts to warn of a small reserve. */
+const HIGH_LOAD = 0.9;
 /** The longest text of a prediction, for which a button reserves space. */
 const LONGEST_PREDICTION = '-999.9 mm, -99.9°';
 
@@ -46,27 +46,27 @@ export class DriveView {
     });
     session.state.refusal.subscribe((refusal) => showMessage(this.message, refusal));
     session.followRobot((description) => this.showRobot(description));
-    session.state.gait.subscribe((gait) => this.showActivity(gait));
+    session.state.gait.subscribe((gait) => this.markCurrentCommand(gait));
     effect(() => this.showPredictions());
   }
 
-  /** Shows the buttons of another robot. */
+  /** Replaces the buttons with those of a new robot. */
   private showRobot({ gaits, routines }: Description): void {
     this.buttonList.replaceChildren();
     this.buttons = [...gaits, ...routines.map((command) => ({ command, moves: false }))].map(({ command, moves }) => {
       const predictionLabel = make('span', {});
       const predictionBox = make('small', {}, predictionLabel);
       const loadLabel = make('span', { className: 'load', title: 'fraction of the servos’ torque-speed line that the gait uses at this pace' });
-      if (moves) predictionBox.dataset.room = LONGEST_PREDICTION;
+      if (moves) predictionBox.dataset.longestText = LONGEST_PREDICTION;
       // A button with a long name is twice as wide.
-      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > BUTTON_CHARACTERS ? 'long' : '' }, command, predictionBox, ...(moves ? [loadLabel] : []));
+      const button = make('button', { type: 'button', ariaPressed: 'false', className: command.length > MAX_BUTTON_CHARACTERS ? 'long' : '' }, command, predictionBox, ...(moves ? [loadLabel] : []));
       button.dataset.command = command;
       this.buttonList.append(button);
       return { command, button, predictionLabel, loadLabel, moves };
     });
     this.session.state.refusal.value = '';
     // A connected board continues its gait.
-    this.showActivity(this.session.gait);
+    this.markCurrentCommand(this.session.gait);
   }
 
   /**
@@ -76,26 +76,26 @@ export class DriveView {
   private showPredictions(): void {
     const predictions = this.predictor.predictions.value;
     const pace = this.session.state.pace.value;
-    const areAllPredicted = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
-    let [hardestGait, highestUtilisation] = ['', 0];
+    const allPredicted = this.buttons.every(({ command, moves }) => !moves || predictions.has(command));
+    let [highestLoadGait, highestLoad] = ['', 0];
     for (const { command, predictionLabel, loadLabel } of this.buttons) {
       const prediction = predictions.get(command) ?? null;
       predictionLabel.textContent = formatDisplacement(prediction);
-      const utilisations = prediction?.utilisations;
-      const utilisation = utilisations?.[Math.ceil((pace * utilisations.length) / 100) - 1];
-      const isHighUtilisation = utilisation !== undefined && utilisation >= HIGH_UTILISATION;
-      loadLabel.classList.toggle('tight', isHighUtilisation);
-      loadLabel.textContent = utilisation === undefined ? '' : `${isHighUtilisation ? '⚠ ' : ''}load ${utilisation.toFixed(2)}`;
-      if (areAllPredicted && utilisation !== undefined && utilisation > highestUtilisation) [hardestGait, highestUtilisation] = [command, utilisation];
+      const loads = prediction?.utilisations;
+      const load = loads?.[Math.ceil((pace * loads.length) / 100) - 1];
+      const isHigh = load !== undefined && load >= HIGH_LOAD;
+      loadLabel.classList.toggle('high-load', isHigh);
+      loadLabel.textContent = load === undefined ? '' : `${isHigh ? '⚠ ' : ''}load ${load.toFixed(2)}`;
+      if (allPredicted && load !== undefined && load > highestLoad) [highestLoadGait, highestLoad] = [command, load];
     }
     const note = element('load-note');
-    note.classList.toggle('warning', highestUtilisation >= HIGH_UTILISATION);
-    const advice = highestUtilisation >= 1 ? ': the servos lag behind their pulses; choose a slower pace' : highestUtilisation >= HIGH_UTILISATION ? ': the reserve is small' : '';
-    note.textContent = hardestGait === '' ? '' : `${hardestGait} has the highest load: it uses ${highestUtilisation.toFixed(2)} of the servos’ torque-speed line at a pace of ${pace} %${advice}.`;
+    note.classList.toggle('warning', highestLoad >= HIGH_LOAD);
+    const advice = highestLoad >= 1 ? ': the servos lag behind their pulses; choose a slower pace' : highestLoad >= HIGH_LOAD ? ': the reserve is small' : '';
+    note.textContent = highestLoadGait === '' ? '' : `${highestLoadGait} has the highest load: it uses ${highestLoad.toFixed(2)} of the servos’ torque-speed line at a pace of ${pace} %${advice}.`;
   }
 
   /** Marks the button of the robot's current gait or routine. */
-  private showActivity(command: string): void {
+  private markCurrentCommand(command: string): void {
     for (const { button, command: buttonCommand } of this.buttons) {
       button.setAttribute('aria-pressed', String(buttonCommand === command));
     }

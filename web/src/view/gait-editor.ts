@@ -74,7 +74,7 @@ export class GaitEditorView {
     this.fillTemplateList(description);
     if (!this.gait || this.templateList.value === '') return this.editTemplate();
     this.showGait();
-    this.trial.predict();
+    this.trial.requestTrial();
   }
 
   private fillTemplateList({ gaits }: Description): void {
@@ -91,7 +91,7 @@ export class GaitEditorView {
     if (!bars) return this.trial.setMessage('This robot has no gait of four bars to start from.');
     this.gait = { ...bars, name: this.nameInput.value || 'mine' };
     this.showGait();
-    this.trial.predict();
+    this.trial.requestTrial();
   }
 
   private changeGait(changes: Partial<Bars>): void {
@@ -99,7 +99,7 @@ export class GaitEditorView {
     this.gait = { ...this.gait, ...changes };
     browserStorage.putGait(this.gait);
     this.showGait();
-    this.trial.predict();
+    this.trial.requestTrial();
   }
 
   private setLegValue(key: 'start' | 'gain', leg: number, value: number): void {

@@ -7,11 +7,11 @@ import { followShownRobot } from './rooms';
 import { TrialView } from './trial';
 import type { BoardWriter } from './writer';
 
-/** Smallest distance between two recorded points. */
+/** Smallest distance between two consecutive recorded points. */
 const MIN_POINT_DISTANCE_MM = 0.3;
 /** Smallest number of points of a line; fewer points count as a tap. */
 const MIN_POINT_COUNT = 8;
-/** Number of points of a predefined line. */
+/** Number of points of a predefined shape. */
 const SHAPE_POINT_COUNT = 96;
 /** Margin around the workspace in the picture. */
 const MARGIN_MM = 4;
@@ -19,7 +19,7 @@ const MARGIN_MM = 4;
 type Point = [number, number];
 
 /**
- * The predefined lines: each function returns the line's point at an angle of 0 to 2π, relative to the neutral point.
+ * The predefined shapes: each function returns the shape's point at an angle of 0 to 2π, relative to the neutral point.
  * The unit is a tenth of the distance between the base and the neutral point.
  */
 const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
@@ -29,25 +29,25 @@ const SHAPES: Record<string, ((angle: number) => Point) | undefined> = {
   nod: (angle) => [0, Math.sin(angle)],
 };
 
-/** The key of a gesture's number with an input. */
-type GestureNumber = 'period' | 'size' | 'terms';
+/** The numeric properties of a gesture that have an input. */
+type NumericKey = 'period' | 'size' | 'terms';
 /** Ranges of the inputs: the period in s, the size in percent, and the number of terms of the Fourier series. */
-const NUMBER_RANGES: Record<GestureNumber, Range> = {
+const NUMBER_RANGES: Record<NumericKey, Range> = {
   period: { min: 0.2, max: 20, step: 0.1 },
   size: { min: 5, max: 200, step: 1 },
   terms: { min: 1, max: 16, step: 1 },
 };
 
 export class GestureEditorView {
-  private readonly plane = element<HTMLElement>('path-plane') as unknown as SVGSVGElement;
-  private readonly endList = element<HTMLSelectElement>('path-end');
-  private readonly shapeList = element<HTMLSelectElement>('path-shape');
-  private readonly nameInput = element<HTMLInputElement>('path-name');
+  private readonly plane = element<HTMLElement>('gesture-plane') as unknown as SVGSVGElement;
+  private readonly endList = element<HTMLSelectElement>('gesture-end');
+  private readonly shapeList = element<HTMLSelectElement>('gesture-shape');
+  private readonly nameInput = element<HTMLInputElement>('gesture-name');
   private readonly trial: TrialView;
-  private readonly workspacePath = this.plane.appendChild(makeSvg('path', { class: 'allowed' }));
+  private readonly workspacePath = this.plane.appendChild(makeSvg('path', { class: 'workspace' }));
   private readonly baseLine = this.plane.appendChild(makeSvg('path', { class: 'base' }));
   private readonly drawnLine = this.plane.appendChild(makeSvg('path', { class: 'line' }));
-  private readonly smoothedLine = this.plane.appendChild(makeSvg('path', { class: 'rounded' }));
+  private readonly smoothedPath = this.plane.appendChild(makeSvg('path', { class: 'smoothed' }));
   private readonly neutralDot = this.plane.appendChild(makeSvg('circle', { class: 'neutral', r: 1.5 }));
   /** The edited gesture; it has no points until a line is drawn or a shape is chosen. */
   private gesture: DrawnGait = { name: 'gesture', end: 'head', period: 4, size: 1, terms: 4, points: [] };
@@ -59,22 +59,22 @@ export class GestureEditorView {
     writer: BoardWriter,
   ) {
     const editedGait = () => (this.gesture.points.length === 0 ? null : this.gesture);
-    this.trial = new TrialView(session, writer, { prefix: 'path', editedGait, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
+    this.trial = new TrialView(session, writer, { prefix: 'gesture', editedGait, change: (key, value) => key !== 'amplitude' && this.changeGesture({ [key]: value }) });
     this.endList.addEventListener('change', () => {
       this.gesture = { ...this.gesture, end: this.endList.value as End };
       this.showPlane();
     });
     this.shapeList.addEventListener('change', () => this.showPlane());
     this.nameInput.addEventListener('input', () => this.changeGesture({ name: this.nameInput.value.trim().replaceAll(' ', '-') }));
-    for (const key of Object.keys(NUMBER_RANGES) as GestureNumber[]) {
-      setUpNumberInput(element(`path-${key}`), NUMBER_RANGES[key], (value) => {
+    for (const key of Object.keys(NUMBER_RANGES) as NumericKey[]) {
+      setUpNumberInput(element(`gesture-${key}`), NUMBER_RANGES[key], (value) => {
         if (value === null) return;
         this.changeGesture({ [key]: key === 'size' ? value / 100 : key === 'terms' ? Math.round(value) : value });
       });
     }
     this.recordLines();
     // A drawn line stays when the robot changes.
-    followShownRobot(element<HTMLDetailsElement>('path-editor'), session, () => this.showPlane(this.gesture.points.length > 0));
+    followShownRobot(element<HTMLDetailsElement>('gesture-editor'), session, () => this.showPlane(this.gesture.points.length > 0));
   }
 
   /** Shows the plane of the chosen end with the current line if `keepsLine`, else with the chosen shape. */
@@ -94,17 +94,17 @@ export class GestureEditorView {
   private changeGesture(changes: Partial<DrawnGait>): void {
     this.gesture = { ...this.gesture, ...changes };
     this.showGesture();
-    this.trial.predict();
+    this.trial.requestTrial();
   }
 
-  /** Converts a point between the plane and the picture. Outward is up for the head and down for the tail. */
-  private toPicture([x, y]: Point): Point {
+  /** Converts a point from the plane to the picture, or back. Outward is up for the head and down for the tail. */
+  private convertPoint([x, y]: Point): Point {
     return [x, this.gesture.end === 'head' ? -y : y];
   }
 
   /** Returns the SVG path through points, closed by default. */
   private formatPath(points: Point[], suffix = 'Z'): string {
-    return points.length === 0 ? '' : `M ${points.map((point) => this.toPicture(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${suffix}`;
+    return points.length === 0 ? '' : `M ${points.map((point) => this.convertPoint(point).map((value) => value.toFixed(2)).join(' ')).join(' L ')} ${suffix}`;
   }
 
   /** Draws the background: the workspace, the base and the neutral point. */
@@ -123,7 +123,7 @@ export class GestureEditorView {
     }
     this.workspacePath.setAttribute('d', cells.join(' '));
     this.baseLine.setAttribute('d', this.formatPath(shafts, ''));
-    const [x, y] = this.toPicture(neutral);
+    const [x, y] = this.convertPoint(neutral);
     setAttributes(this.neutralDot, { cx: x, cy: y });
     const farY = firstY + rows * spacing;
     const [left, width] = [Math.min(firstX, shafts[0][0]) - MARGIN_MM, Math.max(columns * spacing, shafts[1][0] - shafts[0][0]) + 2 * MARGIN_MM];
@@ -133,14 +133,14 @@ export class GestureEditorView {
 
   private showGesture(): void {
     const { gesture } = this;
-    const put = (name: GestureNumber, value: number) => putNumber(element(`path-${name}`), Number(value.toFixed(2)));
+    const put = (key: NumericKey, value: number) => putNumber(element(`gesture-${key}`), Number(value.toFixed(2)));
     put('period', gesture.period);
     put('size', gesture.size * 100);
     put('terms', gesture.terms);
     if (document.activeElement !== this.nameInput) this.nameInput.value = gesture.name;
     this.endList.value = gesture.end;
     this.drawnLine.setAttribute('d', this.formatPath(gesture.points));
-    this.smoothedLine.setAttribute('d', this.formatPath((gesture.points.length > 0 && this.session.robot.smoothedPath(gesture)) || []));
+    this.smoothedPath.setAttribute('d', this.formatPath((gesture.points.length > 0 && this.session.robot.smoothedPath(gesture)) || []));
   }
 
   /** Records the lines that the user draws with a finger or a mouse. */
@@ -150,7 +150,7 @@ export class GestureEditorView {
       const matrix = this.plane.getScreenCTM();
       if (!matrix) return null;
       const { x, y } = new DOMPoint(clientX, clientY).matrixTransform(matrix.inverse());
-      return this.toPicture([x, y]);
+      return this.convertPoint([x, y]);
     };
     const addPoint = (event: PointerEvent) => {
       const nextPoint = toPlane(event);
@@ -163,7 +163,7 @@ export class GestureEditorView {
       if (!this.workspace) return;
       this.plane.setPointerCapture(event.pointerId);
       points = [];
-      this.smoothedLine.setAttribute('d', '');
+      this.smoothedPath.setAttribute('d', '');
       addPoint(event);
     });
     this.plane.addEventListener('pointermove', addPoint);

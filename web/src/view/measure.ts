@@ -156,8 +156,8 @@ export class MeasureView {
     if (this.room.hidden || this.view.hidden) return;
     const { framesPerSecond, hiddenTagsMessage, searchMs } = this.tracker;
     setText(element('measure-rate'), `${framesPerSecond.toFixed(0)} frames per second, each searched in ${searchMs.toFixed(0)} ms`);
-    setText(element('measure-seen'), hiddenTagsMessage || 'All five tags are visible.');
-    element('measure-seen').classList.toggle('refusal', hiddenTagsMessage !== '');
+    setText(element('measure-visible-tags'), hiddenTagsMessage || 'All five tags are visible.');
+    element('measure-visible-tags').classList.toggle('refusal', hiddenTagsMessage !== '');
   }
 
   private getVideoWorker(): Promise<VideoWorker> {
@@ -235,7 +235,7 @@ export class MeasureView {
     }
   }
 
-  /** The whole video as one walk of the chosen gait; empty if the gaits are to be recognized by their paths. */
+  /** The whole video as one walk of the chosen gait; empty if the gaits are to be recognised by their paths. */
   private get wholeVideoWalks(): RequestedWalk[] {
     const gait = this.gaitList.value;
     return gait === '' ? [] : [{ gait, during: null }];
@@ -326,7 +326,7 @@ export class MeasureView {
     const videoWorker = await this.getVideoWorker();
     const { height = null, ruler } = this.values;
     try {
-      const results = await videoWorker.call((video) => video.measure({ toml: this.session.toml, speed, height, ruler: ruler ?? 100, walks }));
+      const results = await videoWorker.call((video) => video.measure({ toml: this.session.toml, speed, deck_height: height, ruler_length: ruler ?? 100, walks }));
       this.resultsView.show(results.gaits);
       problems.push(...results.problems);
     } catch (error) {
@@ -349,7 +349,7 @@ export class MeasureView {
     const { task, source, hasVideo } = this;
     const isPageDriving = this.driverList.value === 'page' && !hasVideo;
     this.view.hidden = !source.isCamera && task !== 'play';
-    element('measure-rate').hidden = element('measure-seen').hidden = this.view.hidden;
+    element('measure-rate').hidden = element('measure-visible-tags').hidden = this.view.hidden;
     this.cameraButton.setAttribute('aria-pressed', String(source.isCamera));
     element('measure-one').hidden = isPageDriving;
     this.gaitBoxes.hidden = !isPageDriving;

@@ -1,6 +1,6 @@
 // The panel that records runs, saves pictures and videos, and makes a second robot walk next to the page's robot.
 import { Companion } from '../companion';
-import { restartWithGait } from '../gaits/try-gait';
+import { restartWithGait } from '../gaits/apply-gait';
 import { MAX_SECONDS, Recording } from '../recording';
 import { type Bars, type Description, type Four, type Frame, Robot } from '../robot';
 import type { Session } from '../session';

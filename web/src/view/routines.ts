@@ -38,7 +38,7 @@ export class RoutinesView {
   private recordedSteps: string[] = [];
   /** The index of the dragged step, and its new index after a release now; null if no step is dragged. */
   private drag: { from: number; to: number } | null = null;
-  private readonly pathRequests = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(path));
+  private readonly pathQueue = createRobotQueue((robot, request: OnFloor & { routine: string }) => robot.simulateRound(request), (path) => this.drawPath(path));
 
   constructor(
     private readonly session: Session,
@@ -85,7 +85,7 @@ export class RoutinesView {
     const { chosenRoutine } = this;
     if (!chosenRoutine) return this.drawPath(null);
     const { floor, servos } = this.session;
-    this.pathRequests.submit({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
+    this.pathQueue.submit({ toml: Robot.putSteps(this.text.draft, chosenRoutine.name, chosenRoutine.steps).text, floor, servos, routine: chosenRoutine.name });
   }
 
   private readonly setMessage = (text: string): void => setText(element('routine-message'), text);

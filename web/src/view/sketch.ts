@@ -14,7 +14,7 @@ import { describeRefusal, showOffers, formatLengths } from './tried-lengths';
 type LengthsRequest = Parameters<RobotWorkerApi['tryLengths']>[0];
 type LengthsResponse = ReturnType<RobotWorkerApi['tryLengths']>;
 
-/** Movement of the pointer beyond which a press is a drag, CSS pixels. */
+/** Pointer movement, in CSS pixels, beyond which a press counts as a drag. */
 const DRAG_THRESHOLD_PX = 3;
 /** Margin around the robot in the drawing. */
 const MARGIN_MM = 14;
@@ -26,7 +26,7 @@ export class SketchView {
   private readonly barGroup = this.picture.appendChild(makeSvg('g', {}));
   private readonly jointGroup = this.picture.appendChild(makeSvg('g', {}));
   /** Tries other lengths in a worker. */
-  private readonly lengthsRequests = createRobotQueue((robot, request: LengthsRequest) => robot.tryLengths(request), (response: LengthsResponse) => this.handleResponse(response));
+  private readonly lengthsQueue = createRobotQueue((robot, request: LengthsRequest) => robot.tryLengths(request), (response: LengthsResponse) => this.handleResponse(response));
   private readonly slider = new LengthSlider((edits, isLast) => this.tryLengths(edits, isLast), () => this.requestDrawing());
   /** The dragged joint, in its state at the start of the drag; null if none is dragged. */
   private draggedJoint: Joint | null = null;
@@ -40,7 +40,7 @@ export class SketchView {
     followShownRobot(element<HTMLDetailsElement>('lengths-panel'), session, ({ lengths }) => this.showRobot(lengths));
   }
 
-  /** Draws the session's robot in its neutral pose. */
+  /** Shows the session's robot in its neutral pose, and ends any drag. */
   private showRobot(lengths: Length[]): void {
     this.draggedJoint = null;
     this.slider.showRobot(lengths);
@@ -49,18 +49,18 @@ export class SketchView {
 
   /** Requests a drawing of the session's robot and the range of the slider's length. */
   private requestDrawing(): void {
-    this.lengthsRequests.submit({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
+    this.lengthsQueue.submit({ toml: this.session.toml, edits: [], isLast: false, keys: this.slider.keys });
   }
 
-  /** Tries the lengths of a drag; `isLast` is true at the end of the drag. */
+  /** Tries the lengths of a drag; `isLast` is true at its end. */
   private tryLengths(edits: Edits, isLast: boolean): void {
     this.isDragEnding ||= isLast;
-    this.lengthsRequests.submit({ toml: this.session.toml, edits, isLast, keys: [] });
+    this.lengthsQueue.submit({ toml: this.session.toml, edits, isLast, keys: [] });
   }
 
   /** Searches for valid alternatives to refused lengths and offers them. */
   offerValidLengths(edits: Edits): void {
-    this.lengthsRequests.submit({ toml: this.session.toml, edits, isLast: true, keys: [] });
+    this.lengthsQueue.submit({ toml: this.session.toml, edits, isLast: true, keys: [] });
   }
 
   private handleResponse({ edits, text, refusal, scene, nearest, without, isLast, range }: LengthsResponse): void {
@@ -118,7 +118,7 @@ export class SketchView {
       this.picture.setAttribute('viewBox', `${left} ${top} ${Math.max(...xs) + MARGIN_MM - left} ${Math.max(...ys) + MARGIN_MM - top}`);
     }
     if (this.draggedJoint) {
-      // The lengths determine the joints' positions; the dragged joint may therefore be away from the pointer.
+      // The lengths determine the joints' positions; the dragged joint may therefore not be under the pointer.
       listJoints(scene, () => 0).forEach(({ position: [x, y] }, n) => setAttributes(this.jointGroup.children[n], { cx: x, cy: -y }));
       return;
     }
@@ -128,25 +128,26 @@ export class SketchView {
 
   private makeJoint(joint: Joint, [cx, cy]: Point): SVGCircleElement {
     let pressPoint: [number, number] | null = null;
-    const isDragged = ({ clientX, clientY }: PointerEvent) => {
+    /** Returns true once the pressed pointer has moved far enough for a drag. */
+    const updateDrag = ({ clientX, clientY }: PointerEvent) => {
       if (pressPoint && Math.hypot(clientX - pressPoint[0], clientY - pressPoint[1]) > DRAG_THRESHOLD_PX) pressPoint = null;
       return this.draggedJoint === joint && pressPoint === null;
     };
-    const mark = makeSvg('circle', { cx, cy, r: 3.6, 'data-joint': joint.name }, makeSvg('title', {}, joint.name));
-    mark.addEventListener('pointerdown', (event) => {
+    const circle = makeSvg('circle', { cx, cy, r: 3.6, 'data-joint': joint.name }, makeSvg('title', {}, joint.name));
+    circle.addEventListener('pointerdown', (event) => {
       if (this.isDragEnding) return;
-      mark.setPointerCapture(event.pointerId);
+      circle.setPointerCapture(event.pointerId);
       pressPoint = [event.clientX, event.clientY];
       this.draggedJoint = joint;
     });
-    mark.addEventListener('pointermove', (event) => isDragged(event) && this.dragJoint(joint, event));
-    mark.addEventListener('pointerup', (event) => {
+    circle.addEventListener('pointermove', (event) => updateDrag(event) && this.dragJoint(joint, event));
+    circle.addEventListener('pointerup', (event) => {
       if (this.draggedJoint !== joint) return;
-      if (!isDragged(event)) return void (this.draggedJoint = null);
+      if (!updateDrag(event)) return void (this.draggedJoint = null);
       this.dragJoint(joint, event, true);
     });
-    mark.addEventListener('pointercancel', () => this.draggedJoint === joint && this.showUnchanged());
-    return mark;
+    circle.addEventListener('pointercancel', () => this.draggedJoint === joint && this.showUnchanged());
+    return circle;
   }
 
   private dragJoint(joint: Joint, { clientX, clientY }: PointerEvent, isLast = false): void {

@@ -1,26 +1,26 @@
 // The view of an edited gait's trial in a simulation: the results, the nearest valid values if the gait is refused,
 // and the buttons that use the gait.
-import { applyGait, tryGait } from '../gaits/try-gait';
+import { applyGait, driveGait } from '../gaits/apply-gait';
 import { type EditedGait, type GaitParameter, isRefused, type OnFloor, type RefusedTrial, type Trial } from '../robot';
 import { createRobotQueue } from '../robot-requests';
 import type { Session } from '../session';
 import { button, element, setText } from './elements';
 import type { BoardWriter } from './writer';
 
-/** The trial's access to the gait editor. */
-export interface TrialEditor {
+/** The part of a gait editor that the trial view uses. */
+export interface GaitEditorAccess {
   /** The prefix of the editor's element ids. */
-  prefix: 'gait' | 'path';
+  prefix: 'gait' | 'gesture';
   /** Returns the edited gait; null if there is none. */
   editedGait(): EditedGait | null;
-  /** Sets a parameter of the gait to a valid value that a refusal offers. */
+  /** Sets a parameter of the gait to one of the valid values that a refusal suggests. */
   change(key: GaitParameter, value: number): void;
 }
 
-/** Formats a number with a unit; null stands for an uncertain displacement. */
+/** Formats a number with a unit, never as -0.0; null stands for an uncertain displacement. */
 const formatNumber = (value: number | null, unit: string) => (value === null ? 'may drift' : `${(Number(value.toFixed(1)) + 0).toFixed(1)}${unit}`);
 
-/** Formats the results of a trial; `unit` selects the walking speed, mm/s, or the turning speed. */
+/** Formats the results of a trial; `unit` is the unit of the speed: mm/s for walking, otherwise deg/s for turning. */
 export function formatResults({ forward, turn, period, margin_name, min_margin, margin_limit, fastest_servo, max_servo_speed }: Trial, unit = 'mm/s') {
   const [displacement, speedUnit] = unit === 'mm/s' ? [forward, ' mm/s'] : [turn, ' °/s'];
   return {
@@ -33,34 +33,34 @@ export function formatResults({ forward, turn, period, margin_name, min_margin, 
   };
 }
 
-/** The labels of the buttons that offer a valid value. */
-const OFFER_LABELS: Record<GaitParameter, (value: number) => string> = {
+/** The labels of the buttons that set a suggested value. */
+const ALTERNATIVE_LABELS: Record<GaitParameter, (value: number) => string> = {
   amplitude: (value) => `Use amplitude ${value}°`,
   size: (value) => `Use a size of ${(100 * value).toFixed(0)} %`,
   period: (value) => `Use a cycle of ${value} s`,
 };
 
 export class TrialView {
-  private readonly trialRequests = createRobotQueue<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, request) => robot.tryGait(request), (trial) => this.showResult(trial));
+  private readonly trialQueue = createRobotQueue<OnFloor & { gait: EditedGait }, Trial | RefusedTrial | null>((robot, request) => robot.tryGait(request), (trial) => this.showResult(trial));
   /** The result of the last trial; null if the gait was refused. */
   private trial: Trial | null = null;
 
   constructor(
     private readonly session: Session,
     private readonly writer: BoardWriter,
-    private readonly editor: TrialEditor,
+    private readonly editor: GaitEditorAccess,
   ) {
-    this.element('try').addEventListener('click', () => void this.tryEditedGait());
+    this.element('try').addEventListener('click', () => void this.driveEditedGait());
     this.element('write').addEventListener('click', () => void this.writeToBoard());
     this.element('copy').addEventListener('click', () => void this.copyTable());
   }
 
   /** Requests a trial of the edited gait. */
-  predict(): void {
+  requestTrial(): void {
     const { toml, floor, servos } = this.session;
     const gait = this.editor.editedGait();
     if (!gait || toml === '') return;
-    this.trialRequests.submit({ toml, floor, servos, gait });
+    this.trialQueue.submit({ toml, floor, servos, gait });
   }
 
   /** Shows a message beside the editor's buttons. */
@@ -82,16 +82,16 @@ export class TrialView {
     this.element('refused').hidden = refusal === null;
     show('refusal', refusal?.refused ?? '');
     this.element('alternatives').replaceChildren(
-      ...(refusal?.alternatives ?? []).map(({ parameter, value }) => button(OFFER_LABELS[parameter](value), () => this.editor.change(parameter, value))),
+      ...(refusal?.alternatives ?? []).map(({ parameter, value }) => button(ALTERNATIVE_LABELS[parameter](value), () => this.editor.change(parameter, value))),
     );
     this.setMessage('');
   }
 
-  private async tryEditedGait(): Promise<void> {
+  private async driveEditedGait(): Promise<void> {
     const gait = this.editor.editedGait();
     if (!gait) return;
     this.setMessage('The robot restarts with this gait…');
-    const refusal = await tryGait(this.session, gait);
+    const refusal = await driveGait(this.session, gait);
     this.setMessage(refusal?.refused ?? `The robot starts ${gait.name.replaceAll('-', ' ')}, which now has a button in Drive and is part of the downloaded robot.toml.`);
   }
 

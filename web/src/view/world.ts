@@ -19,11 +19,11 @@ export class WorldView {
   private readonly supplyInput = element<HTMLInputElement>('supply');
 
   constructor(private readonly session: Session) {
-    this.driveList.addEventListener('change', () => this.applyFloor());
+    this.driveList.addEventListener('change', () => this.applySettings());
     for (const name of SLIDER_NAMES) {
       const input = this.getSlider(name);
       input.addEventListener('input', () => this.showText(input, input.valueAsNumber.toFixed(DECIMALS[name])));
-      input.addEventListener('change', () => this.applyFloor());
+      input.addEventListener('change', () => this.applySettings());
     }
     element('floor-reset').addEventListener('click', () => {
       this.session.setFloor(null);
@@ -66,7 +66,7 @@ export class WorldView {
     this.enableSliders(this.session.floor);
   }
 
-  /** Shows the servo model and its voltage, which is the model's voltage unless the user has set another voltage. */
+  /** Shows the servo model and its supply voltage: the model's own unless the user has set another. */
   private showServos(): void {
     const { description, servos } = this.session;
     const [name = '', supply] = servos.split(' at ');
@@ -74,8 +74,9 @@ export class WorldView {
     const ratings = description.models.find((model) => model.name === name)?.ratings;
     this.voltsInput.disabled = !ratings;
     if (!ratings) return;
-    this.voltsInput.max = String(Math.max(6, ratings[3]));
-    this.voltsInput.value = supply ?? String(ratings[3]);
+    const [, , , supplyVolts] = ratings;
+    this.voltsInput.max = String(Math.max(6, supplyVolts));
+    this.voltsInput.value = supply ?? String(supplyVolts);
     this.showVolts(this.voltsInput);
   }
 
@@ -100,7 +101,7 @@ export class WorldView {
     const hasSprings = floor.kind !== 'rigid';
     const isElastic = hasSprings || this.session.servos !== 'ideal';
     this.getSlider('force').disabled = !hasSprings;
-    // If neither springs nor servos yield, friction has no effect; if also no foot is too long, mass has no effect.
+    // If neither springs nor servos yield, friction has no effect; if no foot is too long either, mass has no effect.
     this.getSlider('friction').disabled = !isElastic;
     this.getSlider('mass').disabled = !isElastic && floor.twist === 0;
     this.getSlider('leaf').disabled = floor.twist === 0;
@@ -114,9 +115,9 @@ export class WorldView {
     input.setAttribute('aria-valuetext', text);
   }
 
-  /** Applies the sliders' values to the session. */
-  private applyFloor(): void {
-    // A value that appears unchanged on its slider keeps its exact number.
+  /** Applies the leg drive and the sliders' values to the session. */
+  private applySettings(): void {
+    // A value whose displayed text is unchanged keeps its exact number.
     const floor: Floor = { ...this.session.floor, kind: this.driveList.value as LegDrive };
     for (const name of SLIDER_NAMES) {
       const value = this.getSlider(name).valueAsNumber;

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use js_sys::{Array, JsString, Reflect};
-use lizard_calibrate::{BadReply, ConsoleError, Reply};
+use lizard_calibrate::{ConsoleError, Reply, ReplyError};
 use wasm_bindgen::JsCast;
 use wasm_bindgen::prelude::*;
 
@@ -62,12 +62,12 @@ fn string_or_empty(value: JsValue) -> String {
 /// Converts an error to the thrown value: the page's own error, or a message about the robot's reply.
 pub(crate) fn error_to_js(error: ConsoleError<JsValue>) -> JsValue {
     match error {
-        ConsoleError::Reply(BadReply::Refused { line, reason }) => {
+        ConsoleError::Reply(ReplyError::Refused { line, reason }) => {
             // The leading digits are the error's code, which is for programs.
             let reason = reason.trim_start_matches(|c: char| c.is_ascii_digit());
             make_js_error(&format!("The robot refuses \"{line}\":{reason}."))
         }
-        ConsoleError::Reply(BadReply::UnknownFormat { .. }) => {
+        ConsoleError::Reply(ReplyError::UnknownFormat { .. }) => {
             make_js_error("The robot's answer is unknown to this page; write this firmware first.")
         }
         ConsoleError::Link(error) => error,

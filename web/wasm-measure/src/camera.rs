@@ -26,7 +26,7 @@ impl Refusal {
 pub struct TagEntry {
     /// The tag's id on the sheet.
     pub id: usize,
-    /// The corners that are printed top left, top right, bottom right and bottom left, px.
+    /// The corners in the image, px, in the order top left, top right, bottom right and bottom left of the printed tag.
     #[tsify(type = "[Pixel, Pixel, Pixel, Pixel]")]
     pub corners: [[f64; 2]; 4],
 }
@@ -38,12 +38,12 @@ pub struct MeasureRequest {
     pub toml: String,
     /// The pace, percent of a gait's nominal pace.
     pub speed: u8,
-    /// Height of the deck tag above the floor, mm; `None` if the tag lies on the robot's board.
-    pub height: Option<f64>,
+    /// Height of the deck tag above the floor, mm; `None` if it lies on the robot's board, whose height is computed.
+    pub deck_height: Option<f64>,
     /// Measured length, mm, of the line on the sheet that should be 100 mm long.
-    pub ruler: f64,
-    /// The walks to measure. If empty, the video is split where the robot rests, and each walk gets the gait that it
-    /// matches.
+    pub ruler_length: f64,
+    /// The walks to measure. If empty, the video is split where the robot rests, and each part is assigned the gait
+    /// that it matches.
     pub walks: Vec<RequestedWalk>,
 }
 
@@ -66,7 +66,7 @@ pub struct Results {
     pub problems: Vec<String>,
 }
 
-/// A camera and the video that it has recorded so far.
+/// The video that the page's camera has recorded so far, and its analysis.
 #[derive(Debug, Default)]
 pub struct Camera {
     video: Video,
@@ -115,9 +115,9 @@ impl Camera {
             .map(find_gait)
             .collect::<Result<_, _>>()?;
         let setup = Setup {
-            print_scale: request.ruler / sheet::RULER_LENGTH,
+            print_scale: request.ruler_length / sheet::RULER_LENGTH,
             deck_height: request
-                .height
+                .deck_height
                 .unwrap_or_else(|| compute_board_height(&robot)),
         };
         let gaits = Gaits::predict(&robot, &named_gaits, f64::from(request.speed) / 100.0);

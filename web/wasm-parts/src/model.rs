@@ -268,7 +268,7 @@ impl Model {
     /// Returns the two parts that overlap most, or else come closest.
     pub fn prove(&self, progress: impl FnMut(usize, usize)) -> Result<Option<f64>, Refusal> {
         let proof = self.assembly.prove(progress);
-        proof.judge().map_err(BuildError::from)?;
+        proof.check().map_err(BuildError::from)?;
         Ok(proof.nearest_separate_pair().map(|pair| pair.lower_bound))
     }
 }

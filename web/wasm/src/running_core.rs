@@ -56,7 +56,7 @@ impl RunningCore {
             reference: compute_adc_code(REFERENCE_VOLTS, volts).round() as u16,
             rail: compute_adc_code(self.rail_pin_mv / 1000.0, volts) as u16,
         };
-        self.running_robot.board.converter.set_true_reading(reading);
+        self.running_robot.board.adc.set_true_reading(reading);
         // The bytes arrive one by one, as on a serial line.
         for byte in bytes {
             self.running_robot.board.send(&[*byte]);

@@ -164,7 +164,7 @@ pub fn print_hazard(hazard: Hazard, motion: &Motion, out: &mut impl Output) {
 #[inline(never)]
 fn print_stroke(text: Text, length: u16, side: Side, robot: &Robot, out: &mut impl Output) {
     text.print(out);
-    print_signed(out, robot.slider(side).displacement(length), 2)
+    print_signed(out, robot.slider(side).displacement_hundredths(length), 2)
 }
 
 /// Prints a servo's name, such as `A2`.

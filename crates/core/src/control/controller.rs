@@ -26,12 +26,12 @@ use crate::numbers::pose::{Pose, Pulses};
 use crate::numbers::robot::Robot;
 use crate::numbers::section::SectionError;
 
-use job::Job;
+use eeprom_operation::EepromOperation;
 use routine::Routine;
 
 mod adjust;
+mod eeprom_operation;
 mod getters;
-mod job;
 mod routine;
 
 /// Frames without a reset after which the supply counts as good again: 30 s.
@@ -67,7 +67,7 @@ pub struct Controller {
     /// True if `boot` started the current activity, and no command has been received since.
     is_unattended: bool,
     /// The EEPROM operation that an order has started, if any.
-    job: Option<Job>,
+    eeprom_operation: Option<EepromOperation>,
     /// The write or invalidation of the rest pose's record, if one is in progress.
     rest_pose_write: Option<RecordWrite>,
     /// The hazard because of which the guard holds the robot, until the hazard is printed.
@@ -97,7 +97,7 @@ impl Controller {
             routine: Routine::NONE,
             contact: Contact::NONE,
             is_unattended: false,
-            job: None,
+            eeprom_operation: None,
             rest_pose_write: None,
             hold_reason: None,
         }
@@ -358,11 +358,11 @@ impl Controller {
             }
             Order::Save => {
                 self.check_allowed(Event::Save)?;
-                self.job = Some(Job::ChooseCopy);
+                self.eeprom_operation = Some(EepromOperation::ChooseCopy);
                 return Ok(Acceptance::Pending);
             }
             Order::Load => {
-                self.job = Some(Job::Load);
+                self.eeprom_operation = Some(EepromOperation::Load);
                 return Ok(Acceptance::Pending);
             }
         }

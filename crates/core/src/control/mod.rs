@@ -1,7 +1,8 @@
 //! Control: executes orders, computes a frame fifty times a second, and reacts to faults.
 //!
-//! This layer handles no text: it accepts an [`order`] or returns a [`refusal`]. [`supervisor`] contains the decision
-//! tables; [`safety`], [`supply`] and [`contact`] monitor the hardware; [`fault`] shows a fault on the LED.
+//! This layer handles no text: it accepts an [`order`] or refuses it with a [`refusal`]. [`supervisor`] contains the
+//! decision tables; [`safety`] and [`supply`] monitor the hardware; [`contact`] reads the button or the obstacle switch
+//! for which a step of a routine waits; [`fault`] signals a fault with the LED.
 
 mod controller;
 

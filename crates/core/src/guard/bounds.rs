@@ -4,7 +4,7 @@
 //! errors of the sines of [`crate::guard::trig`] are measured: a test of that module compares the sines at every angle.
 //! If a test finds an error beyond its bound, the code or this derivation is wrong.
 //!
-//! Lengths of a five-bar (head or tail) are in `U`, two steps of its bars, the unit in which the code computes the
+//! Lengths of a five-bar (head or tail) are in `U`, two steps of its links, the unit in which the code computes the
 //! distance between the crank tips. `k` is the vector from the left crank tip to the right one, `s = k^2`, `c1` and
 //! `c2` are the cranks, `a` and `b` the couplers, `R = (a + b)^2`, `N = (a - b)^2`. A prime, as in `k'`, marks the
 //! integer result for a true value.
@@ -246,7 +246,7 @@ impl Product {
 
 /// The rounded lengths of a five-bar, on which the errors of its margins depend.
 #[derive(Clone, Copy, Debug)]
-pub struct RoundedBars {
+pub struct RoundedLengths {
     /// The scale of the five-bar's lengths.
     pub scale: Scale,
     /// The left and the right coupler in whole steps.
@@ -272,11 +272,11 @@ pub struct EndErrors {
 }
 
 impl EndErrors {
-    /// Computes the errors for a true five-bar, in mm, its bars rounded to steps, and crank angles in its own frame,
+    /// Computes the errors for a true five-bar, in mm, its lengths rounded to steps, and crank angles in its own frame,
     /// deg. If the loop does not close, `type2` is the largest margin that the integer arithmetic may return.
     pub fn at_angles(
         five_bar: &kinematics::FiveBar,
-        rounded_bars: impl Into<RoundedBars>,
+        rounded_lengths: impl Into<RoundedLengths>,
         angles: [f64; 2],
     ) -> Self {
         let [left, right] = angles.map(Vector::from_angle);
@@ -290,7 +290,7 @@ impl EndErrors {
         let direction_sums = [left.x.abs() + right.x.abs(), left.y.abs() + right.y.abs()];
         Self::compute(
             five_bar,
-            rounded_bars.into(),
+            rounded_lengths.into(),
             direction_sums,
             [distance_mm; 2],
         )
@@ -300,21 +300,21 @@ impl EndErrors {
     /// `far`, mm.
     pub fn over_range(
         five_bar: &kinematics::FiveBar,
-        rounded_bars: impl Into<RoundedBars>,
+        rounded_lengths: impl Into<RoundedLengths>,
         [near, far]: [f64; 2],
     ) -> Self {
-        Self::compute(five_bar, rounded_bars.into(), [2.0; 2], [near, far])
+        Self::compute(five_bar, rounded_lengths.into(), [2.0; 2], [near, far])
     }
 
     /// Computes the errors from the sums of `|cos|` and `|sin|` of the two crank directions, and from the range of the
     /// distance between the crank tips. Single letters have their meaning in the module's derivation.
     fn compute(
         five_bar: &kinematics::FiveBar,
-        rounded_bars: RoundedBars,
+        rounded_lengths: RoundedLengths,
         [cosine_sum, sine_sum]: [f64; 2],
         range_mm: [f64; 2],
     ) -> Self {
-        let u_per_mm = steps_per_mm(rounded_bars.scale) / 2.0;
+        let u_per_mm = steps_per_mm(rounded_lengths.scale) / 2.0;
         let crank_sum = u_per_mm * (five_bar.left_crank_length + five_bar.right_crank_length) + 0.5;
         let e_x = 1.25 + cosine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
         let e_y = 0.5 + sine_sum / 4.0 + MAX_DIRECTION_ERROR * crank_sum;
@@ -350,7 +350,7 @@ impl EndErrors {
         let sine_error = (m - low_root).max(root(m_sq + q) - m);
         let high_root = root(max_sine_sq + q);
 
-        let [left, right] = rounded_bars.couplers;
+        let [left, right] = rounded_lengths.couplers;
         let shape_error = ShapeError::compute(left, right, tips_sq_range);
         let [left, right] = [left, right].map(f64::from);
         let mean_coupler = (left + right) / 2.0;

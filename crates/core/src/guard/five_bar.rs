@@ -3,7 +3,7 @@
 //! Two cranks carry two couplers, whose common joint is the end point, the head or the tail. If the couplers line up,
 //! the end point can move although both servos hold: a type-2 singularity. If a crank lines up with its coupler, the
 //! elbow between them can change to its other working mode: a type-1 singularity. Each margin is the sine of the angle
-//! between two bars, so 0 is singular and 1 is a right angle.
+//! between two links, so 0 is singular and 1 is a right angle.
 //!
 //! As in the paper, theta1 and theta4 are the directions of the left and the right crank, theta2 and theta3 the
 //! directions of their couplers. `k` is the vector from the left crank tip to the right one; `a` is the left coupler,
@@ -22,16 +22,16 @@
 use lizard_avr::{mul, mul_unsigned};
 
 use crate::guard::trig::Direction;
-use crate::numbers::bars::Bars;
 use crate::numbers::couplers::{CouplerTables, Couplers, TriangleShape};
+use crate::numbers::link_lengths::LinkLengths;
 use crate::numbers::part::End;
 use crate::numbers::robot::Robot;
 use crate::numbers::units::Sine;
 
-/// A five-bar linkage: its bars and the tables of its couplers.
+/// A five-bar linkage: its link lengths and the tables of its couplers.
 #[derive(Clone, Copy, Debug)]
 pub struct FiveBar<'a> {
-    bars: Bars,
+    links: LinkLengths,
     tables: CouplerTables<'a>,
 }
 
@@ -48,49 +48,44 @@ pub struct EndMargins {
 }
 
 impl<'a> FiveBar<'a> {
-    /// A linkage without bars, which never closes.
-    pub const NONE: Self = Self::new(Bars::NONE, CouplerTables::NONE);
+    /// A linkage without links, which never closes.
+    pub const NONE: Self = Self::new(LinkLengths::NONE, CouplerTables::NONE);
 
-    /// Creates a linkage from its bars and the tables of its couplers.
-    pub const fn new(bars: Bars, tables: CouplerTables<'a>) -> Self {
-        Self { bars, tables }
-    }
-
-    /// The bars of the linkage.
-    pub const fn bars(&self) -> &Bars {
-        &self.bars
+    /// Creates a linkage from its link lengths and the tables of its couplers.
+    pub const fn new(links: LinkLengths, tables: CouplerTables<'a>) -> Self {
+        Self { links, tables }
     }
 
     /// Computes the margins for these directions of the cranks, in the end's own frame. All margins are zero if the
     /// loop cannot close or the tables have no value; the true type-2 margin is then below a tenth.
     #[inline(never)]
     pub fn margins(&self, left: &Direction, right: &Direction) -> EndMargins {
-        let bars = &self.bars;
-        // One unit is two steps of the bars, so that the vector fits into 16 bits and each product is shifted by whole
+        let links = &self.links;
+        // One unit is two steps of the links, so that the vector fits into 16 bits and each product is shifted by whole
         // bytes.
         let tips = TipVector {
-            x: (bars.base >> 1).wrapping_add(rounded_upper_half(
-                mul(bars.right_crank, right.cos) - mul(bars.left_crank, left.cos),
+            x: (links.base >> 1).wrapping_add(rounded_upper_half(
+                mul(links.right_crank, right.cos) - mul(links.left_crank, left.cos),
             )),
             y: rounded_upper_half(
-                mul(bars.right_crank, right.sin) - mul(bars.left_crank, left.sin),
+                mul(links.right_crank, right.sin) - mul(links.left_crank, left.sin),
             ),
         };
         let tips_sq = mul(tips.x, tips.x).wrapping_add(mul(tips.y, tips.y)) as u32;
         let Some(TriangleShape { rise, skew }) =
-            Couplers::new(bars.couplers, self.tables).shape_at(tips_sq)
+            Couplers::new(links.couplers, self.tables).shape_at(tips_sq)
         else {
             return EndMargins::default();
         };
         // Rounded to nearest, because a small margin has few bits.
-        let square = (tips_sq + (1 << (bars.square_shift - 1))) >> bars.square_shift;
+        let square = (tips_sq + (1 << (links.square_shift - 1))) >> links.square_shift;
         let square = square.min(0x7fff) as i16;
-        let area = (mul(rise, square) >> bars.area_shift) as u16;
-        let magnitude = saturate((mul_unsigned(area, bars.area_reciprocal) >> 15) as i32);
+        let area = (mul(rise, square) >> links.area_shift) as u16;
+        let magnitude = saturate((mul_unsigned(area, links.area_reciprocal) >> 15) as i32);
         EndMargins {
             type2: Sine(if tips.x > 0 { magnitude } else { -magnitude }),
-            type1_left: tips.type1_margin(left, rise.wrapping_neg(), skew, bars.left_reciprocal),
-            type1_right: tips.type1_margin(right, rise, skew.wrapping_neg(), bars.right_reciprocal),
+            type1_left: tips.type1_sine(left, rise.wrapping_neg(), skew, links.left_reciprocal),
+            type1_right: tips.type1_sine(right, rise, skew.wrapping_neg(), links.right_reciprocal),
         }
     }
 }
@@ -98,11 +93,11 @@ impl<'a> FiveBar<'a> {
 impl<'a> Robot<'a> {
     /// Returns an end's five-bar, in the frame of that end.
     pub fn five_bar(&self, end: End) -> FiveBar<'a> {
-        FiveBar::new(self.bars(end), self.tables(end))
+        FiveBar::new(self.link_lengths(end), self.tables(end))
     }
 }
 
-/// The vector from the left crank tip to the right one, in units of two steps of the bars; x is along the base.
+/// The vector from the left crank tip to the right one, in units of two steps of the links; x is along the base.
 #[derive(Clone, Copy)]
 struct TipVector {
     x: i16,
@@ -113,13 +108,7 @@ impl TipVector {
     /// Computes the type-1 margin of a crank: `(1 + skew) cross + rise dot`, divided by twice the length of the
     /// coupler.
     #[inline(never)]
-    fn type1_margin(
-        self,
-        crank: &Direction,
-        rise: i16,
-        skew: i16,
-        coupler_reciprocal: i16,
-    ) -> Sine {
+    fn type1_sine(self, crank: &Direction, rise: i16, skew: i16, coupler_reciprocal: i16) -> Sine {
         let cross = rounded_upper_half((mul(self.x, crank.sin) - mul(self.y, crank.cos)) << 1);
         let dot = rounded_upper_half((mul(self.x, crank.cos) + mul(self.y, crank.sin)) << 1);
         // The sum is at most twice the coupler, so overflows of its terms beyond 16 bits cancel.

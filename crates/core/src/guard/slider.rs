@@ -103,7 +103,7 @@ mod tests {
         ) {
             let rounded_slider = slider_in_steps(&slider, -10.0, 10.0);
             let exact = (f64::from(length) - f64::from(rounded_slider.nominal_length)) * 100.0 / steps_per_mm(rounded_slider.scale);
-            prop_assert!((f64::from(rounded_slider.displacement(length)) - exact).abs() <= 0.5);
+            prop_assert!((f64::from(rounded_slider.displacement_hundredths(length)) - exact).abs() <= 0.5);
         }
 
         #[test]

@@ -52,7 +52,7 @@ lizard_avr::pod! {
     pub struct CouplerLengths {
         left: i16,
         right: i16,
-        /// `R` in the unit of `s`: four squared steps of the bars.
+        /// `R` in the unit of `s`: four squared steps of the links.
         reach_sq: u32,
         /// `N` in the unit of `s`.
         folded_sq: u32,
@@ -125,7 +125,7 @@ impl<'a> Couplers<'a> {
         is_near_stretched(reach_sq, tips_sq)
     }
 
-    /// Returns the shape at a squared distance between the crank tips, in units of four squared steps of the bars.
+    /// Returns the shape at a squared distance between the crank tips, in units of four squared steps of the links.
     /// Returns `None` if the loop does not close, and also where the tables have no value: near the distances at which
     /// the loop just closes, and near coinciding crank tips. The type-2 margin is then below a tenth, the smallest
     /// limit that a robot may have.
@@ -202,7 +202,7 @@ pub fn compute_folded_rise_table(left: i16, right: i16) -> Table {
 /// Computes the table of the skew's magnitude over `s`; a host calls it.
 pub fn compute_skew_table(left: i16, right: i16) -> Table {
     let [reach_sq, _] = compute_limits_sq(left, right);
-    // |a^2 - b^2| in the unit of `s`, four squared steps of the bars.
+    // |a^2 - b^2| in the unit of `s`, four squared steps of the links.
     let difference = (i64::from(left).pow(2) - i64::from(right).pow(2)).unsigned_abs() / 4;
     core::array::from_fn(|index| {
         let tips_sq = argument_at(reach_sq, index);
@@ -225,7 +225,7 @@ fn compute_rise_q10(reach_sq: u32, folded_sq: u32, tips_sq: u64, rounding: u128)
     rise.min(0x7fff) as i16
 }
 
-/// Computes the limits `R` and `N` in the unit of `s`, four squared steps of the bars.
+/// Computes the limits `R` and `N` in the unit of `s`, four squared steps of the links.
 const fn compute_limits_sq(left: i16, right: i16) -> [u32; 2] {
     let sum = left as u32 + right as u32;
     // A quarter of the squared sum, rounded down; for equal couplers exactly the squared length of a coupler.

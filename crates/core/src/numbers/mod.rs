@@ -3,7 +3,6 @@
 //!
 //! This is the lowest module of the crate: every other module uses it, but it uses no other module.
 
-pub mod bars;
 pub mod calibration;
 pub mod cells;
 pub(crate) mod checksum;
@@ -12,6 +11,7 @@ pub mod curve;
 pub mod gaits;
 pub mod integer_math;
 pub mod limits;
+pub mod link_lengths;
 pub mod mark;
 pub mod part;
 pub mod pose;

@@ -1,7 +1,7 @@
 //! A robot's numbers, read from its section of flash.
 //!
-//! One firmware drives any robot: bars, limits, servos and gaits come from a section ([`crate::numbers::section`]) in
-//! the flash of a microcontroller or in the memory of a host. The section is checked once, when it is opened; each
+//! One firmware drives any robot: lengths, limits, servos and gaits come from a section ([`crate::numbers::section`])
+//! in the flash of a microcontroller or in the memory of a host. The section is checked once, when it is opened; each
 //! number is read when it is used.
 
 use core::fmt;
@@ -9,12 +9,12 @@ use core::mem::offset_of;
 
 use lizard_avr::{Flash, Pod, Region};
 
-use crate::numbers::bars::Bars;
 use crate::numbers::calibration::{Calibration, SweepRange};
 use crate::numbers::cells::CellMap;
 use crate::numbers::couplers::CouplerTables;
 use crate::numbers::gaits::{Gait, GaitId, GaitName, Step, Wave};
 use crate::numbers::limits::Limits;
+use crate::numbers::link_lengths::LinkLengths;
 use crate::numbers::part::{End, Servo, Side};
 use crate::numbers::pose::Pose;
 use crate::numbers::section::{
@@ -116,9 +116,9 @@ impl<'a> Robot<'a> {
         self.read_number(offset_of!(Numbers, slow_pace))
     }
 
-    /// The bars of an end, in the frame of this end.
-    pub fn bars(&self, end: End) -> Bars {
-        self.read_number(offset_of!(Numbers, ends) + end as usize * size_of::<Bars>())
+    /// The link lengths of an end's five-bar, in the frame of this end.
+    pub fn link_lengths(&self, end: End) -> LinkLengths {
+        self.read_number(offset_of!(Numbers, ends) + end as usize * size_of::<LinkLengths>())
     }
 
     /// The tables of an end's couplers.

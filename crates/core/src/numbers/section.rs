@@ -9,7 +9,7 @@
 //! | part | bytes | contents |
 //! |---|---|---|
 //! | [`Header`] | 36 | magic, [`FORMAT`], length, checksum of the following bytes, name, hash of the numbers, hash of the servos |
-//! | [`Numbers`] | 232 | bars, servos, limits, supplies, pins, and the addresses of the parts below |
+//! | [`Numbers`] | 232 | link lengths, servos, limits, supplies, pins, and the addresses of the parts below |
 //! | curves | 354 each | tables of the couplers of head and tail, equal tables only once: the rise and, if [`Numbers::curves`] has their addresses, the stretched rise, the folded rise and the skew |
 //! | gaits | 32 each | [`crate::numbers::gaits::Gait`]; the routines follow the gaits |
 //! | steps | 4 each | the steps of the routines, [`crate::numbers::gaits::Step`] |
@@ -17,17 +17,17 @@
 //! | names | | the names of gaits and routines, one after another |
 //! | maps | 2 per row | the certified cells of head, tail, left and right: first and last column of each row |
 //!
-//! Each part is stored as the type in the table, field by field, low bytes first. The factors derived from the bars are
-//! stored, too, so the device need not compute them.
+//! Each part is stored as the type in the table, field by field, low bytes first. The factors derived from the link
+//! lengths are stored, too, so the firmware need not compute them.
 
 use core::mem::offset_of;
 
 pub use lizard_avr::Region;
 
-use crate::numbers::bars::Bars;
 use crate::numbers::calibration::{Calibration, SweepRange};
 use crate::numbers::checksum::Checksum;
 use crate::numbers::limits::Limits;
+use crate::numbers::link_lengths::LinkLengths;
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
@@ -80,8 +80,8 @@ lizard_avr::pod! {
     /// The numbers of a robot.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Numbers {
-        /// The bars of head and tail, each in its own frame.
-        pub ends: [Bars; 2],
+        /// The link lengths of head and tail, each in its own frame.
+        pub ends: [LinkLengths; 2],
         /// The left and the right slider.
         pub sliders: [Slider; 2],
         /// The servos' angles in the neutral pose.

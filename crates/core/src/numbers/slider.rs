@@ -4,7 +4,7 @@ use lizard_avr::mul_unsigned;
 
 use crate::numbers::units::Scale;
 
-/// The upper limit, in steps, of two lengths of a side: the sum of base, arms and offset, and the slider's length.
+/// The upper limit, in steps, of the sum of base, arms and offset, and of the slider's longest length.
 pub const MAX_LENGTH_STEPS: f64 = 255.0 * 256.0;
 
 /// The upper limit, in steps, of the sum of both arms and the offset, which must fit into a signed 16-bit number.
@@ -52,10 +52,9 @@ impl Slider {
         square(self.stroke_min) <= length_sq && length_sq <= square(self.stroke_max)
     }
 
-    /// Computes the displacement of a slider of this length, in steps, from its nominal length, in hundredths of a
-    /// millimetre.
+    /// Computes a slider's length minus its nominal length, in hundredths of a millimetre. `length` is in steps.
     #[inline(always)]
-    pub fn displacement(&self, length: u16) -> i32 {
+    pub fn displacement_hundredths(&self, length: u16) -> i32 {
         self.scale
             .hundredths(i32::from(length) - i32::from(self.nominal_length))
     }

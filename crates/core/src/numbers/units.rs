@@ -58,7 +58,7 @@ pub struct Sweep(pub i16);
 
 lizard_avr::pod!(Sweep: i16);
 
-/// A margin: the sine of the angle between two bars, Q15.
+/// A margin: the sine of the angle between two links, Q15.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(transparent)]
 pub struct Sine(pub i16);
@@ -81,7 +81,7 @@ lizard_avr::pod!(PulseWidth: u16);
 lizard_avr::pod! {
     /// The scale of a mechanism's lengths: a millimetre has 2^`bits` steps.
     ///
-    /// The scale depends on the robot's size, so that the bars of any robot fit into sixteen bits.
+    /// The scale depends on the robot's size, so that the lengths of any robot fit into sixteen bits.
     #[derive(Debug, PartialEq, Eq)]
     pub struct Scale {
         /// The binary logarithm of the number of steps in a millimetre, at most 14.

@@ -4,7 +4,7 @@ pub use crate::guard::bounds::*;
 
 use super::SampleFiveBar;
 
-impl From<&SampleFiveBar> for RoundedBars {
+impl From<&SampleFiveBar> for RoundedLengths {
     fn from(five_bar: &SampleFiveBar) -> Self {
         Self {
             scale: five_bar.scale,

@@ -4,9 +4,9 @@ use lizard_avr::Flash;
 use lizard_kinematics as kinematics;
 
 use crate::guard::five_bar::FiveBar;
-use crate::numbers::bars;
 use crate::numbers::couplers::{self, CouplerLengths, Couplers};
 use crate::numbers::curve::Table;
+use crate::numbers::link_lengths::{self, LinkLengths};
 use crate::numbers::section;
 use crate::numbers::units::Scale;
 use crate::sample::steps_per_mm;
@@ -15,7 +15,7 @@ use crate::sample::steps_per_mm;
 #[derive(Clone, Debug)]
 pub struct SampleFiveBar {
     /// The base, the left crank and the right crank, whose sum is the largest distance between the crank tips.
-    pub bars: [i16; 3],
+    pub base_and_cranks: [i16; 3],
     /// The scale of all lengths.
     pub scale: Scale,
     pub couplers: SampleCouplers,
@@ -62,9 +62,9 @@ impl SampleCouplers {
 }
 
 impl SampleFiveBar {
-    /// Converts a five-bar from mm to the finest steps with which each coupler, and the sum of the other bars, is below
-    /// [`bars::MAX_LENGTH_STEPS`]. Returns `None` if even steps of 1 mm are too fine, or if a coupler is shorter than
-    /// [`bars::MIN_COUPLER_STEPS`].
+    /// Converts a five-bar from mm to the finest steps with which each coupler, and the sum of base and cranks, is
+    /// below [`link_lengths::MAX_LENGTH_STEPS`]. Returns `None` if even steps of 1 mm are too fine, or if a coupler is
+    /// shorter than [`link_lengths::MIN_COUPLER_STEPS`].
     pub fn new(five_bar: &kinematics::FiveBar) -> Option<Self> {
         let [base, left, right] = [
             five_bar.base,
@@ -76,13 +76,13 @@ impl SampleFiveBar {
         let scale = (0..=14)
             .rev()
             .map(|bits| Scale { bits })
-            .find(|scale| longest_mm * steps_per_mm(*scale) < bars::MAX_LENGTH_STEPS)?;
+            .find(|scale| longest_mm * steps_per_mm(*scale) < link_lengths::MAX_LENGTH_STEPS)?;
         let [left_steps, right_steps] = couplers.map(|mm| to_steps(mm, scale) as i16);
-        if left_steps.min(right_steps) < bars::MIN_COUPLER_STEPS {
+        if left_steps.min(right_steps) < link_lengths::MIN_COUPLER_STEPS {
             return None;
         }
         Some(Self {
-            bars: [base, left, right].map(|mm| to_steps(mm, scale) as i16),
+            base_and_cranks: [base, left, right].map(|mm| to_steps(mm, scale) as i16),
             scale,
             couplers: SampleCouplers::new(left_steps, right_steps),
         })
@@ -90,7 +90,7 @@ impl SampleFiveBar {
 
     /// Converts the five-bar to the lengths that a section stores.
     pub(super) fn content(&self) -> section::FiveBarLengths {
-        let [base, left, right] = self.bars;
+        let [base, left, right] = self.base_and_cranks;
         section::FiveBarLengths {
             scale: self.scale,
             base,
@@ -103,8 +103,8 @@ impl SampleFiveBar {
     /// Converts the five-bar to the type that the guard uses.
     pub fn five_bar(&self) -> FiveBar<'_> {
         let SampleCouplers { left, right, .. } = self.couplers;
-        let bars = bars::Bars::new(self.bars, [left, right], self.scale);
-        FiveBar::new(bars, self.couplers.tables())
+        let links = LinkLengths::new(self.base_and_cranks, [left, right], self.scale);
+        FiveBar::new(links, self.couplers.tables())
     }
 }
 

@@ -5,7 +5,7 @@ use std::vec::Vec;
 
 use lizard_avr::Region;
 
-use super::{Converter, Eeprom, VirtualBoard, compute_reading};
+use super::{Adc, Eeprom, VirtualBoard, compute_reading};
 use crate::console::MAX_OUTPUT_LINE_BYTES;
 use crate::memory::restart::{Cause, Restart};
 use crate::motion::Motion;
@@ -37,7 +37,7 @@ impl RunningRobot {
         let rail_mv = u32::from(supplies.rail.slow_mv) + 1_000;
         let reading = compute_reading(&supplies, 5_000, rail_mv.max(6_000));
         let board = VirtualBoard {
-            converter: Converter::new(reading, supplies.rail_reference_mv != 0),
+            adc: Adc::new(reading, supplies.rail_reference_mv != 0),
             ..VirtualBoard::new(memory).after_restart(restart)
         };
         Self::with_flash(robot.section(), board)

@@ -131,16 +131,20 @@ fn the_reading_is_empty_until_every_voltage_has_been_measured() {
         reference: 221,
         rail: 393,
     };
-    for (has_rail, first_frame) in [(false, 2), (true, 4)] {
-        let mut converter = Converter::new(true_reading, has_rail);
+    for (measures_rail, first_frame) in [(false, 2), (true, 4)] {
+        let mut adc = Adc::new(true_reading, measures_rail);
         for frame in 1..40 {
-            let reading = converter.advance_frame();
+            let reading = adc.advance_frame();
             let is_given = frame >= first_frame;
-            assert_eq!(reading.reference == 221, is_given, "{has_rail} {frame}");
+            assert_eq!(
+                reading.reference == 221,
+                is_given,
+                "{measures_rail} {frame}"
+            );
             assert_eq!(
                 reading.rail == 393,
-                has_rail && is_given,
-                "{has_rail} {frame}"
+                measures_rail && is_given,
+                "{measures_rail} {frame}"
             );
         }
     }

@@ -87,7 +87,7 @@ impl Transmitter {
         self.idle_from_cycle.saturating_sub(self.current_cycle)
     }
 
-    pub(super) fn reset(self) -> Self {
+    pub(super) fn after_reset(self) -> Self {
         Self {
             idle_from_cycle: self.current_cycle,
             ..self

@@ -12,8 +12,8 @@ use crate::shared::displacement::Displacement;
 use crate::shared::json;
 use crate::shared::pose_args::ANGLE_NAMES;
 use crate::shared::progress::Spinner;
-use crate::shared::robot_file::unknown_gait_failure;
-use crate::{Failure, RobotFile};
+use crate::shared::robot_args::unknown_gait_failure;
+use crate::{Failure, RobotArgs};
 
 /// Check every gait in robot.toml and predict how far the robot walks with it.
 ///
@@ -53,7 +53,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["json", "trace", "sensitivity", "assumptions"])]
     servos: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// Prints the table, the JSON objects or the trace that the arguments select.
@@ -74,10 +74,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
         None if args.servos => write!(out, "{}", with_spinner(|| ServoTable::compute(&robot)))?,
         None if args.json => {
             let report = with_spinner(|| Report::compute(&robot));
-            for row in &report.rows {
+            for row in &report.gait_rows {
                 json::write_line(&mut out, &GaitLine::new(row))?;
             }
-            for routine in &report.routines {
+            for routine in &report.routine_rows {
                 json::write_line(&mut out, &RoutineLine::new(routine))?;
             }
         }

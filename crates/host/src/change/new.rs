@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::PathBuf;
 
 use crate::Failure;
-use crate::shared::{files, robot_file};
+use crate::shared::{files, robot_args};
 
 /// Write a new robot.toml with a comment on every key
 ///
@@ -27,7 +27,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let name = args.file.display();
     let file = File::create_new(&args.file);
     let result =
-        file.and_then(|mut file| file.write_all(robot_file::DEFAULT_ROBOT_TOML.as_bytes()));
+        file.and_then(|mut file| file.write_all(robot_args::DEFAULT_ROBOT_TOML.as_bytes()));
     result.map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => {
             Failure::Input(format!("{name} already exists; choose another name"))

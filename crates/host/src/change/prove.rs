@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::format_grouped;
+use crate::shared::number::group_digits;
 use crate::shared::progress::create_progress_bar;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
@@ -85,7 +85,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     out.flush()?;
     match proof.wrong_count() {
         0 => Ok(()),
-        wrong_count => Err(Failure::Impossible(format!(
+        wrong_count => Err(Failure::Operation(format!(
             "the guard decides {wrong_count} pairs outside the band or in a cell incorrectly"
         ))),
     }
@@ -110,7 +110,7 @@ fn print_table(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::R
             "{:<11} {:<7} {:>13} {:>8} {:>8} {:>7} {:>9} {:>7} {:>7}",
             finding.part,
             finding.servos.join(" "),
-            format_grouped(tally.pair_count as f64, 0),
+            group_digits(tally.pair_count as f64, 0),
             format_value(tally.max_type2_error.or(tally.max_leg_error), 5),
             format_value(tally.max_type1_error, 5),
             format_value(tally.max_slider_error, 4),
@@ -143,7 +143,7 @@ fn print_table(proof: &Proof, sample: PairSample, out: &mut impl Write) -> io::R
         writeln!(
             out,
             "the guard accepts all {} pairs in the robot's cells, where the firmware skips the guard",
-            format_grouped(proof.certified_count() as f64, 0)
+            group_digits(proof.certified_count() as f64, 0)
         )?;
     }
     Ok(())

@@ -7,7 +7,7 @@ use clap::Command;
 use clap_complete::Shell;
 
 use crate::Failure;
-use crate::shared::{files, robot_file};
+use crate::shared::{files, robot_args};
 
 /// Print a shell's completion script
 #[derive(clap::Args, Debug)]
@@ -49,7 +49,7 @@ pub fn print_completions(args: CompletionsArgs, mut command: Command) -> Result<
 /// itself can only suggest any file.
 fn narrow_robot_suggestions(script: &str) -> String {
     const BASH_FILE_LINE: &str = "COMPREPLY=($(compgen -f \"${cur}\"))";
-    let names = robot_file::built_in_names().join(" ");
+    let names = robot_args::built_in_names().join(" ");
     let bash_robot_line = format!(
         "COMPREPLY=($(compgen -W '{names}' -- \"${{cur}}\") $(compgen -f -X '!*.toml' -- \
          \"${{cur}}\") $(compgen -d -S / -- \"${{cur}}\"))"

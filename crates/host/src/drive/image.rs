@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use crate::drive::flash::image_source;
 use crate::shared::{files, json};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Write the firmware and your robot to an Intel HEX file, without a compiler
 ///
@@ -29,7 +29,7 @@ pub struct Args {
     #[arg(long, requires = "output")]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The description of an image file; the field names are the JSON keys.

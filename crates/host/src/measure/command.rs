@@ -8,9 +8,9 @@ use lizard_measure::{Gaits, Report, compute_board_height};
 use super::picture;
 use super::recording::{RecordingArgs, parse_height};
 use crate::shared::progress::Spinner;
-use crate::shared::robot_file::find_moving_gait;
+use crate::shared::robot_args::find_moving_gait;
 use crate::shared::{files, json};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Measure the robot's displacement per cycle in videos, and compare it with the prediction
 ///
@@ -52,7 +52,7 @@ pub struct Args {
     #[arg(long, conflicts_with_all = ["json", "picture", "gait"])]
     csv: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// Measures videos and prints the result.

@@ -124,7 +124,7 @@ fn parse_size(header: &str) -> Option<[usize; 2]> {
 }
 
 fn spawn_failure(program: &str, error: &std::io::Error) -> Failure {
-    Failure::Impossible(match error.kind() {
+    Failure::Operation(match error.kind() {
         ErrorKind::NotFound => format!(
             "reading a video requires the program {program}, which is not installed: install ffmpeg, \
              or give a folder of frames"

@@ -11,7 +11,7 @@ use super::keys_report::{KeysReport, format_report};
 use crate::shared::files;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Largest difference between a gait's cycle times in two robot.toml files that count as the same robot, s.
 const MAX_PERIOD_DIFFERENCE_S: f64 = 0.005;
@@ -40,7 +40,7 @@ pub struct KeysArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The output of `lizard measure --json`, with only the fields that identification needs.

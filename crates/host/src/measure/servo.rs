@@ -15,7 +15,7 @@ use super::steps::{self, parse_servo};
 use super::video::video_failure;
 use crate::shared::progress::Spinner;
 use crate::shared::{files, json};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// N mm per kg cm.
 const N_MM_PER_KG_CM: f64 = 10.0 * GRAVITY;
@@ -62,7 +62,7 @@ pub struct ServoArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 fn parse_grams(text: &str) -> Result<f64, String> {

@@ -13,7 +13,7 @@ use super::recording::{RecordingArgs, parse_height};
 use super::video::video_failure;
 use crate::shared::json;
 use crate::shared::progress::Spinner;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Measure the friction of the robot's pads in videos of a tilted board, for robot.toml
 ///
@@ -38,7 +38,7 @@ pub struct SlopeArgs {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The result, as `--json` prints it.

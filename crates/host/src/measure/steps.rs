@@ -8,7 +8,7 @@ use lizard_robot::Robot;
 use lizard_robot::servo::SERVO_NAMES;
 use lizard_video::servo_commands::{COMMAND_INTERVAL, ServoCommand, list_commands};
 
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Time before the first step, while the console waits for the board, s.
 const LEAD_TIME_S: f64 = 6.0;
@@ -34,7 +34,7 @@ pub struct StepsArgs {
     #[arg(long)]
     list: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// Parses a servo's name.

@@ -5,8 +5,8 @@ use std::io::{self, BufWriter, Write};
 
 use lizard_paper::design::{
     BestValues, CLAIMED_LCI, ChartPoint, Design, LciStatistics, PROPORTION_SUM, Performance,
-    Proportions, Requirements, Search, compute_chart_points, find_design, merge_and_rank,
-    triangle_points,
+    Proportions, Requirements, Search, compute_chart_points, find_design, grid_points,
+    merge_and_rank,
 };
 use lizard_robot::Robot;
 use serde::{Deserialize, Serialize};
@@ -160,8 +160,8 @@ struct Report {
 
 impl Report {
     fn new(proportions: Proportions, l0: f64) -> Self {
-        let d = proportions.scale_for_base(l0);
-        let five_bar = proportions.at_scale(d);
+        let d = proportions.factor_for_base(l0);
+        let five_bar = proportions.five_bar(d);
         Self {
             proportions,
             d,
@@ -250,7 +250,7 @@ fn format_claim_verdict(lci: &LciStatistics, r_mic: f64) -> String {
 
 /// Computes the points of the performance charts on a grid of `step`, and shows a progress bar.
 pub fn compute_points(step: f64, ring_count: usize) -> Vec<ChartPoint> {
-    let points = triangle_points(step);
+    let points = grid_points(step);
     let bar = create_progress_bar(
         points.len(),
         "performance charts {bar:40} {pos}/{len} {eta}",
@@ -340,7 +340,7 @@ fn print_ranking(
          Ranked by mean LCI, least margin (both within that sweep) and stride (with the widest safe sweep);\n\
          * none is better in all three. Base l0 {l0} mm.\n",
         designs.len(),
-        triangle_points(args.step).len(),
+        grid_points(args.step).len(),
         args.sweep,
         args.shortest
     )?;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 
 /// The solutions for the given points of head and tail; the field names are the JSON keys.
 #[derive(Serialize)]
@@ -72,7 +72,7 @@ pub fn print(robot: &Robot, end_points: [Option<Vector>; 2], is_json: bool) -> R
         .into_iter()
         .find_map(|(name, five_bar)| Some((name, five_bar.as_ref()?.why.as_ref()?)));
     match unreachable {
-        Some((name, reason)) => Err(Failure::Impossible(format!("{name}: {reason}"))),
+        Some((name, reason)) => Err(Failure::Operation(format!("{name}: {reason}"))),
         None => Ok(()),
     }
 }
@@ -216,8 +216,8 @@ fn format_text(report: &Report) -> String {
         let [x, y] = five_bar.point;
         text += &format!(
             "{name} at ({:.3}, {:.3}) mm\n",
-            round_decimals(x, 3),
-            round_decimals(y, 3)
+            round_to_decimals(x, 3),
+            round_to_decimals(y, 3)
         );
         if let Some(reason) = &five_bar.why {
             text += &format!("  {reason}\n\n");
@@ -250,10 +250,10 @@ fn format_text(report: &Report) -> String {
                 "  {:8} {:8} {:10.3} {:10.3}  {:8} {:+7.3}    {:>7}   {verdict}\n",
                 elbows[0],
                 elbows[1],
-                round_decimals(angles[0], 3),
-                round_decimals(angles[1], 3),
+                round_to_decimals(angles[0], 3),
+                round_to_decimals(angles[1], 3),
                 solution.assembly_mode,
-                round_decimals(solution.margin, 3),
+                round_to_decimals(solution.margin, 3),
                 format_mm_error(solution.error_mm)
             );
         }

@@ -4,7 +4,7 @@ use lizard_kinematics::Vector;
 
 use crate::paper::{inverse, mobility, singularity, solve, velocity};
 use crate::shared::quantity::Quantity;
-use crate::{Failure, PoseArgs, RobotFile};
+use crate::{Failure, PoseArgs, RobotArgs};
 
 /// Compute the robot's joints, singularities, degrees of freedom or rates at a pose
 ///
@@ -49,7 +49,7 @@ pub struct Args {
     #[command(flatten)]
     servo_motion: velocity::ServoMotionArgs,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The part of the result to print.

@@ -7,7 +7,7 @@ use lizard_robot::{Robot, violations};
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use crate::paper::poses::TimedPose;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 
 /// A line of `lizard pose --json`; the field names are the JSON keys. If the pose has no solution, the solution's
 /// fields are null. `seconds` is present only if the stream has this column.
@@ -147,7 +147,7 @@ pub fn format_row(
         let _ = write!(line, "{seconds:8.2} |");
     }
     for angle in angles {
-        let _ = write!(line, " {:8.3}", round_decimals(angle, 3));
+        let _ = write!(line, " {:8.3}", round_to_decimals(angle, 3));
     }
     let solution = match outcome {
         Err(infeasible) => {
@@ -169,15 +169,15 @@ pub fn format_row(
     ] {
         line.push_str(" |");
         for value in values {
-            let _ = write!(line, " {:8.3}", round_decimals(value, 3));
+            let _ = write!(line, " {:8.3}", round_to_decimals(value, 3));
         }
     }
     let _ = write!(
         line,
         " | {:+7.2} {:+7.2} | {min_check:9} {:+7.4} | ",
-        round_decimals(solution.left.s, 2),
-        round_decimals(solution.right.s, 2),
-        round_decimals(min_margin, 4),
+        round_to_decimals(solution.left.s, 2),
+        round_to_decimals(solution.right.s, 2),
+        round_to_decimals(min_margin, 4),
     );
     match violations::find_pose_violations(robot, solution).first() {
         None => line.push_str("safe"),
@@ -193,7 +193,7 @@ pub fn format_page(
     outcome: &Result<Solution, InfeasiblePose>,
 ) -> String {
     let limits = robot.limits();
-    let round_3 = |value: f64| round_decimals(value, 3);
+    let round_3 = |value: f64| round_to_decimals(value, 3);
     let [a1, a2, a3, a4] = <[f64; 4]>::from(*pose).map(round_3);
     let mut page = format!(
         "servos   A1 theta1 {a1:9.3}   A2 theta4 {a2:9.3}   A3 theta8 {a3:9.3}   A4 theta5 {a4:9.3}  deg\n"
@@ -207,7 +207,7 @@ pub fn format_page(
     };
     let (head, tail) = (solution.head_point(), solution.tail_point());
     let legs = solution.legs.map(|leg| round_3(leg.follower_angle()));
-    let round_4 = |margin: f64| round_decimals(margin, 4);
+    let round_4 = |margin: f64| round_to_decimals(margin, 4);
     let margins = &solution.margins;
     let _ = write!(
         page,

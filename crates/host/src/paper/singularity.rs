@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 use crate::shared::pose_args::ANGLE_NAMES;
 
 /// Names of the passive joints and slider travels, in the order of the columns in K*.
@@ -61,7 +61,7 @@ impl Matrix {
                 // A value that is zero except for rounding errors is printed as a dot.
                 text += &match value.abs() < 5e-7 {
                     true => format!(" {:>9}", "."),
-                    false => format!(" {:9.2}", round_decimals(*value, 2)),
+                    false => format!(" {:9.2}", round_to_decimals(*value, 2)),
                 };
             }
         }
@@ -246,20 +246,20 @@ fn format_text(report: &Report) -> String {
         report.k_star.to_text(),
         report.determinant,
         report.factored_determinant,
-        round_decimals(blocks.head, 2),
-        round_decimals(blocks.tail, 2),
-        round_decimals(blocks.left, 2),
-        round_decimals(blocks.right, 2),
+        round_to_decimals(blocks.head, 2),
+        round_to_decimals(blocks.tail, 2),
+        round_to_decimals(blocks.left, 2),
+        round_to_decimals(blocks.right, 2),
         report
             .leg_determinants
-            .map(|det| format!("{:+.1}", round_decimals(det, 1)))
+            .map(|det| format!("{:+.1}", round_to_decimals(det, 1)))
             .join(" "),
     );
     text += "nearest singularities, and the turns of A1, A2, A3, A4 that reach them\n";
     for singularity in &report.nearest {
         let turns = singularity
             .turns
-            .map(|angle| format!("{:+8.2}", round_decimals(angle, 2)))
+            .map(|angle| format!("{:+8.2}", round_to_decimals(angle, 2)))
             .join(" ");
         text += &format!(
             "  {:7.2} deg  {turns}   {}\n",

@@ -16,7 +16,7 @@ use crate::paper::poses::{PoseReader, TimedPose};
 /// Number of poses that are solved together, which limits memory use.
 const BATCH_SIZE: usize = 8192;
 
-/// Number of poses in a block of lines.
+/// Number of poses whose lines are formatted by one task, as a block.
 const BLOCK_SIZE: usize = BATCH_SIZE / 16;
 
 /// Number of blocks that may wait to be written.
@@ -25,12 +25,13 @@ const MAX_WAITING_BLOCKS: usize = 32;
 /// Solves a pose and prints it. Without a pose, solves the poses from standard input.
 ///
 /// # Errors
-/// Fails if there is neither pose nor stream, if a line of the stream is invalid, or if the output cannot be written.
+/// Fails if no pose is given and standard input is a terminal, if a line of the stream is invalid, or if the output
+/// cannot be written.
 pub fn print(robot: &Robot, pose: Option<&Pose>, is_json: bool) -> Result<(), Failure> {
     match pose {
         Some(pose) => Ok(io::stdout().write_all(&solve_pose(robot, pose, is_json)?)?),
         None if io::stdin().is_terminal() => Err(Failure::Input(
-            "a pose is required: --theta1 --theta4 --theta8 --theta5, or poses as CSV on standard input"
+            "a pose is required: give --theta1, --theta4, --theta8 and --theta5, or poses as CSV on standard input"
                 .to_string(),
         )),
         None => solve_stream(robot, is_json),

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use crate::Failure;
 use crate::shared::json;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 use crate::shared::quantity::Quantity;
 
 /// Longest time step for finite differences, s.
@@ -77,7 +77,7 @@ pub fn print(
 ) -> Result<(), Failure> {
     let type2_margin = solution.margins.type2[0].min(solution.margins.type2[1]);
     if type2_margin < 1e-9 {
-        return Err(Failure::Impossible(
+        return Err(Failure::Operation(
             "type-2 singularity: the couplers line up, so the rates are undefined".to_string(),
         ));
     }
@@ -103,10 +103,10 @@ fn format_text(rows: &[Row]) -> String {
         text += &format!(
             "{:9} {:10.4} {:3} {:+12.4} {:+20.4}   {verdict}\n",
             row.joint,
-            round_decimals(row.value, 4),
+            round_to_decimals(row.value, 4),
             row.unit,
-            round_decimals(row.rate, 4),
-            round_decimals(row.acceleration, 4)
+            round_to_decimals(row.rate, 4),
+            round_to_decimals(row.acceleration, 4)
         );
     }
     text

@@ -11,9 +11,9 @@ pub enum Failure {
     /// robot.toml is missing or invalid.
     #[error("{0}")]
     Robot(#[from] lizard_robot::Error),
-    /// The command is valid, but could not be carried out.
+    /// The operation failed, although the command is valid.
     #[error("{0}")]
-    Impossible(String),
+    Operation(String),
     /// Standard input, standard output or the terminal failed. Errors of files and ports use another variant because
     /// their messages must name the file or port.
     #[error("standard input or output: {0}")]
@@ -25,7 +25,7 @@ impl Failure {
     pub fn exit_code(&self) -> u8 {
         match self {
             Self::Input(_) | Self::Robot(_) => 2,
-            Self::Impossible(_) | Self::Io(_) => 1,
+            Self::Operation(_) | Self::Io(_) => 1,
         }
     }
 
@@ -37,7 +37,7 @@ impl Failure {
 
 impl From<lizard_kinematics::InfeasiblePose> for Failure {
     fn from(infeasible: lizard_kinematics::InfeasiblePose) -> Self {
-        Self::Impossible(infeasible.to_string())
+        Self::Operation(infeasible.to_string())
     }
 }
 

@@ -44,8 +44,13 @@ pub fn read_text(path: &Path) -> Result<String, Failure> {
 /// Checks that an output may be written to `path`.
 ///
 /// # Errors
-/// Fails if the output would replace an input or a robot file.
+/// Fails if the output would replace an input or a robot file, and for `-`, which many programs take for standard
+/// output.
 pub fn check_replaceable(path: &Path) -> Result<(), Failure> {
+    if path == Path::new("-") {
+        let message = "- is not an output file; write ./- for a file of this name, or /dev/stdout";
+        return Err(Failure::Input(message.to_owned()));
+    }
     let inputs = INPUT_FILES.lock().unwrap_or_else(PoisonError::into_inner);
     let is_input = |input: &PathBuf| same_file::is_same_file(input, path).unwrap_or(false);
     let reason = if inputs.iter().any(is_input) {
@@ -104,7 +109,7 @@ pub fn write_failure(path: &Path, error: &io::Error) -> Failure {
     let reason = reason
         .split_once(" at path ")
         .map_or(reason.as_str(), |(reason, _)| reason);
-    Failure::Impossible(format!("cannot write {}: {reason}", path.display()))
+    Failure::Operation(format!("cannot write {}: {reason}", path.display()))
 }
 
 /// Creates the folders that contain a file.

@@ -22,7 +22,7 @@ pub mod plot;
 pub mod pose_args;
 pub mod progress;
 pub mod quantity;
-pub mod robot_file;
+pub mod robot_args;
 pub mod shapes;
 pub mod spread;
 pub mod suggestion;

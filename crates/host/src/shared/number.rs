@@ -1,14 +1,14 @@
-//! Rounding and formatting of numbers for people.
+//! Rounding and formatting of numbers for human readers.
 
-/// Rounds a value to `decimals` decimals, for printing. The result is never -0.0.
-pub fn round_decimals(value: f64, decimals: i32) -> f64 {
+/// Rounds a value to `decimals` decimal places, for printing. The result is never -0.0.
+pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     let scale = 10f64.powi(decimals);
     // Adding 0.0 turns -0.0 into 0.0.
     (value * scale).round() / scale + 0.0
 }
 
-/// Formats a number with spaces between groups of three digits.
-pub fn format_grouped(value: f64, decimals: usize) -> String {
+/// Formats a number, with spaces between groups of three digits.
+pub fn group_digits(value: f64, decimals: usize) -> String {
     let ungrouped = format!("{value:.decimals$}");
     let (integer, fraction) = ungrouped.split_at(ungrouped.find('.').unwrap_or(ungrouped.len()));
     let mut text = String::new();
@@ -33,16 +33,16 @@ mod tests {
             (16_384.0, 0, "16 384"),
             (1_234_567.89, 1, "1 234 567.9"),
         ] {
-            assert_eq!(format_grouped(value, decimals), text);
+            assert_eq!(group_digits(value, decimals), text);
         }
     }
 
     #[test]
     fn a_value_that_rounds_to_zero_has_no_sign() {
         for value in [-0.0, 0.0, -0.00049, 0.00049] {
-            assert_eq!(format!("{:+.3}", round_decimals(value, 3)), "+0.000");
+            assert_eq!(format!("{:+.3}", round_to_decimals(value, 3)), "+0.000");
         }
-        assert_eq!(format!("{:.3}", round_decimals(-0.0005, 3)), "-0.001");
-        assert_eq!(format!("{:.2}", round_decimals(-319.987, 2)), "-319.99");
+        assert_eq!(format!("{:.3}", round_to_decimals(-0.0005, 3)), "-0.001");
+        assert_eq!(format!("{:.2}", round_to_decimals(-319.987, 2)), "-319.99");
     }
 }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::shared::json;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// The largest number of parts, more than any job queue needs.
 const MAX_PARTS: u32 = 1_000_000;
@@ -84,7 +84,7 @@ impl Part {
     pub fn compute_and_print<C: Spreadable, T: Serialize>(
         self,
         command: &C,
-        robot: &RobotFile,
+        robot: &RobotArgs,
         piece_count: usize,
         mut compute_piece: impl FnMut(usize) -> T,
     ) -> Result<(), Failure> {
@@ -110,7 +110,7 @@ impl Part {
 #[derive(clap::Args, Debug, Default)]
 pub struct SpreadArgs {
     #[command(flatten)]
-    pub(crate) robot: RobotFile,
+    pub(crate) robot: RobotArgs,
     /// Compute only one of N parts, and print it for `lizard merge`
     #[arg(long, value_name = "K/N", help_heading = "Spread over machines")]
     part: Option<Part>,
@@ -151,7 +151,7 @@ pub(crate) struct PartOutput {
 impl SpreadArgs {
     /// Sets the robot and the results of all parts, for a merge.
     pub(crate) fn set_merged(&mut self, robot: String, results: BTreeMap<usize, Value>) {
-        self.robot = RobotFile::with_text(robot);
+        self.robot = RobotArgs::from_text(robot);
         self.merged = Some(results);
     }
 

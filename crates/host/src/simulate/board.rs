@@ -72,7 +72,7 @@ impl From<BoardError> for Failure {
     fn from(error: BoardError) -> Self {
         match error {
             BoardError::Load(_) => Self::Input(error.to_string()),
-            _ => Self::Impossible(format!("cannot measure the firmware: {error}")),
+            _ => Self::Operation(format!("cannot measure the firmware: {error}")),
         }
     }
 }

@@ -57,11 +57,11 @@ pub fn add_patrol(text: &str, last_steps: &[&str]) -> Result<Robot, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file;
+    use crate::shared::robot_args;
 
     #[test]
     fn a_patrol_adds_a_button_and_a_nose_for_its_routine() {
-        let robot = add_patrol(robot_file::DEFAULT_ROBOT_TOML, &[])
+        let robot = add_patrol(robot_args::DEFAULT_ROBOT_TOML, &[])
             .expect("the built-in robot has room for a patrol");
         let inputs: Vec<&str> = robot.inputs().named_pins().map(|(name, _)| name).collect();
         assert_eq!(inputs, ["button", "nose"]);

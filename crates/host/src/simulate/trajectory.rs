@@ -8,10 +8,10 @@ use lizard_twin::FRAME_PERIOD_S;
 use simulated_uno::{CYCLES_PER_US, Fidelity, Uno};
 
 use crate::shared::firmware;
-use crate::shared::robot_file::find_moving_gait;
+use crate::shared::robot_args::find_moving_gait;
 use crate::simulate::sim::frame_log::FrameLog;
 use crate::simulate::twin;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Records the servo targets during three cycles of a gait on the simulated UNO. `elf` replaces the built-in firmware.
 ///
@@ -20,12 +20,12 @@ use crate::{Failure, RobotFile};
 /// fails.
 pub fn record(
     robot: &Robot,
-    robot_file: &RobotFile,
+    robot_args: &RobotArgs,
     gait: &str,
     elf: Option<&Path>,
 ) -> Result<Trajectory, Failure> {
     let gait = find_moving_gait(robot, gait)?;
-    let image = firmware::select_firmware(elf, robot_file, robot)?.image;
+    let image = firmware::select_firmware(elf, robot_args, robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let script = twin::build_walk_script(robot, &[gait.name()]);
     let recording = twin::record(&mut uno, robot, &script)?;
@@ -63,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_servo_without_a_pulse_keeps_its_previous_target() {
-        let robot = crate::shared::robot_file::built_in_robot("unequal");
+        let robot = crate::shared::robot_args::built_in_robot("unequal");
         let log = FrameLog {
             widths: vec![
                 [0; 4],

@@ -96,6 +96,15 @@ fn new_writes_a_valid_robot_file_and_replaces_no_file() {
 }
 
 #[test]
+fn a_hyphen_as_output_is_refused_and_leaves_no_file() {
+    let folder = tempfile::tempdir().expect("a temporary folder is created");
+    for line in ["draw --output -", "flash image --output -", "model -"] {
+        run_line_in(folder.path(), line).expect_refusal_with("- is not an output file");
+    }
+    assert!(!folder.path().join("-").exists());
+}
+
+#[test]
 fn flash_image_creates_missing_folders() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let line = "flash image --robot large --output new/folder/x.hex";

@@ -1,4 +1,4 @@
-//! Tests of `lizard console` and the other commands for a board, with a simulated UNO at a pseudo terminal. The tests
+//! Tests of `lizard console` and the other commands for a board, with a simulated UNO on a pseudo terminal. The tests
 //! run in real time, so each test takes a few seconds.
 #![cfg(target_os = "linux")]
 
@@ -22,30 +22,30 @@ use fixture::{
 fn console_prints_the_banner_and_the_answers_to_a_script_in_order() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
-    let (out, error, code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
-    assert_eq!(code, Some(1), "exit code after a refused line: {error}");
+    let (stdout, stderr, exit_code) = run(folder.path(), &arguments, "cal\nfly\nstop\n");
+    assert_eq!(exit_code, Some(1), "after a refused line: {stderr}");
     assert!(
-        error.ends_with(
+        stderr.ends_with(
             "lizard: the robot did not accept 1 of 3 lines, the first `fly`: err 1 unknown command; \
              send help for the list\n"
         ),
-        "{error}"
+        "{stderr}"
     );
-    assert!(out.starts_with("# lizard "), "{out}");
-    let answers: Vec<&str> = out.lines().filter(|line| !line.starts_with('#')).collect();
+    assert!(stdout.starts_with("# lizard "), "{stdout}");
+    let answers = stdout.lines().filter(|line| !line.starts_with('#'));
     assert_eq!(
-        answers,
+        answers.collect::<Vec<_>>(),
         [
             "ok cal",
             "err 1 unknown command; send help for the list",
             "ok stop"
         ]
     );
-    assert!(out.contains("\n# A4 trim 0.00 limit "), "{out}");
-    assert!(error.contains("(a simulated UNO)"), "no port name: {error}");
+    assert!(stdout.contains("\n# A4 trim 0.00 limit "), "{stdout}");
+    assert!(stderr.contains("(a simulated UNO)"), "no port: {stderr}");
 
-    let (_, error, code) = run(folder.path(), &arguments, "cal\nstop\n");
-    assert_eq!(code, Some(0), "exit code after accepted lines: {error}");
+    let (_, stderr, exit_code) = run(folder.path(), &arguments, "cal\nstop\n");
+    assert_eq!(exit_code, Some(0), "after accepted lines: {stderr}");
 }
 
 #[test]
@@ -55,8 +55,8 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
     let uno = Uno::start(folder_path);
     let port = uno.port();
     let back_up = |file: &str| {
-        let (_, error, code) = run(folder_path, &["calibrate", "backup", file, &port], "");
-        assert_eq!(code, Some(0), "{error}");
+        let (_, stderr, exit_code) = run(folder_path, &["calibrate", "backup", file, &port], "");
+        assert_eq!(exit_code, Some(0), "{stderr}");
         fs::read_to_string(folder_path.join(file)).expect("the file is readable")
     };
     let restore = |file: &str, text: &str| {
@@ -65,23 +65,23 @@ fn restore_writes_a_backup_to_the_board_and_a_refused_calibration_changes_nothin
     };
     let first_text = back_up("a.toml");
     let changed_text = first_text.replacen("trim = 0.0", "trim = -1.75", 1);
-    let (out, error, code) = restore("b.toml", &changed_text);
-    assert_eq!(code, Some(0), "{error}");
+    let (stdout, stderr, exit_code) = restore("b.toml", &changed_text);
+    assert_eq!(exit_code, Some(0), "{stderr}");
     assert!(
-        out.ends_with("has accepted and saved the calibration from b.toml\n"),
-        "{out}"
+        stdout.ends_with("has accepted and saved the calibration from b.toml\n"),
+        "{stdout}"
     );
 
     let scale_line = first_text.lines().find(|line| line.starts_with("scale = "));
     let refused_text =
         changed_text.replacen(scale_line.expect("A1 has a scale"), "scale = 99.0", 1);
-    let (out, error, code) = restore("c.toml", &refused_text);
-    assert_eq!(code, Some(1), "{error}");
+    let (stdout, stderr, exit_code) = restore("c.toml", &refused_text);
+    assert_eq!(exit_code, Some(1), "{stderr}");
     assert!(
-        error.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
-        "{error}"
+        stderr.contains("c.toml: the robot refuses `scale 1 99.00`: 3 scale must be 5..20"),
+        "{stderr}"
     );
-    assert_eq!(out, "");
+    assert_eq!(stdout, "");
 
     let saved_text = back_up("d.toml");
     assert_eq!(saved_text, changed_text, "the calibration after a reset");
@@ -94,12 +94,12 @@ fn info_prints_a_boards_firmware_and_settings_and_changes_nothing() {
     let uno = Uno::start(folder_path);
     let port = uno.port();
     let lines = "trim 3 -4.25\nboot rest\nsave\n";
-    let (_, error, code) = run(folder_path, &["console", &port], lines);
-    assert_eq!(code, Some(0), "{error}");
+    let (_, stderr, exit_code) = run(folder_path, &["console", &port], lines);
+    assert_eq!(exit_code, Some(0), "{stderr}");
     for _ in 0..2 {
-        let (out, error, code) = run(folder_path, &["info", "--json", &port], "");
-        assert_eq!(code, Some(0), "{error}");
-        let board: serde_json::Value = serde_json::from_str(&out).expect("the output is JSON");
+        let (stdout, stderr, exit_code) = run(folder_path, &["info", "--json", &port], "");
+        assert_eq!(exit_code, Some(0), "{stderr}");
+        let board: serde_json::Value = serde_json::from_str(&stdout).expect("the output is JSON");
         assert_eq!(board["firmware"], env!("CARGO_PKG_VERSION"));
         assert_eq!(board["robot"]["hash"].as_str().map(str::len), Some(8));
         assert_eq!(board["fault"], serde_json::Value::Null);
@@ -158,7 +158,7 @@ fn calibrate_advances_by_keys_and_a_cancelled_calibration_changes_nothing() {
 }
 
 #[test]
-fn replay_draws_and_summarizes_a_recorded_session() {
+fn replay_draws_and_summarises_a_recorded_session() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let folder_path = folder.path();
     let mut child = lizard_command(folder_path, &["console", "--record", "a.jsonl", "--sim"])
@@ -182,14 +182,14 @@ fn replay_draws_and_summarizes_a_recorded_session() {
     assert_eq!(status.code(), Some(1), "exit code after a refused line");
 
     let arguments = ["console", "replay", "a.jsonl", "--svg", "a.svg"];
-    let (out, error, code) = run(folder_path, &arguments, "");
-    assert_eq!(code, Some(0), "{error}");
+    let (stdout, stderr, exit_code) = run(folder_path, &arguments, "");
+    assert_eq!(exit_code, Some(0), "{stderr}");
     for line in [
         " > speed 50\n",
         "commands    2, 1 refused\n",
         "problem     none\n",
     ] {
-        assert!(out.contains(line), "{line}: {out}");
+        assert!(stdout.contains(line), "{line}: {stdout}");
     }
     let drawing = fs::read_to_string(folder_path.join("a.svg")).expect("the file is readable");
     // If the machine pauses for a second, all four servos' curves have a gap.
@@ -200,9 +200,9 @@ fn replay_draws_and_summarizes_a_recorded_session() {
     );
 
     let arguments = ["console", "--record", "a.jsonl", "--sim"];
-    let (_, error, code) = run(folder_path, &arguments, "");
-    assert_eq!(code, Some(2));
-    assert!(error.contains("a.jsonl already exists"), "{error}");
+    let (_, stderr, exit_code) = run(folder_path, &arguments, "");
+    assert_eq!(exit_code, Some(2));
+    assert!(stderr.contains("a.jsonl already exists"), "{stderr}");
 }
 
 #[test]
@@ -212,11 +212,11 @@ fn a_command_refuses_a_port_that_another_program_has_open() {
     let mut other_session = TerminalSession::start(folder.path(), &["console", &uno.port()]);
     other_session.wait_for("# lizard ");
     let arguments = ["calibrate", "backup", "a.toml", &uno.port()];
-    let (_, error, code) = run(folder.path(), &arguments, "");
+    let (_, stderr, exit_code) = run(folder.path(), &arguments, "");
     let owner_text = format!("is open in lizard (process {})", other_session.child.id());
     other_session.press("\x03");
-    assert_eq!(code, Some(1));
-    assert!(error.contains(&owner_text), "{error}");
+    assert_eq!(exit_code, Some(1));
+    assert!(stderr.contains(&owner_text), "{stderr}");
     assert!(!folder.path().join("a.toml").exists());
 }
 
@@ -228,11 +228,11 @@ fn the_error_for_a_board_without_lizard_firmware_shows_its_output() {
         let _ = terminal.write_all(b"Grbl 1.1h ['$' for help]\r\n");
     });
     let arguments = ["calibrate", "backup", "a.toml", &device.port];
-    let (_, error, code) = run(folder.path(), &arguments, "");
+    let (_, stderr, exit_code) = run(folder.path(), &arguments, "");
     device.stop();
-    assert_eq!(code, Some(1), "{error}");
+    assert_eq!(exit_code, Some(1), "{stderr}");
     let expected = "this is not a lizard: expected `# lizard ...`, got `Grbl 1.1h ['$' for help]`";
-    assert!(error.contains(expected), "{error}");
+    assert!(stderr.contains(expected), "{stderr}");
     // No incomplete file remains.
     assert!(!folder.path().join("a.toml").exists());
 }
@@ -251,11 +251,11 @@ fn the_error_for_a_silent_board_counts_the_unanswered_lines() {
         }
     });
     let arguments = ["console", "--record", "a.jsonl", &device.port];
-    let (_, error, code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
+    let (_, stderr, exit_code) = run(folder.path(), &arguments, "walk\nspeed 50\nstop\n");
     device.stop();
-    assert_eq!(code, Some(1), "{error}");
+    assert_eq!(exit_code, Some(1), "{stderr}");
     let expected = "lizard: the robot did not accept 3 of 3 lines, the first `walk`: not sent\n";
-    assert!(error.ends_with(expected), "{error}");
+    assert!(stderr.ends_with(expected), "{stderr}");
 }
 
 #[test]
@@ -290,9 +290,9 @@ fn commands_refuse_invalid_input_with_a_message() {
             "lizard: calibrate reads single keys; run it in a terminal",
         ),
     ] {
-        let (out, error, code) = run(folder_path, arguments, "");
-        assert!(error.trim().starts_with(expected), "{error}");
-        assert_eq!((out.as_str(), code), ("", Some(2)), "{error}");
+        let (stdout, stderr, exit_code) = run(folder_path, arguments, "");
+        assert!(stderr.trim().starts_with(expected), "{stderr}");
+        assert_eq!((stdout.as_str(), exit_code), ("", Some(2)), "{stderr}");
     }
 }
 
@@ -302,12 +302,12 @@ fn the_link_to_a_simulated_board_replaces_no_other_file_and_ends_with_the_board(
     let (board_link, other_link) = (folder.path().join("uno"), folder.path().join("other"));
     std::os::unix::fs::symlink("a-file", &other_link).expect("the link is created");
     let name = other_link.display().to_string();
-    let (_, error, code) = run(folder.path(), &["sim", "--pty", &name], "");
+    let (_, stderr, exit_code) = run(folder.path(), &["sim", "--pty", &name], "");
     assert_eq!(
-        error.trim(),
+        stderr.trim(),
         format!("lizard: {name} already exists and is not a link to a pseudo terminal")
     );
-    assert_eq!(code, Some(2));
+    assert_eq!(exit_code, Some(2));
     assert_eq!(
         fs::read_link(&other_link).expect("the link is readable"),
         Path::new("a-file")
@@ -344,7 +344,7 @@ fn send_signal(child: &Child, signal: Signal) {
     kill_process(Pid::from_child(child), signal).expect("the process exists");
 }
 
-/// Reads the state of a process, as `ps` prints it: S for asleep, R for running, T for stopped.
+/// Reads the state of a process, as `ps` prints it: S for sleeping, R for running, T for stopped.
 fn read_process_state(child: &Child) -> char {
     let path = format!("/proc/{}/stat", child.id());
     let stat = fs::read_to_string(path).expect("the process exists");
@@ -352,7 +352,7 @@ fn read_process_state(child: &Child) -> char {
     rest.chars().next().expect("the state is a letter")
 }
 
-/// Returns true if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
+/// True if a terminal is in cooked mode: programs get whole lines, and keys are echoed.
 fn is_cooked(terminal: &File) -> bool {
     let modes = tcgetattr(terminal).expect("the terminal has modes");
     modes
@@ -378,7 +378,7 @@ fn control_z_restores_the_terminal_and_the_program_can_continue() {
         });
         assert!(is_cooked(&session.keys), "{command}");
         send_signal(&session.child, Signal::CONT);
-        TIME_LIMIT.wait_for("keys one by one", || !is_cooked(&session.keys));
+        TIME_LIMIT.wait_for("raw mode", || !is_cooked(&session.keys));
         session.press(keys);
         session.wait_for(next_text);
         session.press(if command == "console" { "\x04" } else { "q" });
@@ -412,7 +412,7 @@ fn a_program_ends_when_its_terminal_is_closed() {
 }
 
 #[test]
-fn console_does_not_report_an_ended_simulated_robot_as_continuing() {
+fn console_does_not_say_that_an_ended_simulated_robot_continues() {
     let folder = tempfile::tempdir().expect("a temporary folder is created");
     let arguments = ["console", "--sim"];
     let mut session = TerminalSession::start(folder.path(), &arguments);
@@ -440,9 +440,9 @@ fn control_characters_of_a_robot_file_do_not_reach_the_terminal() {
     let text = include_str!("../../../../robots/paper.toml");
     let text = format!("{text}\n[gait.\"\\u001b]0;owned\\u0007\"]\nperiod = 1.0\n");
     fs::write(folder.path().join("bad.toml"), text).expect("the file is written");
-    let (_, error, code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
-    assert_eq!(code, Some(2));
-    assert!(error.contains("]0;owned"), "{error}");
-    let control_count = error.trim_end().matches(|c: char| c.is_control()).count();
-    assert_eq!(control_count, 0, "{error:?}");
+    let (_, stderr, exit_code) = run(folder.path(), &["gaits", "--robot", "bad.toml"], "");
+    assert_eq!(exit_code, Some(2));
+    assert!(stderr.contains("]0;owned"), "{stderr}");
+    let control_count = stderr.trim_end().matches(|c: char| c.is_control()).count();
+    assert_eq!(control_count, 0, "{stderr:?}");
 }

@@ -1,4 +1,4 @@
-//! A solution contains only finite numbers, for any lengths and angles.
+//! Tests that a solution contains only finite numbers, whatever the lengths and angles.
 
 use lizard_kinematics::{AssemblyMode, Fault, FiveBar, FiveBarPose, Pose, Slider, Vector};
 use proptest::prelude::*;
@@ -19,9 +19,9 @@ fn any_length() -> impl Strategy<Value = f64> {
 
 /// Five-bars with links of similar lengths, most of which close, and five-bars with links of unrelated lengths.
 fn any_five_bar() -> impl Strategy<Value = FiveBar> {
-    let any_scale = || prop_oneof![Just(None), any_length().prop_map(Some)];
+    let optional_scale = || prop_oneof![Just(None), any_length().prop_map(Some)];
     (
-        any_scale(),
+        optional_scale(),
         proptest::array::uniform5(0.2..2.0f64),
         proptest::array::uniform5(any_length()),
     )
@@ -71,10 +71,10 @@ proptest! {
             if let Ok(solutions) = five_bar.inverse(point) {
                 for solution in solutions {
                     prop_assert!(solution.theta_left.is_finite() && solution.theta_right.is_finite());
-                    // No intermediate result has underflowed, either: the arm ends at the point.
+                    // Nor has an intermediate result underflowed: the coupler has its length.
                     let tip = five_bar.left_shaft() + Vector::from_angle(solution.theta_left) * five_bar.left_crank_length;
-                    let reach = (point - tip).length();
-                    let error = (reach - five_bar.left_coupler_length).abs();
+                    let coupler_length = (point - tip).length();
+                    let error = (coupler_length - five_bar.left_coupler_length).abs();
                     let total_length = five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base;
                     prop_assert!(error < 1e-6 * total_length, "error {error} mm, total length {total_length} mm: {solution:?}");
                 }
@@ -87,9 +87,10 @@ proptest! {
 
     #[test]
     fn a_slider_of_any_size_has_a_finite_pose_or_a_fault(
-        l in proptest::array::uniform5(any_length()), rear in any::<f64>(), front in 0.0..360.0f64,
+        lengths in proptest::array::uniform5(any_length()), rear in any::<f64>(), front in 0.0..360.0f64,
     ) {
-        let slider = Slider { front_offset: l[0], base: l[1], front_arm: l[2], rear_arm: l[3], nominal_length: l[4] };
+        let [front_offset, base, front_arm, rear_arm, nominal_length] = lengths;
+        let slider = Slider { front_offset, base, front_arm, rear_arm, nominal_length };
         if let Ok(pose) = slider.forward(rear, front) {
             prop_assert!(pose.d.is_finite() && pose.s.is_finite() && pose.span.is_finite());
             prop_assert!(pose.rear_tip.is_finite() && pose.front_tip.is_finite());
@@ -97,20 +98,20 @@ proptest! {
     }
 
     #[test]
-    fn a_huge_angle_has_the_same_solution_as_its_remainder_modulo_360_degrees(
-        robot in any_lizard(), pose in any_pose(), huge in any::<f64>(), servo in 0..4usize,
+    fn an_angle_and_its_remainder_modulo_360_degrees_have_the_same_solution(
+        robot in any_lizard(), pose in any_pose(), angle in any::<f64>(), servo in 0..4usize,
     ) {
-        prop_assume!(huge.is_finite());
+        prop_assume!(angle.is_finite());
         let mut pose = pose;
-        pose[servo] = huge;
-        let huge_solution = robot.solve(&Pose::from(pose));
-        pose[servo] = huge % 360.0;
+        pose[servo] = angle;
+        let solution = robot.solve(&Pose::from(pose));
+        pose[servo] = angle % 360.0;
         let reduced_solution = robot.solve(&Pose::from(pose));
-        prop_assert_eq!(huge_solution.is_ok(), reduced_solution.is_ok());
-        if let (Ok(huge_solution), Ok(reduced_solution)) = (huge_solution, reduced_solution) {
-            prop_assert_eq!(huge_solution.margins, reduced_solution.margins);
-            prop_assert_eq!(huge_solution.head_point(), reduced_solution.head_point());
-            prop_assert_eq!(huge_solution.legs[servo].follower_angle(), reduced_solution.legs[servo].follower_angle());
+        prop_assert_eq!(solution.is_ok(), reduced_solution.is_ok());
+        if let (Ok(solution), Ok(reduced_solution)) = (solution, reduced_solution) {
+            prop_assert_eq!(solution.margins, reduced_solution.margins);
+            prop_assert_eq!(solution.head_point(), reduced_solution.head_point());
+            prop_assert_eq!(solution.legs[servo].follower_angle(), reduced_solution.legs[servo].follower_angle());
         }
     }
 }
@@ -129,9 +130,9 @@ fn an_infinite_or_overflowing_length_is_reported_with_its_mechanism() {
         (18, f64::NAN, "right side"),
     ] {
         let mut robot = paper_lizard();
-        let mut l = robot.links.to_array();
-        l[index] = length;
-        robot.links = l.into();
+        let mut lengths = robot.links.to_array();
+        lengths[index] = length;
+        robot.links = lengths.into();
         let neutral = [138.59, 41.41, 318.59, 221.41];
         let result = robot.solve(&neutral.into());
         let infeasible = result.expect_err("the robot has no finite pose");

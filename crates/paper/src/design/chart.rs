@@ -17,7 +17,7 @@ pub struct ChartPoint {
     pub performance: Performance,
 }
 
-/// Computes the charts at the points of [`triangle_points`](super::triangle_points), on all cores. The results and
+/// Computes the charts at the points of [`grid_points`](super::grid_points), on all cores. The results and
 /// their order are the same in every run. Calls `report_progress` after each point.
 pub fn compute_chart_points(
     points: Vec<Proportions>,
@@ -25,7 +25,7 @@ pub fn compute_chart_points(
     report_progress: &(dyn Fn() + Sync),
 ) -> Vec<ChartPoint> {
     let compute = |proportions: Proportions| {
-        let performance = Performance::compute(&proportions.at_scale(1.0), ring_count);
+        let performance = Performance::compute(&proportions.five_bar(1.0), ring_count);
         report_progress();
         ChartPoint {
             proportions,

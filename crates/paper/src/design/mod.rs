@@ -7,5 +7,5 @@ mod search;
 
 pub use chart::{ChartPoint, compute_chart_points};
 pub use performance::{CLAIMED_LCI, LciStatistics, Performance, lci};
-pub use proportions::{PROPORTION_SUM, Proportions, triangle_points};
+pub use proportions::{PROPORTION_SUM, Proportions, grid_points};
 pub use search::{BestValues, Design, Requirements, Search, find_design, merge_and_rank};

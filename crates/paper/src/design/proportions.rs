@@ -1,5 +1,5 @@
-//! The parameter design space: non-dimensional links r1 (crank), r2 (coupler) and r3 (half the base) of a symmetrical
-//! five-bar, with r1 + r2 + r3 = 0.9.
+//! The parameter design space: the dimensionless lengths r1 (crank), r2 (coupler) and r3 (half the base) of a
+//! symmetrical five-bar, with r1 + r2 + r3 = 0.9.
 
 use lizard_kinematics::FiveBar;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The sum r1 + r2 + r3 of every design.
 pub const PROPORTION_SUM: f64 = 0.9;
 
-/// The smallest r1, r2 or r3 of a design. Smaller values make D overflow.
+/// The smallest r1, r2 or r3 of a design. With smaller values, `factor_for_base` could overflow.
 const MIN_PROPORTION: f64 = 0.001;
 
 /// A point of the design space.
@@ -17,7 +17,7 @@ pub struct Proportions {
     pub r1: f64,
     /// Coupler, l2 / D.
     pub r2: f64,
-    /// Half the base, l0 / 2 D.
+    /// Half the base, l0 / (2 D).
     pub r3: f64,
 }
 
@@ -65,7 +65,7 @@ impl Proportions {
     }
 
     /// The five-bar with the dimensional factor `d` (mm).
-    pub fn at_scale(&self, d: f64) -> FiveBar {
+    pub fn five_bar(&self, d: f64) -> FiveBar {
         FiveBar {
             base: 2.0 * self.r3 * d,
             left_crank_length: self.r1 * d,
@@ -75,20 +75,20 @@ impl Proportions {
         }
     }
 
-    /// The dimensional factor for a base l0: D = R3 / r3.
-    pub fn scale_for_base(&self, l0: f64) -> f64 {
+    /// The dimensional factor (mm) for a base l0: D = R3 / r3.
+    pub fn factor_for_base(&self, l0: f64) -> f64 {
         l0 / 2.0 / self.r3
     }
 }
 
-/// Returns the grid points inside the triangle of r1, r2 and r3. The edges are omitted, because there a link has no
-/// length.
-pub fn triangle_points(step: f64) -> Vec<Proportions> {
+/// Returns the points of a grid inside the triangle of r1, r2 and r3. The edges are omitted, because there a link has
+/// no length.
+pub fn grid_points(step: f64) -> Vec<Proportions> {
     let step_count = (PROPORTION_SUM / step + 1e-9) as usize;
     let mut points = Vec::new();
     for i in 1..step_count {
         for j in 1..step_count {
-            // Products of integers, because a sum of steps accumulates rounding errors.
+            // Multiplied, because a sum of steps would accumulate rounding errors.
             let (r1, r2) = (i as f64 * step, j as f64 * step);
             let r3 = PROPORTION_SUM - r1 - r2;
             if r3 > step * 1e-6 && r3 < PROPORTION_SUM / 2.0 - step * 1e-6 {

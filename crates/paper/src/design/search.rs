@@ -9,7 +9,7 @@ use lizard_kinematics::{Check, End, FiveBar, Limits, Slider};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::proportions::{Proportions, triangle_points};
+use super::proportions::{Proportions, grid_points};
 
 /// The requirements for every design.
 #[derive(Clone, Copy)]
@@ -68,7 +68,7 @@ impl Search {
     /// Prepares the search of all points of the triangle on a grid of this step.
     pub fn new(step: f64, requirements: Requirements) -> Self {
         Self {
-            points: triangle_points(step),
+            points: grid_points(step),
             requirements,
         }
     }
@@ -109,8 +109,8 @@ pub fn merge_and_rank(pieces: Vec<Vec<Design>>) -> Vec<Design> {
 /// Finds the best design with these proportions, without a score. Returns `None` if the safe sweep is smaller than
 /// required, or if a link is too short.
 pub fn find_design(proportions: Proportions, requirements: &Requirements) -> Option<Design> {
-    let d = proportions.scale_for_base(requirements.base_mm);
-    let five_bar = proportions.at_scale(d);
+    let d = proportions.factor_for_base(requirements.base_mm);
+    let five_bar = proportions.five_bar(d);
     if five_bar.left_crank_length.min(five_bar.left_coupler_length) < requirements.min_link_mm {
         return None;
     }

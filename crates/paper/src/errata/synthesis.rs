@@ -9,6 +9,9 @@ use super::sample::{LINK_TABLE, Sample, polar};
 use crate::design::{CLAIMED_LCI, PROPORTION_SUM, Proportions, lci};
 use crate::mobility;
 
+/// The margin below which a leg counts as close to a change point.
+const MIN_LEG_MARGIN: f64 = 0.3;
+
 /// The equations in the paper's order.
 pub const EQUATIONS: &[Equation] = &[
     Equation::new(
@@ -36,11 +39,11 @@ pub const EQUATIONS: &[Equation] = &[
         "mm",
         |sample| {
             let (d, proportions) = (10.0 + 100.0 * sample.random[0], Proportions::PAPER);
-            let five_bar = proportions.at_scale(d);
+            let five_bar = proportions.five_bar(d);
             let sum =
                 five_bar.left_crank_length + five_bar.left_coupler_length + five_bar.base / 2.0;
             let sum_error = (sum / PROPORTION_SUM - d).abs();
-            let base_error = (proportions.scale_for_base(five_bar.base) - d).abs();
+            let base_error = (proportions.factor_for_base(five_bar.base) - d).abs();
             Some(sum_error.max(base_error))
         },
     ),
@@ -57,10 +60,10 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1.2 workspace circles (all four)",
         "(x11 ± l0/2)² + y11 = (l1 ± l2)²",
         "mm in radius",
-        |sample| circle_error(sample, |y| y),
+        |sample| compute_circle_error(sample, |y| y),
     )
     .with_correction("(x11 ± l0/2)² + y11² = (l1 ± l2)²", |sample| {
-        circle_error(sample, |y| y * y)
+        compute_circle_error(sample, |y| y * y)
     }),
     Equation::new(
         "3.1.3 maximal inscribed circle",
@@ -92,12 +95,12 @@ pub const EQUATIONS: &[Equation] = &[
         "3.1.4 conditioning",
         "LCI > 0.7 inside the inscribed circle",
         "below the LCI of 0.7",
-        |sample| Some((CLAIMED_LCI - lci_at(sample, 1.0)).max(0.0)),
+        |sample| Some((CLAIMED_LCI - compute_random_lci(sample, 1.0)).max(0.0)),
     )
     .with_correction(
         "LCI > 0.7 inside the concentric circle of half the radius; \
          over the whole circle only as a mean",
-        |sample| Some((CLAIMED_LCI - lci_at(sample, 0.5)).max(0.0)),
+        |sample| Some((CLAIMED_LCI - compute_random_lci(sample, 0.5)).max(0.0)),
     ),
     Equation::new(
         "3.2 table of links",
@@ -115,23 +118,23 @@ pub const EQUATIONS: &[Equation] = &[
         "the parallelogram does not operate in the singularity zone",
         "below the margin of 0.3",
         |sample| {
-            let (min_margin, angle_deg) = (0.3, 360.0 * sample.random[0]);
-            Some((min_margin - angle_deg.to_radians().sin().abs()).max(0.0))
+            let angle_deg: f64 = 360.0 * sample.random[0];
+            Some((MIN_LEG_MARGIN - angle_deg.to_radians().sin().abs()).max(0.0))
         },
     )
     .with_correction(
         "change points at theta_lg = 0 and 180; \
          the margin |sin theta_lg| is 0.3 within 72.5 deg of 90 and 270",
         |sample| {
-            let theta: f64 = 90.0 + 72.5 * (2.0 * sample.random[0] - 1.0);
-            Some((0.3 - theta.to_radians().sin().abs()).max(0.0))
+            let angle_deg: f64 = 90.0 + 72.5 * (2.0 * sample.random[0] - 1.0);
+            Some((MIN_LEG_MARGIN - angle_deg.to_radians().sin().abs()).max(0.0))
         },
     ),
 ];
 
-/// Computes the largest radius error of the circle equation at random points on the limits of the arms' reach. `y_term`
-/// returns the equation's term in y.
-fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
+/// Computes the largest radius error of the circle equation at random points on the boundaries of the arms' reach.
+/// `y_term` returns the equation's term in y.
+fn compute_circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     let five_bar = sample.lizard.end(End::Head);
     let mut max_error = 0.0_f64;
     for shaft_x in [-five_bar.base / 2.0, five_bar.base / 2.0] {
@@ -149,9 +152,9 @@ fn circle_error(sample: &Sample, y_term: fn(f64) -> f64) -> Option<f64> {
     Some(max_error)
 }
 
-/// Computes the LCI at a random point within the concentric circle of `radius_factor` times the inscribed circle's
-/// radius.
-fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
+/// Computes the LCI at a random point inside the circle with the centre of the inscribed circle and `radius_factor`
+/// times its radius.
+fn compute_random_lci(sample: &Sample, radius_factor: f64) -> f64 {
     let five_bar = sample.lizard.end(End::Head);
     Workspace::for_five_bar(&five_bar)
         .inscribed_circle()
@@ -164,8 +167,8 @@ fn lci_at(sample: &Sample, radius_factor: f64) -> f64 {
         })
 }
 
-/// Counts the links l0 to l19 that the table does not list. `link_number` converts an entry's printed number and length
-/// to its link number, as printed or as corrected.
+/// Counts the links l0 to l19 that the table does not list. `link_number` returns the number under which an entry
+/// counts, printed or corrected, given its printed number and its length.
 fn count_unlisted_links(link_number: fn(usize, f64) -> usize) -> f64 {
     let is_listed = |link: usize| {
         LINK_TABLE

@@ -47,15 +47,15 @@ Only the equations are written by hand; all results are computed.
 Each printed equation of *Optimal Kinematic Design of a Robotic Lizard using
 Four-Bar and Five-Bar Mechanisms* was evaluated at {sample_count} random poses (theta1 and
 -theta5 in 90 to 180, theta4 and -theta8 in 0 to 90 degrees, the paper's lengths)
-and compared with the geometric solution, whose loops close within 1e-9 mm. Angles
+and compared with the geometric solution, whose loops close to within 1e-9 mm. Angles
 are counter-clockwise from +x in the chassis frame throughout. \"Clockwise\" is a
 second convention, in which the angles of the right-hand links are measured clockwise
-from -x, as the drawings suggest: with it several signs are right, but the loop
-equations and the theta3 formula, which the paper uses with them, do not hold. An error
-below 1e-6 in its unit counts as rounding.
+from -x, as the drawings suggest. Under this convention several signs are right, but the
+loop equations and the theta3 formula, which the paper combines with these signs, do not
+hold. An error below 1e-6, in the unit of the equation, counts as rounding.
 
-**{holding_count} of {} hold as printed.** Every corrected form below was measured at the same
-poses and holds.
+**{holding_count} of {} equations hold as printed.** Every corrected form below was measured
+at the same poses and holds.
 
 | place | printed | verdict | largest error | corrected |
 |---|---|---|---|---|

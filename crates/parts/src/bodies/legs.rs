@@ -73,13 +73,13 @@ fn add_crank(builder: &mut AssemblyBuilder, servo: usize) {
         holes_with(builder.nut_pocket(anchor)),
         holes_with(builder.clearance_hole(anchor)),
     );
-    let (nut_z, _) = stack.anchor_nut_height_and_screw_length(parts);
-    let nut_z = nut_z.clamp(stack.crank[0], stack.crank[1]);
+    let pocket_top = stack.anchor_pocket_top(parts);
+    let pocket_top = pocket_top.clamp(stack.crank[0], stack.crank[1]);
     let bearing = Shape::disc(pivot, half_width - 0.2);
     let bosses = [bearing.clone(), Shape::disc(anchor, half_width - 0.4)];
     let mut prisms = vec![
-        Prism::new(filled.clone(), pocket_holes, [stack.crank[0], nut_z]),
-        Prism::new(filled, through_holes.clone(), [nut_z, stack.crank[1]]),
+        Prism::new(filled.clone(), pocket_holes, [stack.crank[0], pocket_top]),
+        Prism::new(filled, through_holes.clone(), [pocket_top, stack.crank[1]]),
         Prism::new(bosses, through_holes, stack.anchor),
         Prism::new([bearing], holes, [stack.anchor[1], stack.bearing[1]]),
     ];
@@ -217,12 +217,11 @@ fn add_screws(builder: &mut AssemblyBuilder, servo: usize) {
         };
         builder.add_bolt(&screw, stack.crank[1] + HEAD_CLEARANCE);
     }
-    let (nut_z, length) = stack.anchor_nut_height_and_screw_length(parts);
     let (name, seat_z) = (format!("leg anchor {leg}"), stack.anchor_head_face);
     let screw = Screw {
         allowed_contacts: &[&strut],
         ..Screw::new(&name, crank, anchor, seat_z, ScrewDirection::Down)
     };
-    builder.add_screw(&screw, length);
-    builder.add_nut(&screw, nut_z);
+    builder.add_screw(&screw, stack.anchor_screw_length());
+    builder.add_nut(&screw, stack.anchor_pocket_top(parts));
 }

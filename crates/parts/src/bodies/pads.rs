@@ -1,13 +1,13 @@
 //! The pads: domes under the feet, each on the head of the screw that sets its foot's height.
 //!
 //! No foot is lifted, so a flat pad would stop at the edge of a tile or a carpet. A dome slides over such an edge,
-//! since its slope there is hardly steeper than friction allows. The pad is printed from a flexible filament with its
-//! flat side on the bed. The underside has a hole for the hex key. The screw's head snaps in from above, through a
-//! mouth that is narrower than the head.
+//! because its slope at that height is hardly steeper than friction can hold. The pad is printed from a flexible
+//! filament with its flat side on the bed. The underside has a hole for the hex key. The screw's head snaps in from
+//! above, through a mouth that is narrower than the head.
 //!
-//! A strip with a grain, for example of climbing skin, can be glued along the dome from head to tail. The strip's front
-//! end is folded up into a notch of the rim, so that it does not catch on an edge of the floor. The notch also marks
-//! the direction of the pad. Around the notch the dome has terraces.
+//! A strip with a grain, for example of ski climbing skin, can be glued along the dome from head to tail. The strip's
+//! front end is folded up into a notch of the rim, so that it does not catch on an edge of the floor. The notch also
+//! marks the direction of the pad. Around the notch, the dome has terraces.
 
 use lizard_kinematics::Vector;
 use lizard_robot::Parts;
@@ -47,31 +47,31 @@ pub(crate) fn strip_width_range(parts: &Parts) -> [f64; 2] {
     [MIN_STRIP_WIDTH, 0.7 * parts.pad.width - 2.0 * parts.fit]
 }
 
-/// Makes the notch in the rim of a pad with its middle at `middle`. `head_direction` is the unit vector to the robot's
+/// Makes the notch in the rim of a pad with its middle at `middle`. `forward` is the unit vector towards the robot's
 /// head. The first side of the shape runs to the robot's right.
-fn make_notch(parts: &Parts, middle: Vector, head_direction: Vector) -> Shape {
-    let right = Vector::new(head_direction.y, -head_direction.x);
+fn make_notch(parts: &Parts, middle: Vector, forward: Vector) -> Shape {
+    let right = Vector::new(forward.y, -forward.x);
     let half_width = parts.strip / 2.0 + parts.fit;
     let pad_radius = parts.pad.width / 2.0;
-    let corner_at = |x: f64, y: f64| middle + right * x + head_direction * y;
-    let (low, high) = (pad_radius - NOTCH_DEPTH, pad_radius + 1.0);
+    let corner_at = |x: f64, y: f64| middle + right * x + forward * y;
+    let (inner, outer) = (pad_radius - NOTCH_DEPTH, pad_radius + 1.0);
     Shape {
         points: vec![
-            corner_at(-half_width, low),
-            corner_at(half_width, low),
-            corner_at(half_width, high),
-            corner_at(-half_width, high),
+            corner_at(-half_width, inner),
+            corner_at(half_width, inner),
+            corner_at(half_width, outer),
+            corner_at(-half_width, outer),
         ],
         radius: 0.0,
     }
 }
 
-/// Makes the layers of a pad from the floor up, centred on `middle`. `head_direction` is the unit vector to the head.
+/// Makes the layers of a pad from the floor up, centred on `middle`. `forward` points to the robot's head.
 pub(crate) fn make_pad_layers(
     parts: &Parts,
     middle: Vector,
     floor: f64,
-    head_direction: Vector,
+    forward: Vector,
 ) -> Vec<Prism> {
     let (pad, screw) = (parts.pad, parts.screw);
     let pad_radius = pad.width / 2.0;
@@ -90,8 +90,8 @@ pub(crate) fn make_pad_layers(
     };
     let radius_at = |z: f64| {
         let height = (z - floor).min(pad.radius);
-        let sphere_radius = (height * (2.0 * pad.radius - height)).sqrt();
-        sphere_radius
+        let section_radius = (height * (2.0 * pad.radius - height)).sqrt();
+        section_radius
             .max(KEY_HOLE_RADIUS + RIM_WIDTH)
             .min(pad_radius)
     };
@@ -107,7 +107,7 @@ pub(crate) fn make_pad_layers(
         .collect();
     levels.sort_by(f64::total_cmp);
     levels.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
-    let notch = (parts.strip > 0.0).then(|| make_notch(parts, middle, head_direction));
+    let notch = (parts.strip > 0.0).then(|| make_notch(parts, middle, forward));
     let layer_between = |heights: &[f64]| {
         let z = [heights[0], heights[1]];
         let (radii, hole) = (z.map(radius_at), hole_at(f64::midpoint(z[0], z[1])));

@@ -1,8 +1,8 @@
 //! One corner of the robot, to be printed first: a servo's seat with the pivots of its leg, the servo's link, and the
 //! leg with its strut and its foot.
 //!
-//! Printing the corner takes three hours instead of fifteen, and shows whether the servo fits its opening and the horn
-//! its link, whether the bearings turn without play, and how much a foot yields.
+//! Printing the corner takes three hours instead of fifteen for the whole robot, and shows whether the servo fits its
+//! opening and the horn its link, whether the bearings turn without play, and how much a foot yields.
 
 use crate::bodies::assembly::Assembly;
 use crate::bodies::builder::AssemblyBuilder;
@@ -13,15 +13,16 @@ use crate::layers::body::Mount;
 use crate::part::Part;
 
 impl Assembly {
-    /// Collects the printed parts of the corner of A1, each once.
+    /// Collects the printed parts of the corner of `CORNER_SERVO`, each once.
     pub fn collect_corner_parts(&self) -> Vec<Part> {
-        let (name, leg) = servo_and_leg_names(CORNER_SERVO);
+        let (servo_name, leg_name) = servo_and_leg_names(CORNER_SERVO);
         let prisms = chassis::make_corner_prisms(&AssemblyBuilder::new(self.robot()), CORNER_SERVO);
-        let mut parts = vec![Part::single(&format!("seat {name}"), prisms)];
+        let mut parts = vec![Part::single(&format!("seat {servo_name}"), prisms)];
         let is_in_corner = |body_name: &str| {
             self.body(body_name).is_some_and(|body| {
                 let is_coupler = matches!(body.mount, Mount::Coupler(_));
-                let has_suffix = [name, leg].iter().any(|suffix| body.name.ends_with(suffix));
+                let suffixes = [servo_name, leg_name];
+                let has_suffix = suffixes.iter().any(|suffix| body.name.ends_with(suffix));
                 !is_coupler && has_suffix && body.kind.is_printed()
             })
         };

@@ -1,16 +1,16 @@
 //! The heights of the parts, in one table that all other modules use.
 //!
-//! z is up; 0 is the top of the chassis plate. All parts are flat and all joint axes are vertical, so a mechanism
-//! without collisions is a table in which parts that overlap in plan view have different heights. From below: the
-//! floor, the foot's leaf, the plate and the legs' couplers beside it, the legs' cranks, the struts, the servos' links,
-//! the couplers of head and tail with the sliders, the deck.
+//! z is up; 0 is the top of the chassis plate. All parts are flat and all joint axes are vertical, so parts do not
+//! collide if those that overlap in plan view have different heights. From below: the floor, the foot's leaf, the
+//! plate and the legs' couplers beside it, the legs' cranks, the struts, the servos' links, the couplers of head and
+//! tail with the sliders, the deck.
 
 use lizard_robot::Parts;
 
 /// Heights of a layer's bottom and top, mm above the chassis plate's top.
 pub type Span = [f64; 2];
 
-/// Common screw lengths, mm. ISO 7380 and ISO 4017 define more, but few shops stock these.
+/// Common screw lengths, mm. ISO 7380 and ISO 4017 define more lengths, but few shops stock the others.
 pub const SCREW_LENGTHS: [f64; 6] = [6.0, 8.0, 10.0, 12.0, 16.0, 20.0];
 
 /// Common standoff lengths, mm.
@@ -27,7 +27,7 @@ const SEAT_HEIGHT: f64 = 2.6;
 const BEARING_HEIGHT: f64 = 8.5;
 /// Distance from the underside of a leg's crank up to the tip of its anchor's screw, mm.
 const ANCHOR_TIP_GAP: f64 = 0.1;
-/// Smallest thickness above a nut that is sunk into a part, mm.
+/// Smallest thickness above a nut that is recessed into a part, mm.
 const MIN_NUT_COVER: f64 = 1.2;
 /// Thickness of a strut's floor under its spring, mm.
 const STRUT_FLOOR_THICKNESS: f64 = 1.6;
@@ -43,13 +43,19 @@ const HORN_FLOOR_THICKNESS: f64 = 1.8;
 const SLEEVE_WALL_THICKNESS: f64 = 1.3;
 /// Thickness of the leaf that carries a foot, mm: five printed layers.
 pub const LEAF_THICKNESS: f64 = 1.0;
-/// Height of a pad above the head that snaps into it, mm.
+/// Height of a pad above the screw head that snaps into it, mm.
 pub const PAD_LIP_HEIGHT: f64 = 0.8;
-/// Gap between a pad and its leaf, mm: the height by which a foot's screw can raise the foot, and the width of the hex
-/// key that measures the gap. The screw can lower a foot by more.
+/// Largest height by which a foot's screw can raise the foot, mm: the gap between pad and leaf, which a hex key of this
+/// width measures. The screw can lower a foot by more.
 const MAX_FOOT_RAISE: f64 = 2.0;
 /// Thickness above the nut of a foot's screw, mm.
 const FOOT_NUT_COVER: f64 = 1.6;
+/// Smallest thickness of a leg's crank above the height of a nut, mm.
+const CRANK_NUT_COVER: f64 = 1.0;
+/// Gap between a leg's crank and its strut, mm.
+const CRANK_STRUT_GAP: f64 = 1.5;
+/// Height of the bosses that carry the board, mm.
+const BOARD_BOSS_HEIGHT: f64 = 5.0;
 
 /// The heights of all layers of the robot, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +64,7 @@ pub struct Stack {
     pub floor: f64,
     /// The pads under the feet.
     pub pad: Span,
-    /// The leaf on which a foot yields, with the foot's sunk nut.
+    /// The flexible leaf that carries a foot, with the foot's recessed nut.
     pub leaf: Span,
     /// The boss on the leaf, around and above the foot's nut.
     pub foot_boss: Span,
@@ -118,27 +124,27 @@ impl Stack {
             |lower_span: Span, height: f64| [lower_span[1] + gap, lower_span[1] + gap + height];
         let plate = [-parts.plate, 0.0];
         let seat = [0.0, SEAT_HEIGHT];
-        let crank = [gap, gap + thickness.max(screw.nut_height + 1.0)];
+        let crank = [gap, gap + thickness.max(screw.nut_height + CRANK_NUT_COVER)];
         let bearing = [crank[1], crank[0] + BEARING_HEIGHT];
-        let strut_low = crank[1] + 1.5;
-        let strut = [strut_low, strut_low + STRUT_FLOOR_THICKNESS];
-        let coil = strut[1] + SPRING_FLOOR_GAP + parts.spring.outer_diameter / 2.0;
+        let strut_bottom = crank[1] + CRANK_STRUT_GAP;
+        let strut_floor = [strut_bottom, strut_bottom + STRUT_FLOOR_THICKNESS];
+        let coil_middle = strut_floor[1] + SPRING_FLOOR_GAP + parts.spring.outer_diameter / 2.0;
+        let hook_top = coil_middle + parts.spring.wire_diameter / 2.0;
         // The anchor's screw must not touch the plate under its crank.
-        let tip = crank[0] + ANCHOR_TIP_GAP;
-        let anchor_head_face =
-            tip + find_screw_length(coil + parts.spring.wire_diameter / 2.0 + HOOK_GAP - tip);
+        let anchor_tip = crank[0] + ANCHOR_TIP_GAP;
+        let anchor_head_face = anchor_tip + find_screw_length(hook_top + HOOK_GAP - anchor_tip);
         let wall_top = anchor_head_face - STRUT_HEAD_GAP;
         // The underside of the horn's arm on the shaft.
-        let hub_z = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
-        let arm_z = hub_z + parts.horn.height - parts.horn.thickness;
+        let hub_bottom = seat[1] + parts.servo.boss - parts.servo.flange_height + gap;
+        let arm_bottom = hub_bottom + parts.horn.height - parts.horn.thickness;
         let link = [
-            arm_z - HORN_FLOOR_THICKNESS,
-            arm_z - HORN_FLOOR_THICKNESS + thickness,
+            arm_bottom - HORN_FLOOR_THICKNESS,
+            arm_bottom - HORN_FLOOR_THICKNESS + thickness,
         ];
         let lower_coupler = span_above(link, thickness);
         let upper_coupler = span_above(lower_coupler, thickness);
-        let bore_low = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
-        let bore = [bore_low, bore_low + thickness + 2.0 * parts.fit];
+        let bore_bottom = lower_coupler[0] + SLEEVE_WALL_THICKNESS;
+        let bore = [bore_bottom, bore_bottom + thickness + 2.0 * parts.fit];
         let rod = [bore[0] + parts.fit, bore[1] - parts.fit];
         let slider_top = find_screw_length(
             rod[1] + HEAD_CLEARANCE + screw.nut_height - link[0] - HEX_HEAD_HEIGHT,
@@ -150,14 +156,14 @@ impl Stack {
             .unwrap_or(slider_top + gap);
         let leg_coupler = [-thickness - gap, 0.0];
         let pad = [-parts.height, parts.pad.height - parts.height];
-        let leaf_low = pad[1] + MAX_FOOT_RAISE;
+        let leaf_bottom = pad[1] + MAX_FOOT_RAISE;
         Self {
             floor: -parts.height,
             pad,
-            leaf: [leaf_low, leaf_low + LEAF_THICKNESS],
+            leaf: [leaf_bottom, leaf_bottom + LEAF_THICKNESS],
             foot_boss: [
-                leaf_low + LEAF_THICKNESS,
-                leaf_low + screw.nut_height + FOOT_NUT_COVER,
+                leaf_bottom + LEAF_THICKNESS,
+                leaf_bottom + screw.nut_height + FOOT_NUT_COVER,
             ],
             leg_coupler,
             plate,
@@ -165,15 +171,15 @@ impl Stack {
             servo_bottom: seat[1] - parts.servo.flange_height,
             crank,
             bearing,
-            anchor: [crank[1], strut[0] - HEAD_CLEARANCE],
-            strut_floor: strut,
-            strut_wall: [strut[1], wall_top],
-            coil_middle: coil,
+            anchor: [crank[1], strut_floor[0] - HEAD_CLEARANCE],
+            strut_floor,
+            strut_wall: [strut_floor[1], wall_top],
+            coil_middle,
             anchor_head_face,
             hex_head_face: link[0] + HEX_HEAD_HEIGHT,
-            rigid_strut: [strut[0], wall_top],
+            rigid_strut: [strut_floor[0], wall_top],
             link,
-            horn_pocket: [arm_z, link[1]],
+            horn_pocket: [arm_bottom, link[1]],
             counterbore: [link[1] - screw.head_height - HEAD_CLEARANCE, link[1]],
             lower_coupler,
             upper_coupler,
@@ -181,15 +187,18 @@ impl Stack {
             bore,
             rod,
             deck: [deck, deck + parts.plate],
-            board_boss: [deck + parts.plate, deck + parts.plate + 5.0],
+            board_boss: [deck + parts.plate, deck + parts.plate + BOARD_BOSS_HEIGHT],
         }
     }
 
-    /// Height of the pocket's top for a leg anchor's nut, and the length of the anchor's screw, mm. The screw's tip
-    /// must not touch the plate.
-    pub fn anchor_nut_height_and_screw_length(&self, parts: &Parts) -> (f64, f64) {
-        let tip = self.crank[0] + ANCHOR_TIP_GAP;
-        (tip + parts.screw.nut_height, self.anchor_head_face - tip)
+    /// Height of the top of the pocket for a leg anchor's nut, mm.
+    pub fn anchor_pocket_top(&self, parts: &Parts) -> f64 {
+        self.crank[0] + ANCHOR_TIP_GAP + parts.screw.nut_height
+    }
+
+    /// Length of a leg anchor's screw, mm.
+    pub fn anchor_screw_length(&self) -> f64 {
+        self.anchor_head_face - (self.crank[0] + ANCHOR_TIP_GAP)
     }
 
     /// Height of a pad screw's head above the floor, mm.
@@ -197,10 +206,9 @@ impl Stack {
         self.pad[1] - PAD_LIP_HEIGHT - parts.screw.head_height - self.floor
     }
 
-    /// True if a leg's crank is thick enough above its sunk nut.
+    /// True if a leg's crank is thick enough above its recessed nut.
     pub fn crank_holds_nut(&self, parts: &Parts) -> bool {
-        let (pocket_top, _) = self.anchor_nut_height_and_screw_length(parts);
-        self.anchor[1] - pocket_top >= MIN_NUT_COVER
+        self.anchor[1] - self.anchor_pocket_top(parts) >= MIN_NUT_COVER
     }
 }
 

@@ -75,7 +75,7 @@ fn cranks_at<'a, const N: usize, T: Real>(
     servos: &[usize; N],
     angles: [T; N],
 ) -> Cranks<'a, T> {
-    let (sines, cosines) = T::sin_cos_each(angles);
+    let (sines, cosines) = T::sin_cos_all(angles);
     let mut directions = [Vector::new(T::constant(1.0), T::constant(0.0)); 4];
     for (i, servo) in servos.iter().enumerate() {
         directions[*servo] = Vector::new(cosines[i], sines[i]);

@@ -129,7 +129,7 @@ impl Real for Interval {
         Self::new(low.max(0.0), high)
     }
 
-    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
+    fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
         let sines_and_cosines = degrees.map(Self::sine_and_cosine);
         (
             sines_and_cosines.map(|(sine, _)| sine),
@@ -169,7 +169,7 @@ mod tests {
                 assert!(q == 0.0 || contains(x / y, p / q), "{x:?} / {y:?}");
                 assert!(contains(x.sqrt_or_zero(), p.max(0.0).sqrt()));
                 let degrees = Interval::new(x.low * 100.0, x.high * 100.0);
-                let ([sine], [cosine]) = Interval::sin_cos_each([degrees]);
+                let ([sine], [cosine]) = Interval::sin_cos_all([degrees]);
                 let (sin, cos) = (p * 100.0).to_radians().sin_cos();
                 let widen = |i: Interval| Interval::new(i.low - 1e-14, i.high + 1e-14);
                 assert!(contains(widen(sine), sin) && contains(widen(cosine), cos));
@@ -186,9 +186,9 @@ mod tests {
         assert!(is_near(x + y, 2.0, 7.0) && is_near(x - y, -6.0, -1.0));
         assert!(is_near(x * y, -5.0, 10.0) && is_near(x / y, -1.0 / 3.0, 2.0 / 3.0));
         assert!(is_near(y.sqrt_or_zero(), 3.0_f64.sqrt(), 5.0_f64.sqrt()));
-        let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(30.0, 120.0)]);
+        let ([sine], [cosine]) = Interval::sin_cos_all([Interval::new(30.0, 120.0)]);
         assert!(is_near(sine, 0.5, 1.0) && is_near(cosine, -0.5, 0.75_f64.sqrt()));
-        let ([sine], [cosine]) = Interval::sin_cos_each([Interval::new(-450.0, -340.0)]);
+        let ([sine], [cosine]) = Interval::sin_cos_all([Interval::new(-450.0, -340.0)]);
         assert!(is_near(sine, -1.0, 20.0_f64.to_radians().sin()) && is_near(cosine, 0.0, 1.0));
     }
 

@@ -118,8 +118,8 @@ impl<const N: usize> Real for IntervalDual<N> {
         self.map_chain_rule(root, |slope| slope / (root * 2.0))
     }
 
-    fn sin_cos_each<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
-        let (sines, cosines) = Interval::sin_cos_each(degrees.map(|angle| angle.value));
+    fn sin_cos_all<const K: usize>(degrees: [Self; K]) -> ([Self; K], [Self; K]) {
+        let (sines, cosines) = Interval::sin_cos_all(degrees.map(|angle| angle.value));
         // One degree in radians, between the neighbouring floating-point numbers.
         let degree = Interval::new((PI / 180.0).next_down(), (PI / 180.0).next_up());
         let (mut sin, mut cos) = (degrees, degrees);
@@ -142,7 +142,7 @@ mod tests {
 
     /// Computes the coordinates of a five-bar's end point, and its type-2 margin, at two crank angles.
     fn compute_point_and_margin<T: Real>([left, right]: [T; 2]) -> [T; 3] {
-        let (sin, cos) = T::sin_cos_each([left, right]);
+        let (sin, cos) = T::sin_cos_all([left, right]);
         let [left, right] = [0, 1].map(|i| Vector::new(cos[i], sin[i]));
         let pose = HEAD.pose_unchecked(AssemblyMode::Ahead, left, right);
         [pose.end_point.x, pose.end_point.y, pose.type2]

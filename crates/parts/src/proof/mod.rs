@@ -140,7 +140,7 @@ impl Proof {
     ///
     /// # Errors
     /// Returns the worst pair: parts that overlap, come closer than [`MIN_GAP_MM`], or have no proof of this distance.
-    pub fn judge(&self) -> Result<(), Clash> {
+    pub fn check(&self) -> Result<(), Clash> {
         let find_clash =
             |pair: &NearestPair, min_mm: f64| Some((pair.clash(min_mm)?, pair.min_distance()));
         let separate_pairs = self.separate_pairs.iter();
@@ -269,7 +269,7 @@ impl<'a> ProofTasks<'a> {
 }
 
 impl Assembly {
-    /// Bounds the distance between any two parts over all accepted poses; [`Proof::judge`] then decides whether the
+    /// Bounds the distance between any two parts over all accepted poses; [`Proof::check`] then decides whether the
     /// parts fit. If some parts come too close at a pose of the quick check, only the worst of them are bounded;
     /// otherwise the proof ends at the first parts that do not fit. `progress` is called with the number of completed
     /// tasks and the number of all tasks.

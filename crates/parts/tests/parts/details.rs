@@ -136,7 +136,7 @@ fn a_coil_that_is_too_high_in_its_strut_is_refused() {
     let has_spring = |a: &Body, b: &Body| a.name == "spring LF" || b.name == "spring LF";
     let proof = altered_assembly.prove_chosen(has_spring, |_, _| ());
     let clash = proof
-        .judge()
+        .check()
         .expect_err("the coil must be refused as too close to the link");
     assert!(clash.to_string().contains("link A1"), "{clash}");
 }

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use lizard_kinematics::{Side, Solution, Vector};
-use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, NearestPair, Shape};
+use lizard_parts::{Assembly, Body, Clash, FAR_MM, MIN_GAP_MM, Mount, Shape};
 use lizard_robot::Robot;
 
 use crate::{GRAIN_ROBOT, ROBOTS, build_assembly, build_slotted_assembly, find_body};
@@ -22,9 +22,9 @@ impl Random {
     }
 }
 
-/// Finds poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted
-/// range, where parts come nearest.
-fn find_accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
+/// Generates poses that the guard accepts: some anywhere in the servos' travel, the others at the edge of the accepted
+/// range, where parts come closest.
+fn generate_accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
     let mut random = Random(7);
     let mut poses = Vec::new();
     let neutral = robot.servos().map(|servo| servo.neutral);
@@ -56,11 +56,10 @@ fn find_accepted_poses(robot: &Robot, count: usize) -> Vec<Solution> {
 fn assert_bounds_hold(name: &str) {
     let assembly = build_slotted_assembly(name, "");
     let proof = assembly.prove(|_, _| ());
-    assert_eq!(proof.judge(), Ok(()), "{name}");
-    let find_mounts = |pair: &NearestPair| {
-        [&pair.first, &pair.second].map(|body_name| find_body(&assembly, body_name).mount)
-    };
-    let poses = find_accepted_poses(assembly.robot(), 300);
+    assert_eq!(proof.check(), Ok(()), "{name}");
+    let find_mounts =
+        |body_names: [&String; 2]| body_names.map(|name| find_body(&assembly, name).mount);
+    let poses = generate_accepted_poses(assembly.robot(), 300);
     for pose in &poses {
         let angles: [f64; 4] = pose.pose.into();
         for (angle, [low, high]) in angles.into_iter().zip(proof.ranges) {
@@ -71,10 +70,10 @@ fn assert_bounds_hold(name: &str) {
         }
     }
     for pair in assembly.find_close_pairs(poses, FAR_MM - 0.2) {
-        let mounts =
-            [&pair.first, &pair.second].map(|body_name| find_body(&assembly, body_name).mount);
+        let mounts = find_mounts([&pair.first, &pair.second]);
         let mut pairs = proof.separate_pairs.iter();
-        let proved_pair = pairs.find(|proved_pair| find_mounts(proved_pair) == mounts);
+        let proved_pair =
+            pairs.find(|proved| find_mounts([&proved.first, &proved.second]) == mounts);
         let proved_pair = proved_pair.unwrap_or_else(|| panic!("{name}: no bound for {pair}"));
         assert!(
             proved_pair.lower_bound <= pair.mm,
@@ -82,14 +81,14 @@ fn assert_bounds_hold(name: &str) {
         );
     }
     for pair in proof.separate_pairs.iter().chain(&proof.touching_pairs) {
-        let Some(clearance) = &pair.witness else {
+        let Some(witness) = &pair.witness else {
             continue;
         };
-        let accepted = assembly.robot().solve_if_allowed(clearance.pose);
+        let accepted = assembly.robot().solve_if_allowed(witness.pose);
         assert!(accepted.is_some(), "{name}: {pair}");
-        assert!(pair.lower_bound <= clearance.mm, "{name}: {pair}");
-        // The bound is not much less than the smallest distance found, except near poses that the guard barely accepts.
-        let is_close = clearance.mm < pair.lower_bound.max(0.0) * 2.1 + 0.02;
+        assert!(pair.lower_bound <= witness.mm, "{name}: {pair}");
+        // The bound is at least about half of the smallest distance found, except near the limits of the guard.
+        let is_close = witness.mm < pair.lower_bound.max(0.0) * 2.1 + 0.02;
         assert!(is_close || pair.unproved_angles.is_some(), "{name}: {pair}");
     }
 }
@@ -115,7 +114,7 @@ fn rigid_struts_are_at_least_as_far_from_other_parts_as_slotted_struts() {
         let assembly = build_assembly("paper", &format!("[leg.drive]\nkind = \"{kind}\""));
         let is_strut = |body: &Body| matches!(body.mount, Mount::Strut(_));
         let proof = assembly.prove_chosen(|a, b| is_strut(a) || is_strut(b), |_, _| ());
-        assert_eq!(proof.judge(), Ok(()), "{kind}");
+        assert_eq!(proof.check(), Ok(()), "{kind}");
         proof
             .nearest_separate_pair()
             .expect("some pair is near")
@@ -128,7 +127,7 @@ fn rigid_struts_are_at_least_as_far_from_other_parts_as_slotted_struts() {
 }
 
 #[test]
-fn own_gaits_and_grain_have_the_parts_of_the_paper() {
+fn own_gaits_and_grain_have_the_same_parts_as_the_papers_robot() {
     let paper = build_slotted_assembly("paper", "");
     let without_pads = |assembly: Assembly| {
         assembly.with_changed_bodies(|bodies| {
@@ -169,7 +168,7 @@ fn the_tests_use_every_robot_file() {
 /// Finds the worst clash among the pairs that include a body for which `is_chosen` is true.
 fn find_clash(assembly: &Assembly, is_chosen: impl Fn(&Body) -> bool) -> Clash {
     let proof = assembly.prove_chosen(|a, b| is_chosen(a) || is_chosen(b), |_, _| ());
-    proof.judge().expect_err("the proof must find a clash")
+    proof.check().expect_err("the proof must find a clash")
 }
 
 /// Asserts that a clash is an overlap of two bodies whose names begin with `first` and `second`, in either order.
@@ -200,9 +199,9 @@ fn an_overlap_due_to_a_wrong_dimension_is_detected() {
 }
 
 #[test]
-fn a_large_overlap_is_detected_after_a_few_regions() {
+fn a_large_overlap_is_detected_early() {
     let proof = build_slotted_assembly("paper", "[parts]\nbar = 24.0").prove(|_, _| ());
-    let Err(Clash::Overlap(clearance)) = proof.judge() else {
+    let Err(Clash::Overlap(clearance)) = proof.check() else {
         panic!("no overlap");
     };
     assert!(clearance.mm < -5.0, "{clearance}");
@@ -286,7 +285,7 @@ fn a_hole_that_is_displaced_from_its_pin_is_detected() {
 }
 
 #[test]
-fn the_message_about_parts_that_come_too_near_has_their_pose() {
+fn the_message_about_parts_that_come_too_close_contains_their_pose() {
     // At the limits of the guard, the strut comes close to the servo's screws.
     let altered_assembly = build_slotted_assembly("paper", "[parts]\nanchor = [22.0, 5.0]");
     let clash = find_clash(&altered_assembly, |body| body.name.starts_with("strut"));
@@ -365,6 +364,6 @@ fn the_screw_of_a_strut_has_clearance_along_its_whole_slot() {
 }
 
 #[test]
-fn the_smallest_allowed_distance_is_at_least_the_error_of_a_printer() {
+fn the_smallest_allowed_distance_is_at_least_the_clearance_of_a_fit() {
     assert!(MIN_GAP_MM >= build_slotted_assembly("paper", "").robot().parts().fit);
 }

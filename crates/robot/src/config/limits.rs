@@ -1,4 +1,4 @@
-//! The limits of poses and of the servos' speed: `[limits]` in robot.toml.
+//! Limits on poses and on servo speed: `[limits]` in robot.toml.
 
 use lizard_kinematics::Limits;
 
@@ -9,7 +9,7 @@ use crate::file::{ReadResult, Section};
 /// The lowest speed limit allowed, deg/s: a slower move would overflow the firmware's frame count.
 const MIN_SPEED_DEG_S: f64 = 10.0;
 
-/// Reads `[limits]`: margins, the sliders' stroke, and servo speeds.
+/// Reads `[limits]`: the smallest margins, the range of the sliders' stroke, and the highest servo speeds.
 pub(crate) fn read(root: &Section) -> ReadResult<(Limits, SpeedLimits)> {
     let section = root.section(
         "limits",

@@ -35,7 +35,7 @@ pub(crate) use strut::{mounted_spring_length, strut_with_coil};
 pub use supply::{FUSE_RATING_A, MIN_SWITCH_RATING_A, Rail, Supplies, healthy_rail_mv};
 
 use lizard_contact::{GroundContact, JointFriction};
-use lizard_core::numbers::bars::MIN_COUPLER_STEPS;
+use lizard_core::numbers::link_lengths::MIN_COUPLER_STEPS;
 use lizard_kinematics::{End, Leg, Limits, Links, Lizard, Side};
 
 use crate::file::{ReadResult, Section, UnlocatedError};

@@ -2,14 +2,14 @@
 //! integers.
 
 use lizard_core::numbers::units::Scale;
-use lizard_core::numbers::{bars, slider};
+use lizard_core::numbers::{link_lengths, slider};
 use lizard_kinematics::{FiveBar, Slider};
 
 /// Largest link length that robot.toml may contain, mm.
 pub(crate) const MAX_LINK_LENGTH_MM: f64 = 1000.0;
 
 // Every mechanism that robot.toml may describe fits at a scale.
-const _: () = assert!(3.0 * MAX_LINK_LENGTH_MM < bars::MAX_LENGTH_STEPS);
+const _: () = assert!(3.0 * MAX_LINK_LENGTH_MM < link_lengths::MAX_LENGTH_STEPS);
 const _: () = assert!(4.0 * MAX_LINK_LENGTH_MM < slider::MAX_ARM_STEPS);
 
 /// The number of steps per millimetre at a scale.
@@ -20,11 +20,9 @@ pub(crate) fn steps_per_mm(scale: Scale) -> f64 {
 /// Finds the finest scale for the five-bar of the head or the tail.
 pub(crate) fn find_five_bar_scale(five_bar: &FiveBar) -> Scale {
     let base_and_cranks = five_bar.base + five_bar.left_crank_length + five_bar.right_crank_length;
-    find_finest_scale(&[
-        (base_and_cranks, bars::MAX_LENGTH_STEPS),
-        (five_bar.left_coupler_length, bars::MAX_LENGTH_STEPS),
-        (five_bar.right_coupler_length, bars::MAX_LENGTH_STEPS),
-    ])
+    let [left, right] = [five_bar.left_coupler_length, five_bar.right_coupler_length];
+    let lengths = [base_and_cranks, left, right];
+    find_finest_scale(&lengths.map(|mm| (mm, link_lengths::MAX_LENGTH_STEPS)))
 }
 
 /// Finds the finest scale for a slider that may extend `stroke_max` mm beyond its nominal length.

@@ -1,4 +1,4 @@
-//! The gait table that `make firmware` and `lizard gaits` print.
+//! The report that `make firmware` and `lizard gaits` print: the tables of gaits and routines, and notes.
 
 use std::fmt;
 
@@ -41,20 +41,20 @@ impl GaitRow {
         const MIN_TURN_RATE_DEG_S: f64 = 2.0;
         let rate = |component: Option<f64>| component.unwrap_or_default().abs() / self.period;
         let movement = &self.movement;
-        let is_walking =
+        let moves_robot =
             rate(movement.forward) >= MIN_SPEED_MM_S || rate(movement.turn) >= MIN_TURN_RATE_DEG_S;
-        is_walking && self.audit.peak_speed.speed < SLOW_SPEED_DEG_S
+        moves_robot && self.audit.peak_speed.speed < SLOW_SPEED_DEG_S
     }
 }
 
 /// The gait and routine tables of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Rows of the table, in the order of the file.
-    pub rows: Vec<GaitRow>,
+    /// Rows of the gait table, in the order of the file.
+    pub gait_rows: Vec<GaitRow>,
     /// Rows of the routine table, in the order of the file.
-    pub routines: Vec<RoutineRow>,
-    /// Hash that identifies the robot's parameters in the flash.
+    pub routine_rows: Vec<RoutineRow>,
+    /// Hash that identifies the robot's parameters in flash.
     pub hash: u32,
     /// Number of waveforms that the gaits share.
     pub waveform_count: usize,
@@ -66,7 +66,7 @@ pub struct Report {
     pub name: String,
 }
 
-/// Number of CPU cycles that the main loop may spend on a console line without a delayed frame (docs/firmware.md).
+/// Number of CPU cycles that the main loop may spend on a console line without delaying a frame (docs/firmware.md).
 const MAX_SEARCH_CYCLES: usize = 34_000;
 
 /// The note about a robot whose console may need more than [`MAX_SEARCH_CYCLES`] to find a gait's name.
@@ -76,12 +76,12 @@ const LONG_SEARCH_NOTE: &str = "many gaits: `cal` or a command with a gait's nam
 /// The note that explains a dash in place of a prediction.
 pub const UNDETERMINED_NOTE: &str = "- undecided: two feet pull against the other two, so tiny differences between the pads decide\n";
 
-/// Speed of the fastest servo below which a gait counts as slow. At an edge of 2 mm in MuJoCo, `walk` and
-/// similar gaits keep nine tenths of their distance, but slow gaits lose up to a third.
+/// A gait counts as slow if its fastest servo stays below this speed. At an edge of 2 mm in MuJoCo, `walk` and similar
+/// gaits keep nine tenths of their distance, but slow gaits lose up to a third.
 const SLOW_SPEED_DEG_S: f64 = 200.0;
 
 /// The note on the assumptions about routines with inputs.
-pub const OPEN_INPUTS_NOTE: &str = "routines with inputs are computed with all inputs open: one frame per wait, one cycle per gait without an end\n";
+pub const OPEN_INPUTS_NOTE: &str = "routines with inputs are computed with all inputs open: each wait lasts one frame, and each gait without an end one cycle\n";
 
 impl Report {
     /// Computes the errors of a robot's tables and predicts its gaits and routines. Takes up to a few seconds.
@@ -103,8 +103,8 @@ impl Report {
         };
         let core = robot.core();
         Self {
-            rows: robot.gaits().iter().map(compute_row).collect(),
-            routines: robot
+            gait_rows: robot.gaits().iter().map(compute_row).collect(),
+            routine_rows: robot
                 .routines()
                 .iter()
                 .map(|routine| RoutineRow::simulate(robot, routine))
@@ -119,21 +119,21 @@ impl Report {
 
     /// Writes the table of routines, if there are any.
     fn write_routines(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        if self.routines.is_empty() {
+        if self.routine_rows.is_empty() {
             return Ok(());
         }
-        let width = column_width(self.routines.iter().map(|routine| routine.name.as_str()));
+        let width = column_width(self.routine_rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
-            "\n{:width$}                  ideal servos, mm and deg   with real servos",
+            "\n{:width$}                    ideal servos, mm and deg   with real servos",
             ""
         )?;
         writeln!(
             f,
-            "{:width$} steps repeat      s   ahead   left    turn   ahead   left    turn",
+            "{:width$} steps   repeat      s   ahead   left    turn   ahead   left    turn",
             "routine"
         )?;
-        for routine in &self.routines {
+        for routine in &self.routine_rows {
             let RoutineRow {
                 name,
                 step_count,
@@ -146,7 +146,7 @@ impl Report {
             let repeat = round_count.map_or("for ever".to_string(), |count| count.to_string());
             write!(
                 f,
-                "{name:<width$} {step_count:>5} {repeat:>6} {seconds:>6.1}"
+                "{name:<width$} {step_count:>5} {repeat:>8} {seconds:>6.1}"
             )?;
             for prediction in [movement, movement_with_servos] {
                 let [forward, left, turn] = [prediction.forward, prediction.left, prediction.turn]
@@ -164,15 +164,15 @@ impl fmt::Display for Report {
         writeln!(
             f,
             "{} gaits in {} waveforms, {} of {} bytes of flash, robot {} {:08x}\n",
-            self.rows.len(),
+            self.gait_rows.len(),
             self.waveform_count,
             self.section_bytes,
             REGION_BYTES,
             self.name,
             self.hash
         )?;
-        let has_flexible_drive = self.rows.iter().any(|row| row.drive_effect.is_some());
-        let width = column_width(self.rows.iter().map(|row| row.name.as_str()));
+        let has_flexible_drive = self.gait_rows.iter().any(|row| row.drive_effect.is_some());
+        let width = column_width(self.gait_rows.iter().map(|row| row.name.as_str()));
         writeln!(
             f,
             "{:width$}  cycle      fastest  table error, deg      smallest margins       slider, mm ideal servos, mm and deg   with real servos{}",
@@ -193,7 +193,7 @@ impl fmt::Display for Report {
                 ""
             }
         )?;
-        for row in &self.rows {
+        for row in &self.gait_rows {
             let GaitRow {
                 name,
                 period,
@@ -241,15 +241,15 @@ impl fmt::Display for Report {
             writeln!(f)?;
         }
         self.write_routines(f)?;
-        if self.routines.iter().any(|routine| routine.has_inputs) {
+        if self.routine_rows.iter().any(|row| row.has_inputs) {
             write!(f, "\n{OPEN_INPUTS_NOTE}")?;
         }
-        let movements = self.rows.iter().map(|row| &row.movement);
-        let mut movements = movements.chain(self.routines.iter().map(|routine| &routine.movement));
+        let movements = self.gait_rows.iter().map(|row| &row.movement);
+        let mut movements = movements.chain(self.routine_rows.iter().map(|row| &row.movement));
         if movements.any(|movement| !movement.is_determined()) {
             write!(f, "\n{UNDETERMINED_NOTE}")?;
         }
-        let slow_names = self.rows.iter().filter(|row| row.is_slow());
+        let slow_names = self.gait_rows.iter().filter(|row| row.is_slow());
         let slow_names: Vec<_> = slow_names.map(|row| row.name.as_str()).collect();
         if !slow_names.is_empty() {
             writeln!(
@@ -260,7 +260,7 @@ impl fmt::Display for Report {
             )?;
         }
         for row in self
-            .rows
+            .gait_rows
             .iter()
             .filter(|row| row.utilisation >= HIGH_UTILISATION)
         {
@@ -342,7 +342,7 @@ mod tests {
     fn gaits_that_lose_distance_at_an_edge_are_reported_as_slow() {
         let find_slow_gaits = |robot: Robot| {
             let report = Report::compute(&robot);
-            let rows = report.rows.iter().filter(|row| row.is_slow());
+            let rows = report.gait_rows.iter().filter(|row| row.is_slow());
             let names: Vec<_> = rows.map(|row| row.name.clone()).collect();
             let text = report.to_string();
             let note = text

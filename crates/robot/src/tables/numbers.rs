@@ -435,8 +435,8 @@ mod tests {
     fn a_larger_robot_has_a_coarser_step_only_where_needed() {
         let (paper, large) = (robot("paper"), robot("large"));
         for end in [End::Head, End::Tail] {
-            assert_eq!(paper.firmware().five_bar(end).bars().scale().bits, 8);
-            assert_eq!(large.firmware().five_bar(end).bars().scale().bits, 8);
+            assert_eq!(paper.firmware().link_lengths(end).scale().bits, 8);
+            assert_eq!(large.firmware().link_lengths(end).scale().bits, 8);
         }
         for side in [Side::Left, Side::Right] {
             let (paper_side, large_side) =

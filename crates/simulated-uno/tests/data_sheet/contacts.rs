@@ -1,11 +1,11 @@
-//! Tests of contacts between pins and ground, against the data sheet, chapters 14.2.1 and 14.2.4.
+//! Tests that a pin with a contact to ground behaves as in the data sheet, sections 14.2.1 and 14.2.4.
 
 use simulated_uno::{Pin, Uno, avr_gcc};
 
 use super::{FIDELITIES, mark_values};
 
-/// Program that enables the pull-ups of D4, D8 and A1 by writes to PIND, PINB and PINC (data sheet, 14.2.2), and then
-/// repeatedly marks the levels of the three pins as bits 0, 1 and 2.
+/// A program that enables the pull-ups of D4, D8 and A1 by writes to PIND, PINB and PINC (data sheet, 14.2.2), and then
+/// repeatedly writes the levels of the three pins to GPIOR0 as bits 0, 1 and 2.
 const LEVELS_PROGRAM: &str = "
 #include <avr/io.h>
 int main(void) {
@@ -25,7 +25,7 @@ fn a_pin_is_low_while_its_contact_is_closed_and_high_otherwise() {
     let pins = [Pin::d(4), Pin::d(8), Pin::a(1)];
     for fidelity in FIDELITIES {
         let mut uno = Uno::with_image(image.clone(), fidelity);
-        let levels_with = |uno: &mut Uno, closed_contacts: u8| {
+        let read_levels = |uno: &mut Uno, closed_contacts: u8| {
             for (bit, pin) in pins.into_iter().enumerate() {
                 uno.set_contact(pin, closed_contacts & 1 << bit != 0);
             }
@@ -34,7 +34,7 @@ fn a_pin_is_low_while_its_contact_is_closed_and_high_otherwise() {
         };
         for _ in 0..2 {
             for closed_contacts in [0, 1, 2, 4, 7, 3, 0, 5] {
-                let levels = levels_with(&mut uno, closed_contacts);
+                let levels = read_levels(&mut uno, closed_contacts);
                 assert_eq!(levels, Some(7 & !closed_contacts), "{fidelity:?}");
             }
             uno.reset();

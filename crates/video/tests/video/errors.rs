@@ -59,10 +59,10 @@ fn a_video_without_frames_or_tags_is_rejected() {
 #[test]
 fn the_error_names_a_tag_that_is_always_covered() {
     let mut studio = studio();
-    studio.hidden_tags = vec![2];
+    studio.covered_tags = vec![2];
     let error = expect_error(&studio, FULL_SCALE);
     assert_eq!(error, VideoError::NoFloorTag { id: 2 });
-    studio.hidden_tags = vec![4];
+    studio.covered_tags = vec![4];
     let error = expect_error(&studio, FULL_SCALE);
     assert_matches!(
         error,
@@ -132,14 +132,14 @@ fn frames_of_another_size_and_times_that_do_not_increase_are_rejected() {
     );
 }
 
-/// Records a walk with a camera that moves halfway through the video. In the second half, `hidden_tags` are covered.
-fn record_with_moved_camera(hidden_tags: Vec<usize>) -> Video {
+/// Records a walk with a camera that moves halfway through the video. In the second half, `covered_tags` are covered.
+fn record_with_moved_camera(covered_tags: Vec<usize>) -> Video {
     let walk = centred_walk(&paper_gait("walk"), 5);
     let mut rng = Rng::with_seed(3);
     let first = studio();
     let mut second = first.clone();
-    (second.camera_tilt, second.aim[0], second.hidden_tags) =
-        (first.camera_tilt + 1.0, first.aim[0] + 12.0, hidden_tags);
+    (second.camera_tilt, second.aim[0], second.covered_tags) =
+        (first.camera_tilt + 1.0, first.aim[0] + 12.0, covered_tags);
     let backgrounds = [first, second].map(|studio| studio.render_background(&mut rng));
     let count = (walk.duration_s() * FRAME_RATE) as usize;
     record_frames(walk.duration_s(), FRAME_RATE, |seconds| {
@@ -182,7 +182,7 @@ fn a_floor_tag_may_be_covered_for_a_while_if_the_camera_stands_still() {
     let mut rng = Rng::with_seed(3);
     let uncovered = studio();
     let mut covered = uncovered.clone();
-    covered.hidden_tags = vec![0];
+    covered.covered_tags = vec![0];
     let backgrounds = [uncovered, covered].map(|studio| studio.render_background(&mut rng));
     let video = record_frames(walk.duration_s(), FRAME_RATE, |seconds| {
         let background = &backgrounds[(seconds * FRAME_RATE) as usize / 8 % 2];

@@ -27,33 +27,29 @@ const SUPPLIES_WITH_RAIL: Supplies = Supplies {
     ..SUPPLIES
 };
 
-/// Computes the converter's reading if the board has `volts` and the rail has `rail_volts`.
-fn compute_reading(volts: f64, rail_volts: f64) -> Reading {
+/// Computes the ADC reading at these voltages of the board and the servo rail.
+fn compute_reading(board_volts: f64, rail_volts: f64) -> Reading {
     Reading {
-        reference: (1.1 / volts * 1024.0) as u16,
-        rail: (rail_volts / 2.0 / volts * 1024.0) as u16,
+        reference: (1.1 / board_volts * 1024.0) as u16,
+        rail: (rail_volts / 2.0 / board_volts * 1024.0) as u16,
     }
 }
 
-/// Adds readings of a board without a measured rail until the level changes. Returns the number of frames, or 0 if the
-/// level has not changed after 200 frames; and the level.
-fn measure_board_until_change(supply: &mut Supply, volts: f64) -> (usize, Level) {
+/// Adds readings of a board without a measured rail until the level changes. Returns the number of frames and the new
+/// level, or `None` if the level has not changed after 200 frames.
+fn measure_board_until_change(supply: &mut Supply, volts: f64) -> Option<(usize, Level)> {
     measure_until_change(supply, compute_reading(volts, 0.0), &SUPPLIES)
 }
 
-/// Adds the same reading until the level changes. Returns the number of frames, or 0 if the level has not changed after
-/// 200 frames; and the level.
+/// Adds the same reading until the level changes. Returns the number of frames and the new level, or `None` if the
+/// level has not changed after 200 frames.
 fn measure_until_change(
     supply: &mut Supply,
     reading: Reading,
     supplies: &Supplies,
-) -> (usize, Level) {
-    for frame in 1..=200 {
-        if supply.add_reading(reading, supplies) {
-            return (frame, supply.level());
-        }
-    }
-    (0, supply.level())
+) -> Option<(usize, Level)> {
+    let frame_count = (1..=200).find(|_| supply.add_reading(reading, supplies))?;
+    Some((frame_count, supply.level()))
 }
 
 #[test]
@@ -86,32 +82,35 @@ fn every_voltage_is_rounded_down_to_hundredths_of_a_volt() {
 
 proptest! {
     #[test]
-    fn voltage_comparisons_agree_with_floating_point(reference in 100u16..1023, mv in 0u16..9000) {
+    fn voltage_comparisons_agree_with_floating_point(reference in 100u16..1023, threshold_mv in 0u16..9000) {
         let voltage = Voltage::for_board(Reading { reference, rail: 0 }, &SUPPLIES);
         let exact = 1024.0 * 1100.0 / f64::from(reference);
-        prop_assert_eq!(voltage.is_below(mv), exact < f64::from(mv));
+        prop_assert_eq!(voltage.is_below(threshold_mv), exact < f64::from(threshold_mv));
     }
 }
 
 #[test]
 fn a_falling_supply_reaches_each_level_after_six_frames() {
     let mut supply = Supply::default();
-    assert_eq!(measure_board_until_change(&mut supply, 5.0).0, 0);
+    assert_eq!(measure_board_until_change(&mut supply, 5.0), None);
     for (volts, level) in [
         (4.45, Level::Slow),
         (4.25, Level::Stop),
         (4.05, Level::Rest),
     ] {
-        assert_eq!(measure_board_until_change(&mut supply, volts), (6, level));
+        assert_eq!(
+            measure_board_until_change(&mut supply, volts),
+            Some((6, level))
+        );
     }
     let mut supply = Supply::default();
-    let (frames, level) = measure_board_until_change(&mut supply, 3.9);
-    assert_eq!(level, Level::Rest);
-    assert_eq!(frames, 6, "a fall through all levels also takes six frames");
+    let change = measure_board_until_change(&mut supply, 3.9);
+    // A fall through all levels also takes six frames.
+    assert_eq!(change, Some((6, Level::Rest)));
 }
 
 #[test]
-fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
+fn six_low_readings_lower_the_level_only_as_far_as_the_highest_of_them() {
     for (usual_volts, outlier_volts, level) in [
         (4.45, 3.5, Level::Slow),
         (4.25, 3.5, Level::Stop),
@@ -136,7 +135,7 @@ fn after_six_worse_readings_the_level_nearest_to_the_current_one_counts() {
 }
 
 #[test]
-fn after_fifty_better_readings_the_level_nearest_to_the_current_one_counts() {
+fn fifty_high_readings_raise_the_level_only_as_far_as_the_lowest_of_them() {
     for outlier_frame in 0..50 {
         let mut supply = Supply::default();
         measure_board_until_change(&mut supply, 4.2);
@@ -169,12 +168,12 @@ fn the_level_improves_one_second_after_the_voltage_exceeds_the_threshold_plus_hy
     measure_board_until_change(&mut supply, 4.2);
     assert_eq!(supply.level(), Level::Stop);
     // Between the threshold and 0.15 V above the threshold, the level does not change.
-    assert_eq!(measure_board_until_change(&mut supply, 4.40).0, 0);
+    assert_eq!(measure_board_until_change(&mut supply, 4.40), None);
     let slow_change = measure_board_until_change(&mut supply, 4.5);
-    assert_eq!(slow_change, (50, Level::Slow));
-    assert_eq!(measure_board_until_change(&mut supply, 4.6).0, 0);
+    assert_eq!(slow_change, Some((50, Level::Slow)));
+    assert_eq!(measure_board_until_change(&mut supply, 4.6), None);
     let good_change = measure_board_until_change(&mut supply, 4.7);
-    assert_eq!(good_change, (50, Level::Good));
+    assert_eq!(good_change, Some((50, Level::Good)));
 }
 
 #[test]
@@ -191,9 +190,9 @@ fn a_supply_that_oscillates_around_a_threshold_changes_its_level_only_once() {
 }
 
 #[test]
-fn the_worse_of_two_supplies_determines_the_level_and_is_reported() {
+fn the_supply_with_the_lower_level_determines_the_level_and_is_reported() {
     let supplies = SUPPLIES_WITH_RAIL;
-    for (board_volts, rail_volts, level, worse_volts) in [
+    for (board_volts, rail_volts, level, limiting_volts) in [
         (5.0, 6.6, Level::Good, 5.0),
         (5.0, 6.3, Level::Slow, 6.3),
         (4.25, 6.3, Level::Stop, 4.25),
@@ -208,8 +207,8 @@ fn the_worse_of_two_supplies_determines_the_level_and_is_reported() {
         assert_eq!(supply.level(), level);
         let reported_volts = f64::from(supply.limiting_voltage(&supplies).centivolts()) / 100.0;
         assert!(
-            (reported_volts - worse_volts).abs() < 0.05,
-            "reported {reported_volts} V for {worse_volts} V"
+            (reported_volts - limiting_volts).abs() < 0.05,
+            "reported {reported_volts} V for {limiting_volts} V"
         );
     }
 }
@@ -218,6 +217,6 @@ fn the_worse_of_two_supplies_determines_the_level_and_is_reported() {
 fn an_unmeasured_supply_is_not_low() {
     let supplies = SUPPLIES_WITH_RAIL;
     let mut supply = Supply::default();
-    let (frames, _) = measure_until_change(&mut supply, Reading::default(), &supplies);
-    assert_eq!(frames, 0);
+    let change = measure_until_change(&mut supply, Reading::default(), &supplies);
+    assert_eq!(change, None);
 }

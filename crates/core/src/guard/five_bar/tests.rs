@@ -7,11 +7,11 @@ use super::*;
 use crate::numbers::units::Angle;
 use crate::sample::{SampleFiveBar, bounds, to_degrees, to_f64};
 
-/// Yields random five-bars, in mm, whose couplers are long enough for the other bars.
+/// Yields random five-bars, in mm, whose couplers are long enough for the other links.
 fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
     let any_crank = || 1.0..100.0f64;
     let any_coupler = || 5.0..120.0f64;
-    let unequal_bars = (
+    let unequal_lengths = (
         0.0..100.0f64,
         any_crank(),
         any_coupler(),
@@ -19,7 +19,7 @@ fn any_five_bar() -> impl Strategy<Value = kinematics::FiveBar> {
         any_crank(),
     )
         .prop_map(|lengths| kinematics::FiveBar::new(lengths.into()));
-    (unequal_bars, 0u8..3)
+    (unequal_lengths, 0u8..3)
         .prop_map(|(five_bar, variant)| {
             let right_coupler = match variant {
                 0 => five_bar.left_coupler_length,
@@ -45,13 +45,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
     #[test]
-    fn margins_of_random_bars_are_within_their_error_bounds(
+    fn margins_of_random_five_bars_are_within_their_error_bounds(
         five_bar in any_five_bar(),
         left: u16,
         right: u16,
     ) {
         let [left, right] = [left, right].map(Angle);
-        let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
+        let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
         let actual = compute_margins(&sample, left, right);
         let angles = [left, right].map(to_degrees);
         let bound = bounds::EndErrors::at_angles(&five_bar, &sample, angles);
@@ -85,7 +85,7 @@ proptest! {
     }
 }
 
-/// A search over random bars found these five-bars, with short couplers at a small type-2 margin, where rounding a
+/// A search over random lengths found these five-bars, with short couplers at a small type-2 margin, where rounding a
 /// length by one step turns the couplers most. Their errors exceeded an earlier bound, which was an estimate from
 /// trials.
 #[test]
@@ -115,7 +115,7 @@ fn the_largest_known_errors_are_within_their_bounds() {
         ),
     ] {
         let five_bar = kinematics::FiveBar::new(lengths);
-        let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
+        let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
         let angles = angles.map(Angle);
         let actual = compute_margins(&sample, angles[0], angles[1]);
         let angles = angles.map(to_degrees);
@@ -138,7 +138,7 @@ fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
     // The crank tips are close and the couplers are long. Therefore the squared distance is small, and its rounding is
     // relatively large.
     let five_bar = kinematics::FiveBar::new([20.0, 30.0, 126.0, 126.0, 30.0]);
-    let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
+    let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
     let (mut error_sum, mut count) = (0.0, 0.0);
     for left in (13_000..18_000).step_by(7) {
         let [left, right] = [Angle(left), Angle(0x8000 - left)];
@@ -158,7 +158,7 @@ fn rounding_does_not_bias_a_type_2_margin_with_few_bits() {
 #[test]
 fn couplers_in_line_and_crossed_crank_tips_are_beyond_every_limit() {
     let five_bar = kinematics::FiveBar::new([20.0, 30.0, 40.0, 35.0, 30.0]);
-    let sample = SampleFiveBar::new(&five_bar).expect("the bars fit the integers");
+    let sample = SampleFiveBar::new(&five_bar).expect("the lengths fit the integers");
     let margins_at = |left, right| {
         let [left, right] = [left, right].map(Angle::from_centideg);
         compute_margins(&sample, left, right)

@@ -13,8 +13,8 @@ use crate::numbers::units::{PulseWidth, Sweep};
 struct Ram {
     bytes: RefCell<Vec<u8>>,
     /// The number of stores until the reset; later stores are lost.
-    stores_left: Cell<usize>,
-    /// The number of all stores, including lost stores.
+    stores_until_reset: Cell<usize>,
+    /// The total number of stores, including lost ones.
     store_count: Cell<usize>,
 }
 
@@ -22,7 +22,7 @@ impl Ram {
     fn with_bytes(bytes: Vec<u8>) -> Self {
         Self {
             bytes: RefCell::new(bytes),
-            stores_left: Cell::new(usize::MAX),
+            stores_until_reset: Cell::new(usize::MAX),
             store_count: Cell::new(0),
         }
     }
@@ -35,10 +35,10 @@ impl Ram {
         ram
     }
 
-    /// Returns a copy of the RAM that loses all but the first `stores` stores.
-    fn with_reset_after(&self, stores: usize) -> Self {
+    /// Returns a copy of the RAM that loses all but the first `kept_count` stores.
+    fn with_reset_after(&self, kept_count: usize) -> Self {
         let ram = self.copy_after_reset();
-        ram.stores_left.set(stores);
+        ram.stores_until_reset.set(kept_count);
         ram
     }
 
@@ -55,8 +55,9 @@ impl Cells for Ram {
 
     fn set(&self, index: usize, byte: u8) {
         self.store_count.set(self.store_count.get() + 1);
-        if self.stores_left.get() > 0 {
-            self.stores_left.set(self.stores_left.get() - 1);
+        let stores_left = self.stores_until_reset.get();
+        if stores_left > 0 {
+            self.stores_until_reset.set(stores_left - 1);
             self.bytes.borrow_mut()[index] = byte;
         }
     }
@@ -106,27 +107,29 @@ fn a_stored_servo_state_survives_a_reset_but_not_a_loss_of_power() {
 fn a_reset_between_any_two_stores_leaves_the_old_or_the_new_servo_state() {
     let ram = Ram::after_power_on();
     store_servo_state(&ram, &make_servo_state(1), 1);
-    let mut found_counts = [0; 2];
+    let (mut old_count, mut new_count) = (0, 0);
     for n in 2..9 {
         let complete_ram = ram.with_reset_after(usize::MAX);
         store_servo_state(&complete_ram, &make_servo_state(n), n as u8);
-        for stores in 0..=complete_ram.store_count.get() {
-            let torn_ram = ram.with_reset_after(stores);
+        for kept_count in 0..=complete_ram.store_count.get() {
+            let torn_ram = ram.with_reset_after(kept_count);
             store_servo_state(&torn_ram, &make_servo_state(n), n as u8);
             let found_servo_state = begin(&torn_ram.copy_after_reset(), None).servo_state_before;
-            let index = usize::from(found_servo_state == Some(make_servo_state(n)));
-            assert!(
-                index == 1 || found_servo_state == Some(make_servo_state(n - 1)),
-                "servo state {n}, {stores} stores"
-            );
-            found_counts[index] += 1;
+            if found_servo_state == Some(make_servo_state(n)) {
+                new_count += 1;
+            } else {
+                assert_eq!(
+                    found_servo_state,
+                    Some(make_servo_state(n - 1)),
+                    "servo state {n}, {kept_count} stores"
+                );
+                old_count += 1;
+            }
         }
         store_servo_state(&ram, &make_servo_state(n), n as u8);
     }
-    assert!(
-        found_counts[0] > 100 && found_counts[1] == 7,
-        "{found_counts:?}"
-    );
+    assert!(old_count > 100, "{old_count}");
+    assert_eq!(new_count, 7);
 }
 
 #[test]
@@ -137,14 +140,14 @@ fn a_reset_between_any_two_stores_of_begin_keeps_the_servo_state() {
     let complete_ram = ram.with_reset_after(usize::MAX);
     begin(&complete_ram, None);
     assert!(complete_ram.store_count.get() >= 3);
-    for stores in 0..=complete_ram.store_count.get() {
-        let torn_ram = ram.with_reset_after(stores);
+    for kept_count in 0..=complete_ram.store_count.get() {
+        let torn_ram = ram.with_reset_after(kept_count);
         begin(&torn_ram, None);
         let restart = begin(&torn_ram.copy_after_reset(), None);
         assert_eq!(
             restart.servo_state_before,
             Some(make_servo_state(5)),
-            "{stores}"
+            "{kept_count} stores"
         );
         assert!((1..=2).contains(&restart.reset_count));
         assert!(matches!(restart.cause, Cause::Watchdog | Cause::External));
@@ -153,7 +156,7 @@ fn a_reset_between_any_two_stores_of_begin_keeps_the_servo_state() {
 
 #[test]
 fn every_cause_is_determined_from_its_flag_or_from_ram() {
-    for (reported_cause, has_hung, cause, is_supply_suspected) in [
+    for (reported_cause, has_hung, expected_cause, is_supply_suspected) in [
         (Some(Cause::External), false, Cause::External, false),
         (Some(Cause::BrownOut), false, Cause::BrownOut, true),
         (Some(Cause::Watchdog), false, Cause::Watchdog, false),
@@ -169,7 +172,7 @@ fn every_cause_is_determined_from_its_flag_or_from_ram() {
         let restart = begin(&ram, reported_cause);
         assert_eq!(
             (restart.cause, restart.is_supply_suspected),
-            (cause, is_supply_suspected)
+            (expected_cause, is_supply_suspected)
         );
     }
 }
@@ -191,7 +194,7 @@ proptest! {
         reported_cause in prop::sample::select(&REPORTED_CAUSES[..]),
     ) {
         let mut bytes = bytes;
-        // Random bytes contain the mark in one of 256 cases.
+        // By chance, one in 256 random contents has the mark.
         prop_assume!(bytes[MARK_CELL] != POWERED_MARK);
         let ram = Ram::with_bytes(bytes.clone());
         let restart = begin(&ram, reported_cause);

@@ -3,8 +3,8 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::numbers::bars::MIN_COUPLER_STEPS;
 use crate::numbers::curve::ENTRY_COUNT;
+use crate::numbers::link_lengths::MIN_COUPLER_STEPS;
 use crate::sample::SampleCouplers;
 use crate::sample::bounds::{self, MIN_KNOWN_MARGIN};
 

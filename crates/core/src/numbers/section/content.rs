@@ -11,13 +11,13 @@ use super::{
     AFTER_NUMBERS_OFFSET, CURVE_COUNT, FORMAT, Header, MAGIC, MAX_NAME_BYTES, MapHeader, Numbers,
     PartRange, SectionPart,
 };
-use crate::numbers::bars::Bars;
 use crate::numbers::calibration::{Calibration, SweepRange};
 use crate::numbers::cells::CellMap;
 use crate::numbers::couplers::{self, Couplers};
 use crate::numbers::curve::Table;
 use crate::numbers::gaits::{Gait, Step, Wave};
 use crate::numbers::limits::Limits;
+use crate::numbers::link_lengths::LinkLengths;
 use crate::numbers::slew::Slew;
 use crate::numbers::slider::Slider;
 use crate::numbers::supplies::Supplies;
@@ -51,7 +51,7 @@ pub struct Content {
     pub slew: Slew,
     /// The supplies and their thresholds.
     pub supplies: Supplies,
-    /// The bars of head and tail.
+    /// The link lengths of head and tail.
     pub ends: [FiveBarLengths; 2],
     /// The left and the right slider.
     pub sliders: [Slider; 2],
@@ -100,10 +100,10 @@ impl Map {
 }
 
 impl FiveBarLengths {
-    /// Computes the bars and the factors derived from them.
-    pub fn bars(&self) -> Bars {
+    /// Computes the factors of the lengths.
+    pub fn link_lengths(&self) -> LinkLengths {
         let [left, right] = self.cranks;
-        Bars::new([self.base, left, right], self.couplers, self.scale)
+        LinkLengths::new([self.base, left, right], self.couplers, self.scale)
     }
 
     /// Computes the tables that the couplers require: rise, stretched rise, folded rise, skew.
@@ -180,7 +180,7 @@ impl Content {
             append_part(rows.len(), &row_bytes),
         ];
         let numbers = Numbers {
-            ends: [head.bars(), tail.bars()],
+            ends: [head.link_lengths(), tail.link_lengths()],
             sliders: self.sliders,
             neutral_angles: self.neutral_angles,
             calibration: self.calibration,

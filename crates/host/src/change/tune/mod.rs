@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::Failure;
 use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
-use crate::shared::robot_file::unknown_gait_failure;
+use crate::shared::robot_args::unknown_gait_failure;
 use crate::shared::spread::{SpreadArgs, Spreadable};
 
 /// Search for a faster gait at the same servo speed
@@ -182,7 +182,7 @@ fn search_all(tuning: &Tuning, args: &Args) -> Result<Option<BuiltGait>, Failure
     let best = tuning.build_best(scored.collect());
     best.map(Some).ok_or_else(|| {
         let rate = tuning.rate();
-        Failure::Impossible(format!(
+        Failure::Operation(format!(
             "found no gait within robot.toml's limits at {rate:.0} deg/s; try more --rounds"
         ))
     })

@@ -42,7 +42,7 @@ pub struct RestoreArgs {
 /// Fails if there is no board, the board does not answer, or the file cannot be written.
 pub fn backup(args: BackupArgs) -> Result<(), Failure> {
     let finder = args.connection.into_finder("calibrate backup FILE")?;
-    let (mut board, _) = finder.open_and_greet()?;
+    let (mut board, _) = finder.connect()?;
     let calibration = block_on(read_settings(&mut board.link))
         .map_err(|error| board.to_failure(&error.into()))?;
     files::write(&args.file, calibration.to_toml().as_bytes())?;
@@ -63,9 +63,9 @@ pub fn restore(args: RestoreArgs) -> Result<(), Failure> {
     let calibration = Calibration::parse(&text, &args.file.display().to_string())
         .map_err(|error| Failure::Input(error.to_string()))?;
     let finder = args.connection.into_finder("calibrate restore FILE")?;
-    let (mut board, _) = finder.open_and_greet()?;
+    let (mut board, _) = finder.connect()?;
     send_calibration(&calibration, &mut board.link)
-        .map_err(|error| Failure::Impossible(format!("{}: {error}", args.file.display())))?;
+        .map_err(|error| Failure::Operation(format!("{}: {error}", args.file.display())))?;
     println!(
         "{} has accepted and saved the calibration from {}",
         board.name,

@@ -8,7 +8,7 @@ use super::link::{Link, LinkError, Timeouts};
 use super::port;
 use super::usb_ports;
 use crate::shared::escape::escape_controls;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// The arguments that select the board to connect to.
 #[derive(clap::Args, Debug)]
@@ -55,7 +55,7 @@ impl ConnectionArgs {
     /// Fails if the simulated UNO has no robot, firmware or pseudo terminal, or is not built in.
     pub fn into_finder(self, command: &'static str) -> Result<BoardFinder, Failure> {
         if self.sim {
-            let robot = RobotFile::from_path(self.robot);
+            let robot = RobotArgs::from_path(self.robot);
             return simulate_board(self.elf.as_deref(), &robot, command);
         }
         Ok(BoardFinder {
@@ -70,16 +70,16 @@ impl ConnectionArgs {
 #[cfg(all(feature = "simulator", target_os = "linux"))]
 fn simulate_board(
     elf: Option<&std::path::Path>,
-    robot_file: &RobotFile,
+    robot_args: &RobotArgs,
     command: &'static str,
 ) -> Result<BoardFinder, Failure> {
     use simulated_uno::{Fidelity, Port, Uno};
-    let robot = robot_file.load()?;
-    let image = crate::shared::firmware::select_firmware(elf, robot_file, &robot)?.image;
+    let robot = robot_args.load()?;
+    let image = crate::shared::firmware::select_firmware(elf, robot_args, &robot)?.image;
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     crate::simulate::sim::supplies::connect(&mut uno, &robot);
     let port = Port::new()
-        .map_err(|error| Failure::Impossible(format!("cannot open a pseudo terminal: {error}")))?;
+        .map_err(|error| Failure::Operation(format!("cannot open a pseudo terminal: {error}")))?;
     let board = port.in_background(uno, |uno| {
         uno.take_edges();
         uno.take_marks();
@@ -94,7 +94,7 @@ fn simulate_board(
 #[cfg(not(all(feature = "simulator", target_os = "linux")))]
 fn simulate_board(
     _: Option<&std::path::Path>,
-    _: &RobotFile,
+    _: &RobotArgs,
     _: &'static str,
 ) -> Result<BoardFinder, Failure> {
     Err(Failure::Input(
@@ -104,7 +104,7 @@ fn simulate_board(
 }
 
 impl BoardFinder {
-    /// Opens the port, which resets the board. Call [`Connection::greet`] next.
+    /// Opens the port, which resets the board. Call [`Connection::wait_for_robot`] next.
     ///
     /// # Errors
     /// Fails if there is no board, there are several, or the port cannot be opened.
@@ -116,7 +116,7 @@ impl BoardFinder {
             Some(port) => (port.clone(), port.clone()),
             None => {
                 let port = usb_ports::choose(&usb_ports::list(), self.command)
-                    .map_err(|error| Failure::Impossible(error.to_string()))?;
+                    .map_err(|error| Failure::Operation(error.to_string()))?;
                 // The product name comes from the board and may contain control characters.
                 (port.name.clone(), escape_controls(&port.to_string()))
             }
@@ -132,10 +132,10 @@ impl BoardFinder {
     ///
     /// # Errors
     /// Fails as [`BoardFinder::open`] does, or if no lizard answers.
-    pub fn open_and_greet(&self) -> Result<(Connection, Option<String>), Failure> {
+    pub fn connect(&self) -> Result<(Connection, Option<String>), Failure> {
         let mut board = self.open()?;
         eprintln!("lizard: waiting for the board at {}", board.name);
-        let banner = board.greet()?;
+        let banner = board.wait_for_robot()?;
         Ok((board, banner))
     }
 
@@ -150,16 +150,18 @@ impl BoardFinder {
 }
 
 impl Connection {
-    /// Waits for the banner; see [`Link::greet`].
+    /// Waits for the banner; see [`Link::wait_for_robot`].
     ///
     /// # Errors
     /// Fails if no lizard answers; the message names the port.
-    pub fn greet(&mut self) -> Result<Option<String>, Failure> {
-        self.link.greet().map_err(|error| self.to_failure(&error))
+    pub fn wait_for_robot(&mut self) -> Result<Option<String>, Failure> {
+        self.link
+            .wait_for_robot()
+            .map_err(|error| self.to_failure(&error))
     }
 
     /// Converts the error to a failure whose message names the port.
     pub fn to_failure(&self, error: &LinkError) -> Failure {
-        Failure::Impossible(format!("{}: {error}", self.name))
+        Failure::Operation(format!("{}: {error}", self.name))
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{BadReply, read_settings};
+use lizard_calibrate::{ReplyError, read_settings};
 use lizard_robot::servo::SERVO_NAMES;
 use lizard_robot::{Banner, Calibration, RobotIdentity, ServoSettings, Status};
 use pollster::block_on;
@@ -72,7 +72,7 @@ impl From<Calibration> for CalibrationInfo {
 /// Fails if there is no board, or if the board does not answer like a lizard.
 pub fn run(args: Args) -> Result<(), Failure> {
     let finder = args.connection.into_finder("info")?;
-    let (mut board, banner) = finder.open_and_greet()?;
+    let (mut board, banner) = finder.connect()?;
     let result = BoardInfo::read(board.name.clone(), banner.as_deref(), &mut board.link);
     let info = result.map_err(|error| board.to_failure(&error))?;
     json::print_json_or_text(args.json, &info, || info.to_text())
@@ -172,7 +172,7 @@ fn read_status<P: Read + Write>(link: &mut Link<P>) -> Result<Status, LinkError>
     let answer = link.command("status")?.answer;
     Status::parse(&answer).ok_or_else(|| {
         let line = "status".to_owned();
-        BadReply::UnknownFormat { line, answer }.into()
+        ReplyError::UnknownFormat { line, answer }.into()
     })
 }
 

@@ -59,7 +59,7 @@ pub fn run(args: ConsoleArgs) -> Result<(), Failure> {
 }
 
 fn run_dialogue(finder: &BoardFinder, file: Option<PathBuf>) -> Result<(), Failure> {
-    let (board, banner) = finder.open_and_greet()?;
+    let (board, banner) = finder.connect()?;
     let mut clock = Clock::start();
     let mut dialogue = Dialogue {
         session: Session::new(clock.now(), true, file.is_some()).with_deadman(),
@@ -281,7 +281,7 @@ impl Dialogue {
         let Ok(mut board) = finder.open() else {
             return Ok(None);
         };
-        match board.link.greet() {
+        match board.link.wait_for_robot() {
             Ok(banner) => {
                 let banner = banner.unwrap_or_default();
                 screen.print(&format!("{} is connected again: {banner}", board.name))?;

@@ -1,14 +1,14 @@
 //! A line-based connection to the robot over any stream of bytes.
 //!
-//! An answer may have several lines, the board may be reset or unplugged, and the port may belong to another device.
-//! After each line, the link therefore waits for a line that begins with `ok` or `err`, and collects the preceding
-//! lines that begin with `#`. If no answer arrives in time, the request fails with a message.
+//! A reply may have several lines, the board may be reset or unplugged, and the port may belong to another device.
+//! After each line, the link therefore waits for the first line that does not begin with `#`, and collects the `#`
+//! lines before it. If no answer arrives in time, the request fails with [`LinkError::NoAnswer`].
 
 use std::collections::VecDeque;
 use std::io::{self, ErrorKind, Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{BadReply, Console, ConsoleError, Reply};
+use lizard_calibrate::{Console, ConsoleError, Reply, ReplyError};
 use pollster::block_on;
 
 use crate::drive::clock::Deadline;
@@ -45,7 +45,7 @@ impl Default for Timeouts {
 /// The cause of a missing or unusable answer.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
-    /// The port has vanished.
+    /// The port is gone.
     #[error("the port is gone: the board was unplugged, or its cable is loose")]
     Gone,
     /// The robot has not answered this line.
@@ -65,7 +65,7 @@ pub enum LinkError {
     NoOutput,
     /// The robot refuses a line, or its answer is not understood.
     #[error(transparent)]
-    Reply(#[from] BadReply),
+    Reply(#[from] ReplyError),
     /// An error of the operating system.
     #[error("{0}")]
     Io(io::Error),
@@ -82,7 +82,7 @@ impl From<ConsoleError<LinkError>> for LinkError {
 
 impl From<LinkError> for crate::Failure {
     fn from(error: LinkError) -> Self {
-        Self::Impossible(error.to_string())
+        Self::Operation(error.to_string())
     }
 }
 
@@ -114,7 +114,7 @@ impl<P: Read + Write> Link<P> {
     ///
     /// # Errors
     /// Fails if nothing answers, or if another device answers.
-    pub fn greet(&mut self) -> Result<Option<String>, LinkError> {
+    pub fn wait_for_robot(&mut self) -> Result<Option<String>, LinkError> {
         let mut deadline = Deadline::after(self.timeouts.banner);
         let mut first_line = None;
         while let Some(line) = self.read_line_before(&mut deadline)? {
@@ -148,7 +148,7 @@ impl<P: Read + Write> Link<P> {
         self.port.flush().map_err(to_link_error)
     }
 
-    /// Sends a line and waits for its answer, `ok` or `err`.
+    /// Sends a line and waits for its answer: the first line that does not begin with `#`.
     ///
     /// # Errors
     /// Fails if there is no answer, or the port is gone.
@@ -173,12 +173,12 @@ impl<P: Read + Write> Link<P> {
         block_on(lizard_calibrate::send_command(self, line)).map_err(LinkError::from)
     }
 
-    /// Waits for the next line for at most `wait`; returns `None` if none arrives.
+    /// Waits up to `timeout` for the next line; returns `None` if none arrives.
     ///
     /// # Errors
     /// Fails if the port is gone.
-    pub fn read_line(&mut self, wait: Duration) -> Result<Option<String>, LinkError> {
-        self.read_line_before(&mut Deadline::after(wait))
+    pub fn read_line(&mut self, timeout: Duration) -> Result<Option<String>, LinkError> {
+        self.read_line_before(&mut Deadline::after(timeout))
     }
 
     /// Waits for `duration` and discards the lines that arrive in the meantime.
@@ -233,7 +233,7 @@ impl<P: Read + Write> Link<P> {
         // A reset cuts off the board's current line, and the banner follows directly. The partial line is discarded.
         let text = &text[text.find(BANNER_START).unwrap_or(0)..];
         if !text.is_empty() {
-            // Control characters are replaced because a terminal would execute them.
+            // Control characters are replaced because a terminal would interpret them.
             let replace_control = |c: char| if c.is_control() { '\u{fffd}' } else { c };
             self.lines
                 .push_back(text.chars().map(replace_control).collect());
@@ -280,7 +280,7 @@ pub(crate) fn is_port_gone(error: &io::Error) -> bool {
 mod tests {
     use super::*;
 
-    /// A port with scripted output: each write releases the next piece, and at `None` the port vanishes.
+    /// A port with scripted output: each write releases the next piece, and at `None` the port is gone.
     struct ScriptedPort {
         pieces: VecDeque<Option<&'static str>>,
         ready_bytes: VecDeque<u8>,
@@ -290,19 +290,19 @@ mod tests {
 
     impl ScriptedPort {
         fn connect(pieces: &[Option<&'static str>]) -> Link<Self> {
-            let mut script = Self {
+            let mut port = Self {
                 pieces: pieces.iter().copied().collect(),
                 ready_bytes: VecDeque::new(),
                 is_gone: false,
                 sent_text: String::new(),
             };
-            script.release_piece();
+            port.release_piece();
             let timeout = Duration::from_millis(20);
             let timeouts = Timeouts {
                 banner: timeout,
                 answer: timeout,
             };
-            Link::new(script, timeouts)
+            Link::new(port, timeouts)
         }
 
         fn release_piece(&mut self) {
@@ -348,7 +348,7 @@ mod tests {
             let bytes = format!("{cut_line}# lizard 0.2.0 robot paper 1\r\n");
             let bytes: &'static str = bytes.leak();
             let mut link = ScriptedPort::connect(&[Some(bytes)]);
-            let banner = link.greet().expect("the robot greets");
+            let banner = link.wait_for_robot().expect("the robot sends a banner");
             assert_eq!(
                 banner.as_deref(),
                 Some("# lizard 0.2.0 robot paper 1"),
@@ -362,33 +362,33 @@ mod tests {
         let mut link = ScriptedPort::connect(&[Some(
             "\u{fffd}\x00x\n# t=7 po\r\n# lizard 0.2.0 robot paper 1a\r\n",
         )]);
-        let banner = link.greet().expect("the device is a lizard");
+        let banner = link.wait_for_robot().expect("the device is a lizard");
         assert_eq!(banner.as_deref(), Some("# lizard 0.2.0 robot paper 1a"));
     }
 
     #[test]
-    fn a_board_that_was_not_reset_is_recognized_by_its_status() {
+    fn a_board_that_was_not_reset_is_recognised_by_its_status() {
         let mut link =
             ScriptedPort::connect(&[Some(""), Some("# t=1 pose=1\r\nok gait=stand phase=0\r\n")]);
-        assert_eq!(link.greet().expect("the device is a lizard"), None);
+        assert_eq!(link.wait_for_robot().expect("the device is a lizard"), None);
         assert_eq!(link.port.sent_text, "status\n");
     }
 
     #[test]
     fn the_error_quotes_another_device_or_reports_silence() {
-        let greet_error = |pieces: &[Option<&'static str>]| {
+        let get_error = |pieces: &[Option<&'static str>]| {
             let error = ScriptedPort::connect(pieces)
-                .greet()
+                .wait_for_robot()
                 .expect_err("the device must be refused");
             error.to_string()
         };
-        let other_device_message = greet_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
+        let other_device_message = get_error(&[Some("start\nGrbl 1.1\n"), Some("error:20\n")]);
         assert!(
             other_device_message
                 .starts_with("this is not a lizard: expected `# lizard ...`, got `start`"),
             "{other_device_message}"
         );
-        assert!(greet_error(&[]).starts_with("no response"));
+        assert!(get_error(&[]).starts_with("no response"));
     }
 
     #[test]
@@ -397,7 +397,7 @@ mod tests {
             Some(BANNER_LINE),
             Some("# boot stand\r\n# deadman 0\r\nok cal\r\n"),
         ]);
-        link.greet().expect("the device is a lizard");
+        link.wait_for_robot().expect("the device is a lizard");
         let reply = link.ask("cal").expect("the robot answers");
         assert_eq!(reply.notes, ["# boot stand", "# deadman 0"]);
         assert_eq!(reply.answer, "ok cal");
@@ -407,7 +407,7 @@ mod tests {
     fn the_refusal_names_the_line_and_the_reason() {
         let mut link =
             ScriptedPort::connect(&[Some(BANNER_LINE), Some("err 3 trim must be -20..20\r\n")]);
-        link.greet().expect("the device is a lizard");
+        link.wait_for_robot().expect("the device is a lizard");
         let error = link
             .command("trim 1 50")
             .expect_err("the trim must be refused");
@@ -418,9 +418,9 @@ mod tests {
     }
 
     #[test]
-    fn silence_and_a_vanished_port_are_different_errors() {
+    fn silence_and_a_missing_port_are_different_errors() {
         let mut link = ScriptedPort::connect(&[Some(BANNER_LINE), Some("# a note\r\n"), None]);
-        link.greet().expect("the device is a lizard");
+        link.wait_for_robot().expect("the device is a lizard");
         assert!(matches!(link.ask("walk"), Err(LinkError::NoAnswer(line)) if line == "walk"));
         assert!(matches!(link.ask("walk"), Err(LinkError::Gone)));
     }

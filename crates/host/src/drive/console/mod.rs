@@ -1,7 +1,8 @@
-//! The commands for a board on USB (`lizard console`, `info` and `calibrate`), and their session, link and terminal.
+//! The commands for a board on USB (`lizard console`, `info` and `calibrate`), and the session, link and terminal that
+//! they share.
 //!
-//! The logic is separate from the terminal and the serial port. The tests therefore use the firmware's core on this
-//! machine and scripted input.
+//! The logic is separate from the terminal and the serial port, so the tests use scripted input and the firmware's core
+//! on the host.
 
 pub mod backup;
 pub mod calibrate;

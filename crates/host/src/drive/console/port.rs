@@ -58,7 +58,7 @@ impl From<PortError> for crate::Failure {
         let message = error.to_string();
         match error {
             PortError::Missing { .. } | PortError::NotAPort(_) => Self::Input(message),
-            _ => Self::Impossible(message),
+            _ => Self::Operation(message),
         }
     }
 }

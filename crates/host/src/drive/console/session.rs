@@ -411,7 +411,7 @@ impl Session {
         let Some((line, reason)) = &self.first_failure else {
             return Ok(());
         };
-        Err(Failure::Impossible(format!(
+        Err(Failure::Operation(format!(
             "the robot did not accept {} of {} lines, the first `{line}`: {reason}",
             self.failed_count, self.user_line_count
         )))

@@ -32,7 +32,7 @@ pub const PAPER_TOML: &str = include_str!("../../../../../robots/paper.toml");
 pub fn connect_robot(robot_toml: &str) -> Link<ConsoleDouble> {
     let robot = Robot::parse(robot_toml).expect("the robot.toml is valid");
     let mut link = Link::new(ConsoleDouble::power_on(&robot), Timeouts::default());
-    link.greet().expect("the robot sends a banner");
+    link.wait_for_robot().expect("the robot sends a banner");
     link
 }
 

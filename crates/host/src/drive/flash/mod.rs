@@ -1,7 +1,7 @@
 //! `lizard flash`: writes the firmware to a UNO or a Nano through the board's own boot loader.
 //!
-//! [`lizard_upload`] writes the pages in an order in which a pulled cable is never dangerous; this module chooses the
-//! port, builds the image and reports to the user.
+//! [`lizard_upload`] writes the pages in an order that keeps the robot safe if the cable is pulled; this module chooses
+//! the port, builds the image and reports to the user.
 
 pub mod image_source;
 mod serial_board;
@@ -23,7 +23,7 @@ use crate::drive::console::port::BAUD_RATE;
 use crate::drive::console::usb_ports::{self, ChoiceError, UsbPort};
 use crate::shared::json;
 use crate::shared::progress::create_progress_bar;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 use serial_board::SerialBoard;
 
 /// Write the firmware with your robot to a UNO or a Nano on USB
@@ -50,7 +50,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The result of an upload; the field names are the JSON keys.
@@ -71,7 +71,7 @@ struct FlashReport {
 ///
 /// # Errors
 /// Fails if the image cannot be built or read, no board is found, the upload fails, or the firmware does not answer
-/// afterwards. After a failed upload, the message describes the contents of the flash.
+/// afterwards. After a failed upload, the message says what the flash now contains.
 pub fn run(args: Args) -> Result<(), Failure> {
     let image = match &args.image {
         Some(path) => image_source::read_hex_image(path)?,
@@ -92,10 +92,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     };
     let board = SerialBoard::open(&port)?;
     eprintln!("lizard: contacting the boot loader of the board at {board_name}");
-    let port_failure = |message: String| Failure::Impossible(format!("{board_name}: {message}"));
+    let port_failure = |message: String| Failure::Operation(format!("{board_name}: {message}"));
     let (board, page_counts) = write_image(board, &image, target, args.json)
         .map_err(|error| port_failure(error.to_string()))?;
-    let banner = greet(board).map_err(|error| {
+    let banner = wait_for_robot(board).map_err(|error| {
         port_failure(format!(
             "the flash is written and verified, but the firmware does not answer: {error}"
         ))
@@ -114,7 +114,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
 /// Chooses the port of the board to write.
 fn choose_port(ports: &[UsbPort]) -> Result<UsbPort, Failure> {
     usb_ports::choose(ports, "flash").map_err(|error| {
-        Failure::Impossible(match error {
+        Failure::Operation(match error {
             // The usual message suggests a simulated board; `flash` needs a real one.
             ChoiceError::NoPort { .. } => "no board found: this machine has no USB serial port. \
                  Connect the UNO with a cable that carries data (some only charge), or name its \
@@ -133,8 +133,8 @@ fn may_be_nano(ports: &[UsbPort], name: &str) -> bool {
     port.is_some_and(|port| !port.has_arduino_vendor_id())
 }
 
-/// Writes an image to the board, with a progress bar and a summary. Returns the board with its starting firmware, and
-/// the number of pages that were written and kept.
+/// Writes an image to the board, with a progress bar and a summary. Returns the board, whose firmware is now starting,
+/// and the number of pages that were written and kept.
 fn write_image(
     board: SerialBoard,
     image: &Image,
@@ -186,12 +186,12 @@ fn to_failure(error: UploadError) -> Failure {
         UploadError::NoLizard(_) | UploadError::Format { .. } => {
             ". Omit --only-robot to write both"
         }
-        UploadError::TooLong(error) if error.is_in_doubt() => {
+        UploadError::TooLong(error) if error.is_model_uncertain() => {
             ". If the board is a UNO, pass --board uno"
         }
         _ => "",
     };
-    Failure::Impossible(format!("{error}{remedy}"))
+    Failure::Operation(format!("{error}{remedy}"))
 }
 
 /// Formats the message about a finished upload.
@@ -207,9 +207,9 @@ fn format_summary(counts: PageCounts, duration: Duration) -> String {
 }
 
 /// Waits for the firmware's first line and returns it, or a fixed text if the firmware answers without one.
-fn greet(board: SerialBoard) -> Result<String, link::LinkError> {
+fn wait_for_robot(board: SerialBoard) -> Result<String, link::LinkError> {
     let mut link = Link::new(board, link::Timeouts::default());
-    let banner = link.greet()?;
+    let banner = link.wait_for_robot()?;
     Ok(banner.unwrap_or_else(|| "the robot answers".to_owned()))
 }
 
@@ -219,16 +219,16 @@ mod tests {
 
     #[test]
     fn the_summary_counts_bytes() {
-        let summarize = |written, kept| {
+        let summarise = |written, kept| {
             let duration = Duration::from_millis(1240);
             format_summary(PageCounts { written, kept }, duration)
         };
         assert_eq!(
-            summarize(2, 210),
+            summarise(2, 210),
             "256 bytes written and verified, 26880 already correct; 1.2 s"
         );
         assert_eq!(
-            summarize(0, 212),
+            summarise(0, 212),
             "nothing to write: all 27136 bytes are correct; 1.2 s"
         );
     }
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_choice_without_exactly_one_board_names_the_remedy() {
+    fn no_port_and_several_ports_are_errors_that_name_the_remedy() {
         let choice_error = |ports: &[UsbPort]| {
             let error =
                 choose_port(ports).expect_err("the choice must fail unless there is one port");

@@ -12,7 +12,7 @@ use std::io::{self, IsTerminal, Write};
 use std::path::PathBuf;
 
 use crate::shared::files;
-use crate::{Failure, PoseArgs, RobotFile};
+use crate::{Failure, PoseArgs, RobotArgs};
 
 pub use cranks::draw_cranks;
 pub use top_view::draw_top_view;
@@ -39,7 +39,7 @@ pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// Draws the robot.

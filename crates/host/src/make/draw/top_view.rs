@@ -264,7 +264,7 @@ impl<'a> TopView<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::built_in_robot;
+    use crate::shared::robot_args::built_in_robot;
     use lizard_kinematics::{Pose, wrap};
 
     /// Passes the paper's robot at `pose` to `check_view`; `None` is the neutral pose.

@@ -10,7 +10,7 @@ use lizard_parts::{Assembly, Pieces, Scene, Trajectory};
 use lizard_robot::Robot;
 
 use crate::shared::files;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 use format::ModelFormat;
 use long_foot::FootOffset;
 
@@ -53,7 +53,7 @@ pub struct Args {
     #[arg(long, value_name = "LEG=MM")]
     long_foot: Vec<FootOffset>,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// Builds the model and writes it.

@@ -131,7 +131,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Ok(());
     }
     let proof = complete_proof(&tasks, args.spread.read_merged(task_count)?);
-    let verdict = proof.judge();
+    let verdict = proof.check();
     let mut out = io::stdout().lock();
     if args.json {
         let report = FitReport {
@@ -190,7 +190,7 @@ fn print_proof(proof: &Proof, prints_all: bool, out: &mut impl Write) -> io::Res
         "{} pairs of shapes, {} regions of poses",
         proof.shape_pair_count, proof.region_count
     )?;
-    if let (Ok(()), Some(nearest)) = (proof.judge(), proof.nearest_separate_pair()) {
+    if let (Ok(()), Some(nearest)) = (proof.check(), proof.nearest_separate_pair()) {
         writeln!(
             out,
             "no two parts come nearer than {:.2} mm at any pose that the guard accepts",

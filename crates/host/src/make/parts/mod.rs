@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::shared::files;
 use crate::shared::progress::create_progress_bar;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// Write the robot's part files for printing and cutting, its bill of materials and its guide
 ///
@@ -46,7 +46,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// A part in the `--json` output; the field names are the JSON keys.
@@ -65,7 +65,7 @@ struct PartEntry {
 
 impl From<BuildError> for Failure {
     fn from(error: BuildError) -> Self {
-        Self::Impossible(error.to_string())
+        Self::Operation(error.to_string())
     }
 }
 
@@ -85,7 +85,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     if !args.coupon {
         assembly.check_dimensions()?;
-        fit::prove(&assembly).judge().map_err(BuildError::from)?;
+        fit::prove(&assembly).check().map_err(BuildError::from)?;
         parts.extend(match args.corner {
             true => assembly.collect_corner_parts(),
             false => assembly.collect_parts(),

@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::make::draw;
 use crate::paper::design;
 use crate::shared::{files, json};
-use crate::{Failure, PoseArgs, RobotFile};
+use crate::{Failure, PoseArgs, RobotArgs};
 
 /// Grid step of the performance charts, in units of D.
 const GRID_STEP: f64 = 0.005;
@@ -40,7 +40,7 @@ pub struct Args {
     #[command(flatten)]
     pose: PoseArgs,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// A chart and its files; the field names are the JSON keys.

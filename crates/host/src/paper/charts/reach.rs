@@ -122,10 +122,10 @@ fn draw_legend(mut group: Group) -> Group {
     }
     let legend_text = |text: &str, y: f64| text_start(text, (legend_x + 44.0, y), 15.0);
     group = draw_legend_entry(group, (legend_x, 190.0), GREY, "5 4", "circle of a foot");
-    let accepted_text = "what the guard accepts,";
+    let accepted_text = "accepted by the guard,";
     group = draw_legend_entry(group, (legend_x, 218.0), LEG_COLOUR, "", accepted_text);
-    group = group.add(legend_text("the other servos at neutral", 242.0));
-    let walk_text = "where walk has the foot";
+    group = group.add(legend_text("other servos at neutral", 242.0));
+    let walk_text = "path of a foot in walk";
     group = draw_legend_entry(group, (legend_x, 268.0), DARK, "", walk_text);
     let shaft = circle((legend_x + 17.0, 300.0), 6.0, "white");
     group
@@ -134,7 +134,7 @@ fn draw_legend(mut group: Group) -> Group {
 }
 
 /// Returns the neutral servo angles plus `turns`, deg.
-fn turn_from_neutral(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
+fn angles_from_turns(robot: &Robot, turns: [f64; 4]) -> [f64; 4] {
     let neutral: [f64; 4] = robot.neutral_pose().into();
     std::array::from_fn(|servo| neutral[servo] + turns[servo])
 }
@@ -145,7 +145,7 @@ fn find_accepted_solutions(robot: &Robot, turns: impl Fn(f64, f64) -> [f64; 4]) 
     let turn_range = || (-MAX_TURN_DEG..=MAX_TURN_DEG).map(f64::from);
     let pairs = turn_range().flat_map(|a| turn_range().map(move |b| (a, b)));
     pairs
-        .filter_map(|(a, b)| robot.solve_if_allowed(turn_from_neutral(robot, turns(a, b))))
+        .filter_map(|(a, b)| robot.solve_if_allowed(angles_from_turns(robot, turns(a, b))))
         .collect()
 }
 
@@ -179,7 +179,7 @@ fn compute_slider_middle(robot: &Robot, side: Side, rear_tip: Vector, front_tip:
     robot.lizard().shafts()[side.servos()[1]] + (rear_tip + front_tip) * 0.5
 }
 
-/// Returns the cells that the sliders' middles reach at all arm angles with a travel within the stroke.
+/// Returns the cells that the sliders' middles reach at all arm angles for which the travel is within the stroke.
 fn find_linkage_slider_cells(robot: &Robot) -> Cells {
     let limits = robot.limits();
     let mut cells = Cells::new();
@@ -224,7 +224,7 @@ fn compute_foot_positions(
     let accepted_position = |turn: f64| {
         let mut turns = [0.0; 4];
         turns[servo] = turn;
-        let angles = turn_from_neutral(robot, turns);
+        let angles = angles_from_turns(robot, turns);
         let is_accepted = !is_guarded || robot.solve_if_allowed(angles).is_some();
         is_accepted.then(|| compute_foot_position(robot, servo, angles[servo]))
     };
@@ -250,10 +250,10 @@ fn compute_foot_path(robot: &Robot, servo: usize) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::built_in_robot;
+    use crate::shared::robot_args::built_in_robot;
 
     #[test]
-    fn accepted_points_are_within_reach_of_the_links() {
+    fn accepted_tail_points_and_nearly_all_slider_cells_are_within_reach_of_the_links() {
         let robot = built_in_robot("paper");
         let solutions = find_accepted_solutions(&robot, |a, b| [0.0, 0.0, a, b]);
         assert!(solutions.len() > 300, "{}", solutions.len());
@@ -292,12 +292,12 @@ mod tests {
                 CELL_WIDTH * (f64::from(y) + 0.5),
             );
             let distance = (x.abs() - 10.0).hypot(y);
-            assert!(distance < 30.0 + 2.0 * CELL_WIDTH, "{x} {y}");
+            assert!(distance < 30.0 + 2.0 * CELL_WIDTH, "slider at ({x}, {y})");
         }
         // A foot keeps its distance of 45 mm from its hip, 35 mm to the side and 55 mm ahead.
         for (x, y) in compute_foot_positions(&robot, 0, (-180..=180).map(f64::from), false) {
             let distance = (x + 35.0).hypot(y - 55.0);
-            assert!((distance - 45.0).abs() < 0.01, "{x} {y} {distance}");
+            assert!((distance - 45.0).abs() < 0.01, "foot: {x} {y} {distance}");
         }
     }
 }

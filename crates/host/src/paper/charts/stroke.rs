@@ -3,7 +3,7 @@
 use lizard_robot::{CheckedGait, Robot};
 use svg::node::element::Group;
 
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 use crate::shared::plot::{Axis, IMPOSSIBLE_COLOUR, Plot, draw_legend_entry};
 use crate::shared::shapes::{Anchor, GREY, add_title, rectangle, render_svg, text, text_start};
 
@@ -101,8 +101,8 @@ fn draw_panel(mut group: Group, plot: &Plot, robot: &Robot, gait: &CheckedGait) 
     let title_point = (plot.corner.0, plot.corner.1 - 10.0);
     let range_text = format!(
         "{:+.1} to {:+.1} mm",
-        round_decimals(min_travel, 1),
-        round_decimals(max_travel, 1)
+        round_to_decimals(min_travel, 1),
+        round_to_decimals(max_travel, 1)
     );
     group
         .add(text_start(&gait.command(), title_point, 17.0).set("font-weight", "bold"))

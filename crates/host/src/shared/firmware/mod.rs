@@ -1,12 +1,13 @@
 //! Selection of the firmware and its robot.
 //!
-//! All lizards run the same code; the robot is a section of flash after the code. This program contains the code, so a
-//! user needs only a robot.toml: `lizard flash`, `sim`, `twin`, `console --sim` and all other commands put the selected
-//! robot's section after the code. The program never searches for a build. Firmware developers select their build with
-//! `--elf` for a simulation (as `make sim` does), or with `--image` for a board. Only `lizard sim bench` always needs
-//! an ELF, because it finds the timed functions by their names.
+//! All lizards run the same code. A section of flash after the code describes the robot. This program contains the
+//! code, so a user needs only a robot.toml: `lizard flash`, `sim`, `twin`, `console --sim` and all other commands
+//! append the selected robot's section to the code. They never search for compiled firmware. Firmware developers select
+//! their build with `--elf` for a simulation (as `make sim` does), or with `--image` for a board. Only
+//! `lizard sim bench` always needs an ELF, because it finds the functions to measure by their symbols.
 //!
-//! An ELF contains a robot. An ELF with another robot than the selected one is refused as a user's mistake.
+//! An ELF already contains a robot. If this is not the selected robot, the ELF is refused, because the user probably
+//! chose the wrong file.
 
 pub use lizard_upload::format_robot_label;
 
@@ -14,7 +15,7 @@ pub use lizard_upload::format_robot_label;
 pub use simulated::{Firmware, ReadError, built_in_image, read_image, read_with_robot};
 
 #[cfg(feature = "simulator")]
-pub(crate) use simulated::{count_code_bytes, select_firmware, without_contacts};
+pub(crate) use simulated::{count_code_bytes, remove_contacts, select_firmware};
 
 #[cfg(feature = "simulator")]
 mod simulated;

@@ -9,7 +9,7 @@ use simulated_uno::{Image, LoadError};
 
 use super::CODE_HEX;
 use crate::shared::files::record_input;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 /// An image to run, and the name of its source.
 #[derive(Debug, Clone)]
@@ -70,7 +70,7 @@ impl From<FirmwareError> for Failure {
 }
 
 /// Returns the firmware for a robot: the file `elf`, which must contain this robot, or the built-in code followed by
-/// this robot. `robot_file` is the robot's source.
+/// this robot. `robot_args` is the robot's source.
 ///
 /// An image without a robot's section is accepted, because a simulated UNO can run any program.
 ///
@@ -78,7 +78,7 @@ impl From<FirmwareError> for Failure {
 /// Fails if the file is missing, is not a program for an AVR, or contains another robot.
 pub(crate) fn select_firmware(
     elf: Option<&Path>,
-    robot_file: &RobotFile,
+    robot_args: &RobotArgs,
     robot: &Robot,
 ) -> Result<Firmware, Failure> {
     let Some(elf) = elf else {
@@ -94,7 +94,7 @@ pub(crate) fn select_firmware(
         && robot_in_image.hash() != robot.firmware().hash()
     {
         return Err(FirmwareError::OtherRobot {
-            robot: robot_file.name()?,
+            robot: robot_args.name()?,
             elf_robot: format_robot_label(&robot_in_image),
             robot_label: format_robot_label(robot.firmware()),
             elf: elf.to_owned(),
@@ -129,7 +129,7 @@ pub fn built_in_image(robot: &Robot) -> Image {
 ///
 /// # Panics
 /// Never: the new section is as long as the old section.
-pub(crate) fn without_contacts(mut image: Image, robot: &Robot) -> Image {
+pub(crate) fn remove_contacts(mut image: Image, robot: &Robot) -> Image {
     replace_robot(&mut image, &robot.without_contacts()).expect("the image has room for a section");
     image
 }

@@ -90,7 +90,7 @@ const GUARD_FUNCTION: &str = "clearance::find_hazard";
 const STEP_FUNCTIONS: [&str; 3] = [
     "Console::write_line",
     "Console::receive",
-    "Controller::advance_memory",
+    "Controller::advance_operation",
 ];
 /// Lines that take long to execute: lines with several answer lines, and settings whose pulse width limits restrict a
 /// servo's travel.
@@ -154,7 +154,7 @@ impl Measurements {
         report_progress("the stack's depth");
         let image = firmware::read_image(elf)?;
         let stack =
-            StackDepth::compute(&image).map_err(|error| Failure::Impossible(error.to_string()))?;
+            StackDepth::compute(&image).map_err(|error| Failure::Operation(error.to_string()))?;
         report_progress("pulses on an idle line");
         let mut idle_run = GaitRun::record(boot_board()?, gait, 20_000)?;
         let command_bytes = idle_run.board.uno.received_by_uno().len();

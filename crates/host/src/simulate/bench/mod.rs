@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use crate::shared::firmware;
 use crate::shared::progress::create_progress_bar;
 use crate::simulate::patrol::add_patrol;
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 pub use budget::{Bound, BudgetRow, list_rows};
 pub use measurements::{Measurements, measure_longest_step};
@@ -35,7 +35,7 @@ pub struct Args {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// A row and its verdict; the field names are the JSON keys.
@@ -95,6 +95,6 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Ok(())
     } else {
         let names = names_over_budget.join(", ");
-        Err(Failure::Impossible(format!("over budget: {names}")))
+        Err(Failure::Operation(format!("over budget: {names}")))
     }
 }

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use super::budget::{Bound, BudgetRow, SERVO_LIBRARY};
-use crate::shared::number::format_grouped;
+use crate::shared::number::group_digits;
 
 /// Prints a row for each measurement, then notes about the measured `gait` and missing values.
 ///
@@ -17,8 +17,8 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
     )?;
     for row in rows {
         let budget = match row.budget {
-            Bound::AtMost(max) => format!("at most {}", format_grouped(max, 0)),
-            Bound::AtLeast(min) => format!("at least {}", format_grouped(min, 0)),
+            Bound::AtMost(max) => format!("at most {}", group_digits(max, 0)),
+            Bound::AtLeast(min) => format!("at least {}", group_digits(min, 0)),
             Bound::None => "-".to_owned(),
         };
         let decimals = if row.unit == "%" || row.unit == "s" {
@@ -30,9 +30,7 @@ pub fn print(rows: &[BudgetRow], gait: Option<&str>, out: &mut impl Write) -> io
             "{:<30} {:>10} {:<7} {:>16}   {}{}",
             row.name,
             row.measured
-                .map_or("-".to_owned(), |measured| format_grouped(
-                    measured, decimals
-                )),
+                .map_or("-".to_owned(), |measured| group_digits(measured, decimals)),
             row.unit,
             budget,
             row.servo_library.unwrap_or(""),

@@ -11,7 +11,7 @@
 
 use lizard_core::console::MAX_OUTPUT_LINE_BYTES;
 use lizard_core::numbers::robot::Robot;
-use lizard_core::virtual_board::{Converter, RunningRobot, Transmitter, VirtualBoard};
+use lizard_core::virtual_board::{Adc, RunningRobot, Transmitter, VirtualBoard};
 use simulated_uno::{CYCLES_PER_MS, SerialByte};
 
 use super::frame::{FRAME_CYCLES, SLOT_CYCLES};
@@ -41,7 +41,7 @@ impl CoreRun {
         let supplies = robot.supplies();
         let mut board = VirtualBoard::default();
         board.transmitter = Transmitter::new(CYCLES_PER_BYTE, SERIAL_CAPACITY_BYTES);
-        board.converter = Converter::new(
+        board.adc = Adc::new(
             supplies::healthy_reading(&supplies),
             supplies.rail_reference_mv != 0,
         );

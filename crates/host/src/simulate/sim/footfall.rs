@@ -74,7 +74,7 @@ mod tests {
 
     /// Creates five seconds of a gait and a second of rest.
     fn create_gait_frames(gait: &str) -> Vec<ServoFrame> {
-        let robot = crate::shared::robot_file::built_in_robot("paper");
+        let robot = crate::shared::robot_args::built_in_robot("paper");
         let gait = robot.gait(gait).expect("the gait is in robot.toml");
         let neutral: [f64; 4] = robot.neutral_pose().into();
         (0..300)

@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn the_demonstration_of_the_paper_robot_is_walk_and_left() {
-        let robot = crate::shared::robot_file::built_in_robot("paper");
+        let robot = crate::shared::robot_args::built_in_robot("paper");
         assert_eq!(choose_demonstration_gaits(&robot), ["walk", "left"]);
         assert!(!list_moving_gaits(&robot).contains(&"stand"));
     }

@@ -30,9 +30,9 @@ use simulated_uno::{Radio, RadioLink};
 
 use crate::shared::firmware::{self, Firmware};
 use crate::shared::progress::{Spinner, create_progress_bar};
-use crate::shared::robot_file::unknown_gait_failure;
+use crate::shared::robot_args::unknown_gait_failure;
 use crate::shared::{files, json};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 use analysis::Run;
 use dialogue::DialoguePrinter;
 use press::{ContactChange, Press};
@@ -97,7 +97,7 @@ pub struct Args {
     #[arg(long, value_name = "N", requires = "radio", default_value_t = 0)]
     seed: u64,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The fidelity of the simulated chip, as named on the command line.
@@ -203,7 +203,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     }
     match recording.state {
         State::Alive => Ok(()),
-        _ => Err(Failure::Impossible(report.ended)),
+        _ => Err(Failure::Operation(report.ended)),
     }
 }
 

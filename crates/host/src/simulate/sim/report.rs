@@ -8,7 +8,7 @@ use simulated_uno::Uno;
 
 use super::analysis::{CommandPath, Run, Safety, ServoReport};
 use super::session::DialogueLine;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 
 /// All results of a run; the serialized field names are the JSON keys.
 #[derive(Debug, Serialize)]
@@ -108,7 +108,7 @@ impl Report<'_> {
         for path in &self.paths {
             let format_cell = |value: Option<f64>, digits: usize| {
                 let format_value =
-                    |value| format!("{:.digits$}", round_decimals(value, digits as i32));
+                    |value| format!("{:.digits$}", round_to_decimals(value, digits as i32));
                 value.map_or("-".to_owned(), format_value)
             };
             writeln!(
@@ -144,8 +144,8 @@ impl Report<'_> {
                 min_margin.value,
                 min_margin.margin,
                 min_margin.seconds,
-                round_decimals(self.safety.stroke[0], 1),
-                round_decimals(self.safety.stroke[1], 1)
+                round_to_decimals(self.safety.stroke[0], 1),
+                round_to_decimals(self.safety.stroke[1], 1)
             )?;
         }
         if let Some(reason) = &self.safety.first_violation {

@@ -39,7 +39,7 @@ pub(super) fn serve_until_interrupted(
     contacts: &[ContactChange],
 ) -> Result<(), Failure> {
     let mut port = Port::new()
-        .map_err(|error| Failure::Impossible(format!("cannot open a pseudo terminal: {error}")))?;
+        .map_err(|error| Failure::Operation(format!("cannot open a pseudo terminal: {error}")))?;
     let reset_note = match radio {
         Some(radio) => {
             port = port.with_radio(radio);
@@ -72,7 +72,7 @@ pub(super) fn serve_until_interrupted(
             &mut uno,
             Duration::from_secs_f64(wait_ms.clamp(1.0, 1_000.0) / 1_000.0),
         )
-        .map_err(|error| Failure::Impossible(format!("the pseudo terminal: {error}")))?;
+        .map_err(|error| Failure::Operation(format!("the pseudo terminal: {error}")))?;
         uno.take_edges();
         uno.take_marks();
         if *uno.state() != printed_state {
@@ -102,7 +102,7 @@ fn describe_state(state: &State, flash: &[u8], port: &Path) -> String {
 /// another file by then. The signal then has its default effect.
 fn remove_link_on_signal(link: PathBuf, port: PathBuf) -> Result<(), Failure> {
     let mut signals = Signals::new([SIGINT, SIGTERM, SIGHUP]).map_err(|error| {
-        Failure::Impossible(format!("cannot install the handler for Ctrl-C: {error}"))
+        Failure::Operation(format!("cannot install the handler for Ctrl-C: {error}"))
     })?;
     thread::spawn(move || {
         for signal in &mut signals {

@@ -405,7 +405,7 @@ mod tests {
         pulse_width: impl Fn(usize) -> u16,
         spans: &[Span],
     ) -> String {
-        let robot = crate::shared::robot_file::built_in_robot("paper");
+        let robot = crate::shared::robot_args::built_in_robot("paper");
         let log = FrameLog {
             widths: (0..frame_count)
                 .map(|index| [pulse_width(index); 4])

@@ -14,11 +14,11 @@ use simulated_uno::{Fidelity, State, Uno};
 
 use crate::shared::firmware;
 use crate::shared::progress::Spinner;
-use crate::shared::robot_file::find_moving_gait;
+use crate::shared::robot_args::find_moving_gait;
 use crate::simulate::sim::script::{Script, Step};
 use crate::simulate::sim::session::{self, Event, Recording};
 use crate::simulate::sim::{create_time_bar, frame, gait_choice, read_script, spans, supplies};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 use replay::Replay;
 use report::Report;
 
@@ -57,7 +57,7 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=100_000))]
     robust: Option<u32>,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 /// The model of the servos, as named on the command line.
@@ -82,7 +82,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
     let routine = args.gait.as_deref().and_then(|name| robot.routine(name));
     let has_inputs = routine.is_some_and(Routine::has_inputs);
     if has_inputs {
-        image = firmware::without_contacts(image, &robot);
+        image = firmware::remove_contacts(image, &robot);
     }
     let mut uno = Uno::with_image(image, Fidelity::DataSheet);
     let recording = record(&mut uno, &robot, &script)?;
@@ -132,7 +132,7 @@ pub(crate) fn record(uno: &mut Uno, robot: &Robot, script: &Script) -> Result<Re
     bar.finish_and_clear();
     match recording.state {
         State::Alive => Ok(recording),
-        _ => Err(Failure::Impossible(
+        _ => Err(Failure::Operation(
             "the firmware stopped; `lizard sim` shows the reason".to_owned(),
         )),
     }

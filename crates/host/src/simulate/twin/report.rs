@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::replay::Replay;
 use crate::shared::displacement::Displacement;
 use crate::shared::json;
-use crate::shared::number::round_decimals;
+use crate::shared::number::round_to_decimals;
 
 /// The report of a run: a row for each command.
 pub struct Report {
@@ -268,6 +268,6 @@ fn describe_displacement(displacement: &Displacement) -> String {
 /// Formats a component of a displacement with its sign, never as `-0`; an undetermined component becomes a dash.
 pub fn format_component(component: Option<f64>, decimals: usize) -> String {
     component.map_or("-".to_owned(), |value| {
-        format!("{:+.decimals$}", round_decimals(value, decimals as i32))
+        format!("{:+.decimals$}", round_to_decimals(value, decimals as i32))
     })
 }

@@ -2,6 +2,6 @@
 //! values use the paper's robot, robots/paper.toml; the other tests hold for any robot.toml.
 
 mod bad_input;
-mod documents;
+mod docs;
 mod pose;
 mod values;

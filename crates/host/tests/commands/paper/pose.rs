@@ -14,21 +14,21 @@ fn solve_rows(input: &str) -> Vec<Value> {
 #[test]
 fn a_solution_has_exactly_the_documented_json_keys() {
     let solution = &solve_rows(&format!("{HEADER}138,42,318,221\n"))[0];
-    let join_keys = |value: &Value| {
+    let sorted_keys = |value: &Value| {
         let keys = value.as_object().unwrap().keys().map(String::as_str);
         let keys: std::collections::BTreeSet<&str> = keys.collect();
         Vec::from_iter(keys).join(" ")
     };
     assert_eq!(
-        join_keys(solution),
+        sorted_keys(solution),
         "head left legs margins right safe tail theta2 theta3 theta6 theta7 why"
     );
-    assert_eq!(join_keys(&solution["left"]), "phi s");
-    assert_eq!(join_keys(&solution["right"]), "phi s");
-    assert_eq!(join_keys(&solution["legs"]), "lf lh rf rh");
-    assert_eq!(join_keys(&solution["legs"]["lf"]), "coupler follower");
+    assert_eq!(sorted_keys(&solution["left"]), "phi s");
+    assert_eq!(sorted_keys(&solution["right"]), "phi s");
+    assert_eq!(sorted_keys(&solution["legs"]), "lf lh rf rh");
+    assert_eq!(sorted_keys(&solution["legs"]["lf"]), "coupler follower");
     assert_eq!(
-        join_keys(&solution["margins"]),
+        sorted_keys(&solution["margins"]),
         "leg_lf leg_lh leg_rf leg_rh type1_a1 type1_a2 type1_a3 type1_a4 type2_head type2_tail"
     );
     assert_eq!(solution["safe"], true);

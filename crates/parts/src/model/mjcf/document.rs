@@ -8,9 +8,10 @@ use crate::model::writer::Writer;
 
 /// Time step of the simulation, s.
 const TIME_STEP_S: f64 = 0.0002;
-/// `solref` of constraints and limits: time constant, s, and damping ratio.
+/// `solref` of constraints and limits: time constant (s) and damping ratio.
 const CONSTRAINT_SOLREF: &str = "0.002 1";
-/// `solref` of contacts: time constant, s, and damping ratio. A soft floor would hide part of a foot's excess length.
+/// `solref` of contacts: time constant (s) and damping ratio. A foot that is too long would sink into a soft floor,
+/// which would hide part of the error.
 pub(super) const CONTACT_SOLREF: &str = "0.001 1";
 /// `solimp` of constraints and limits: smallest and largest impedance, and the width of the transition, m or rad.
 const CONSTRAINT_SOLIMP: &str = "0.99 0.999 0.0001";
@@ -23,17 +24,17 @@ impl Writer<'_> {
         self.write_options();
         self.xml.open("custom");
         let ratio = round(self.scene.friction_ratio);
-        let data = format!(r#"numeric name="back over forward" data="{ratio}""#);
-        self.xml.write_empty(data);
+        let element = format!(r#"numeric name="back over forward" data="{ratio}""#);
+        self.xml.write_empty(element);
         if self.scene.drives_in_bursts {
-            let data = r#"numeric name="bursts" data="1""#;
-            self.xml.write_empty(data);
+            let element = r#"numeric name="bursts" data="1""#;
+            self.xml.write_empty(element);
         }
         if let Some(trajectory) = &self.scene.trajectory {
             let (start, period) = (round(trajectory.measure_start), round(trajectory.period));
             let cycle_count = trajectory.measured_cycle_count;
-            let data = format!(r#"numeric name="cycle" data="{start} {period} {cycle_count}""#);
-            self.xml.write_empty(data);
+            let element = format!(r#"numeric name="cycle" data="{start} {period} {cycle_count}""#);
+            self.xml.write_empty(element);
         }
         self.xml.close();
         self.write_assets();
@@ -83,11 +84,11 @@ impl Writer<'_> {
         );
         for Piece { name, mesh, .. } in pieces {
             let corners = mesh.corners.as_flattened().iter();
-            let vertex = corners.map(|coordinate| (coordinate * 1e5).round() / 1e5 + 0.0);
-            let face = mesh.triangles.as_flattened().iter();
-            let (vertex, face) = (join_numbers(vertex), join_numbers(face));
+            let vertices = corners.map(|coordinate| (coordinate * 1e5).round() / 1e5 + 0.0);
+            let faces = mesh.triangles.as_flattened().iter();
+            let (vertices, faces) = (join_numbers(vertices), join_numbers(faces));
             xml.write_empty(format!(
-                r#"mesh name="{name}" vertex="{vertex}" face="{face}""#
+                r#"mesh name="{name}" vertex="{vertices}" face="{faces}""#
             ));
         }
         xml.close();

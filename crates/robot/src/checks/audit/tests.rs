@@ -8,27 +8,27 @@ use lizard_core::numbers::part::{End, Servo, Side as CoreSide};
 use lizard_core::numbers::units::Sine;
 use lizard_kinematics::{Check, Side};
 
-/// Finds the smallest and the largest slider travel on each side over a gait, mm.
-fn find_slider_travels(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
-    let mut travels = [(f64::INFINITY, f64::NEG_INFINITY); 2];
+/// Computes each slider's smallest and largest stroke over a gait, mm.
+fn compute_stroke_ranges(robot: &Robot, gait: &CheckedGait) -> [(f64, f64); 2] {
+    let mut ranges = [(f64::INFINITY, f64::NEG_INFINITY); 2];
     for phase in (0..=u16::MAX).step_by(32) {
         let solution = robot.lizard().solve(&gait.table_angles(phase).into());
         let solution = solution.expect("a checked gait closes its loops");
-        for ((min, max), side) in travels.iter_mut().zip(Side::ALL) {
-            let s = solution.side(side).s;
-            (*min, *max) = (min.min(s), max.max(s));
+        for ((min, max), side) in ranges.iter_mut().zip(Side::ALL) {
+            let stroke = solution.side(side).s;
+            (*min, *max) = (min.min(stroke), max.max(stroke));
         }
     }
-    travels
+    ranges
 }
 
-/// Reads the robot `unequal` with its sliders at nominal length in the neutral pose. Its only moving gait, `lean`,
-/// moves the legs of one side, so that only this side's slider moves.
-fn read_leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
-    let legs = if is_right {
-        "LF = 0.0, LH = 0.0"
-    } else {
-        "RF = 0.0, RH = 0.0"
+/// Parses the robot `unequal`, modified so that its sliders have their nominal lengths in the neutral pose, and with
+/// these replacements of limits. Its only moving gait, `lean`, moves the legs of one side, so that only this side's
+/// slider moves.
+fn parse_leaning_robot(side: Side, limits: &[(&str, String)]) -> Result<Robot, crate::Error> {
+    let gain = match side {
+        Side::Left => "RF = 0.0, RH = 0.0",
+        Side::Right => "LF = 0.0, LH = 0.0",
     };
     let mut text = text_before_gaits("unequal")
         .replacen("l13 = 51.0", "l13 = 57.0", 1)
@@ -38,27 +38,27 @@ fn read_leaning_robot(is_right: bool, limits: &[(&str, String)]) -> Result<Robot
         text = text.replacen(old, new, 1);
     }
     Robot::parse(&format!(
-        "{text}{STAND}[gait.lean]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 17.0\nstart = {{ LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }}\ngain = {{ {legs} }}\n"
+        "{text}{STAND}[gait.lean]\nperiod = 2.0\nwaveform = \"wave\"\nduty = 0.75\namplitude = 17.0\nstart = {{ LH = 0.0, LF = 0.25, RH = 0.5, RF = 0.75 }}\ngain = {{ {gain} }}\n"
     ))
 }
 
 #[test]
 fn the_stroke_range_covers_both_sliders() {
-    for is_right in [false, true] {
-        let robot = read_leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+    for side in Side::ALL {
+        let robot = parse_leaning_robot(side, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
-        let (min_travel, max_travel) = find_slider_travels(&robot, gait)[usize::from(is_right)];
+        let (expected_min, expected_max) = compute_stroke_ranges(&robot, gait)[side as usize];
         let (min_stroke, max_stroke) = gait.audit().stroke_range;
         assert!(
-            min_travel < -5.0 && max_travel > 3.0,
-            "slider travel {min_travel} to {max_travel} mm"
+            expected_min < -5.0 && expected_max > 3.0,
+            "strokes of {expected_min} to {expected_max} mm"
         );
         assert!(
-            (min_travel - min_stroke).abs() < 0.05,
+            (expected_min - min_stroke).abs() < 0.05,
             "smallest stroke {min_stroke} mm"
         );
         assert!(
-            (max_stroke - max_travel).abs() < 0.05,
+            (max_stroke - expected_max).abs() < 0.05,
             "largest stroke {max_stroke} mm"
         );
     }
@@ -66,10 +66,10 @@ fn the_stroke_range_covers_both_sliders() {
 
 #[test]
 fn the_message_names_the_slider_that_hits_its_end_stop() {
-    for (is_right, side) in [(false, "left"), (true, "right")] {
-        let robot = read_leaning_robot(is_right, &[]).expect("the leaning robot is valid");
+    for side in Side::ALL {
+        let robot = parse_leaning_robot(side, &[]).expect("the leaning robot is valid");
         let gait = robot.gait("lean").expect("the robot has the gait lean");
-        let (min_stroke, max_stroke) = find_slider_travels(&robot, gait)[usize::from(is_right)];
+        let (min_stroke, max_stroke) = compute_stroke_ranges(&robot, gait)[side as usize];
         for (old, new, word) in [
             (
                 "stroke_min = -19.0",
@@ -82,7 +82,7 @@ fn the_message_names_the_slider_that_hits_its_end_stop() {
                 "above",
             ),
         ] {
-            let message = read_leaning_robot(is_right, &[(old, new)])
+            let message = parse_leaning_robot(side, &[(old, new)])
                 .expect_err("the stroke is too small for the gait")
                 .to_string();
             let expected_start = format!(
@@ -102,12 +102,12 @@ fn the_message_names_the_slider_that_hits_its_end_stop() {
                 format!("stroke_max = {:.2}", max_stroke + 0.2),
             ),
         ];
-        assert!(read_leaning_robot(is_right, &wide_limits).is_ok());
+        assert!(parse_leaning_robot(side, &wide_limits).is_ok());
     }
 }
 
 #[test]
-fn each_hazard_corresponds_to_the_check_of_its_condition() {
+fn each_hazard_corresponds_to_the_check_of_the_same_condition() {
     let margin_hazard = |margin| Hazard::Margin {
         margin,
         value: Sine(0),
@@ -149,10 +149,10 @@ fn every_sample_of_every_servo_is_checked() {
 #[test]
 fn a_backward_swing_has_the_same_peak_speed_as_a_forward_swing() {
     // All legs have a negative gain, so they swing backward.
-    let table = "[gait.against]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
+    let table = "[gait.backward]\nlike = \"walk\"\ngain = { LF = -1.0, RF = -1.0, RH = -1.0, LH = -1.0 }\n[gait.trot]";
     let robot = robot_with("unequal", &[("[gait.trot]", table)]).expect("the gait is valid");
     let peak_speed = |name: &str| robot.gait(name).expect(name).audit().peak_speed.speed;
-    assert!((peak_speed("against") - peak_speed("walk")).abs() < 1e-9);
+    assert!((peak_speed("backward") - peak_speed("walk")).abs() < 1e-9);
 }
 
 #[test]
@@ -200,7 +200,7 @@ fn a_gait_may_use_the_whole_travel_but_no_more() {
 
 #[test]
 fn both_ends_of_every_servos_travel_are_checked() {
-    // A servo with only about a degree of travel on one side cannot walk.
+    // The robot cannot walk if a servo has only about a degree of travel on one side.
     for (servo, min_line, max_line, neutral) in [
         ("A1", "min_us = 610.0", "max_us = 2350.0", 1470.0),
         ("A2", "min_us = 560.0", "max_us = 2420.0", 1535.0),
@@ -227,12 +227,12 @@ fn both_ends_of_every_servos_travel_are_checked() {
 #[test]
 fn each_kind_of_margin_is_checked_against_its_own_limit() {
     let unequal = robot("unequal");
-    for (key, checks) in [
+    for (line, checks) in [
         ("type2 = 0.32 ", &Check::TYPE2[..]),
         ("type1 = 0.27 ", &Check::TYPE1),
         ("leg = 0.38 ", &Check::LEG),
     ] {
-        let name = key.split(' ').next().expect("the text begins with a key");
+        let name = line.split(' ').next().expect("the text begins with a key");
         let min_margin_of = |gait: &CheckedGait| {
             let audit = gait.audit();
             let [min_margin] = [audit.type2, audit.type1, audit.leg]
@@ -252,21 +252,21 @@ fn each_kind_of_margin_is_checked_against_its_own_limit() {
         let limit_line = |value: f64| format!("{name} = {value:?} ");
         // The firmware's guard is accurate to one or two thousandths.
         assert!(
-            robot_with("unequal", &[(key, &limit_line(min_margin - 0.003))]).is_ok(),
+            robot_with("unequal", &[(line, &limit_line(min_margin - 0.003))]).is_ok(),
             "{name}"
         );
-        let result = robot_with("unequal", &[(key, &limit_line(min_margin + 1e-6))]);
+        let result = robot_with("unequal", &[(line, &limit_line(min_margin + 1e-6))]);
         let message = result.expect_err(name).to_string();
         assert!(message.contains(&format!("margin {name}_")), "{message}");
     }
 }
 
 #[test]
-fn gaits_that_only_the_firmwares_guard_rejects_are_rejected() {
+fn a_gait_is_rejected_even_if_only_the_firmwares_guard_rejects_it() {
     // If the limit is only slightly below the gaits' smallest margin, by one or two units of the firmware's integers,
     // the floating-point check still accepts every gait, but the guard of at least one robot rejects a gait.
     let mut messages = Vec::new();
-    for (name, key) in [
+    for (name, line) in [
         ("paper", "leg = 0.3 "),
         ("unequal", "leg = 0.38 "),
         ("large", "type1 = 0.3 "),
@@ -274,17 +274,17 @@ fn gaits_that_only_the_firmwares_guard_rejects_are_rejected() {
     ] {
         let robot = robot(name);
         let min_margin_of = |gait: &CheckedGait| {
-            if key.starts_with("leg") {
+            if line.starts_with("leg") {
                 gait.audit().leg.value
             } else {
                 gait.audit().type1.value
             }
         };
         let min_margin = robot.gaits().iter().map(min_margin_of).fold(1.0, f64::min);
-        let limit_name = key.split(' ').next().expect("the text begins with a key");
+        let limit_name = line.split(' ').next().expect("the text begins with a key");
         for i in 1..10 {
             let limit_line = format!("{limit_name} = {:?} ", min_margin - f64::from(i) * 1e-5);
-            let error = robot_with(name, &[(key, &limit_line)]).err();
+            let error = robot_with(name, &[(line, &limit_line)]).err();
             messages.extend(error.map(|error| error.to_string()));
         }
     }

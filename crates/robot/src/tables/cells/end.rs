@@ -32,7 +32,7 @@ pub(super) struct EndConditions {
     /// The five-bar with its true lengths.
     five_bar: FiveBar,
     /// The scale and the couplers in the guard's integers.
-    rounded_bars: bounds::RoundedBars,
+    rounded_lengths: bounds::RoundedLengths,
     /// Smallest type-2 margin that the guard allows, a sine.
     type2_limit: f64,
     /// Smallest type-1 margin that the guard allows, a sine.
@@ -50,7 +50,7 @@ impl EndConditions {
         Self {
             end,
             five_bar: lizard.end(end),
-            rounded_bars: bounds::RoundedBars {
+            rounded_lengths: bounds::RoundedLengths {
                 scale: five_bar_lengths.scale,
                 couplers: five_bar_lengths.couplers,
             },
@@ -107,7 +107,7 @@ impl Condition for EndConditions {
             tip_distance + crank_movement,
         ];
         let errors =
-            bounds::EndErrors::over_range(&self.five_bar, self.rounded_bars, tip_distance_range);
+            bounds::EndErrors::over_range(&self.five_bar, self.rounded_lengths, tip_distance_range);
         let is_uncrossed = pose.gap.x - crank_movement > errors.gap_x + ROUNDING_ALLOWANCE;
         if !(errors.are_margins_known && is_uncrossed) {
             return Verdict::Undetermined;
@@ -179,7 +179,7 @@ mod tests {
         let tip_distance = pose.gap.length();
         let errors = bounds::EndErrors::over_range(
             &conditions.five_bar,
-            conditions.rounded_bars,
+            conditions.rounded_lengths,
             [tip_distance; 2],
         );
         let (lower, bound) = if pose.type1_left() < pose.type1_right() {
@@ -223,7 +223,9 @@ mod tests {
     #[test]
     fn crank_tips_that_may_be_crossed_leave_a_cell_undetermined() {
         let (conditions, _) = create_neutral_cell();
-        let mm_per_step = f64::from(conditions.rounded_bars.scale.bits).exp2().recip();
+        let mm_per_step = f64::from(conditions.rounded_lengths.scale.bits)
+            .exp2()
+            .recip();
         let span_at = |degrees: f64| single_angle(degrees * 65536.0 / 360.0);
         // The right crank leans far to the left, so that one tip passes well above the other and the linkage closes.
         let right = span_at(165.0);

@@ -86,7 +86,7 @@ pub(super) fn parse_pairs(text: &str) -> HashMap<String, String> {
 pub(super) fn set_supply(dialogue: &mut Dialogue, board_mv: u32) {
     let supplies = dialogue.motion().robot().supplies();
     let reading = compute_reading(&supplies, board_mv, 6_000);
-    dialogue.board.converter.set_true_reading(reading);
+    dialogue.board.adc.set_true_reading(reading);
 }
 
 /// Returns the neutral pose in the format of `status`.

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Returns the motion of a robot that the guard has just stopped.
-fn run_until_guarded() -> Motion {
+fn run_until_guard_stops() -> Motion {
     let mut motion = Motion::standing();
     motion.start("stray");
     for _ in 0..200 {
@@ -41,28 +41,28 @@ fn an_unsafe_frame_is_never_sent_and_the_last_safe_pose_is_held() {
         let pose = gait.pose(motion.robot.waves(), phase);
         Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot)
     });
-    let is_same_kind = |other_hazard: Hazard| match (other_hazard, hazard) {
+    let is_same_constraint = |other_hazard: Hazard| match (other_hazard, hazard) {
         (Hazard::Margin { margin: a, .. }, Some(Hazard::Margin { margin: b, .. })) => a == b,
         (Hazard::Stroke { side: a, .. }, Some(Hazard::Stroke { side: b, .. })) => a == b,
         _ => false,
     };
-    assert!(hazards.any(is_same_kind), "{hazard:?}");
+    assert!(hazards.any(is_same_constraint), "{hazard:?}");
 }
 
 #[test]
 fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
-    let mut stopped_motion = run_until_guarded();
+    let mut stopped_motion = run_until_guard_stops();
     stopped_motion.stop();
     stopped_motion.run(20);
     assert!(stopped_motion.hazard().is_some(), "stop begins no motion");
-    let mut refused_motion = run_until_guarded();
+    let mut refused_motion = run_until_guard_stops();
     assert!(refused_motion.go_to(&Pose([Sweep(13_000); 4])).is_err());
     refused_motion.run(20);
     assert!(
         refused_motion.hazard().is_some(),
         "a refused pose begins no motion"
     );
-    let mut motion = run_until_guarded();
+    let mut motion = run_until_guard_stops();
     motion.start("sway");
     assert!(motion.hazard().is_some());
     motion.advance_frame();
@@ -75,13 +75,13 @@ fn the_hazard_is_cleared_only_when_the_next_motion_begins() {
 fn a_refused_pose_changes_nothing_and_returns_its_hazard() {
     for name in GAIT_NAMES {
         for frames in [0, 3, 20, 70] {
-            let mut refusing_motion = Motion::in_gait(name, frames);
+            let mut motion = Motion::in_gait(name, frames);
             let pose = Pose([Sweep(12_000), Sweep(0), Sweep(0), Sweep(0)]);
-            let expected_hazard = Clearance::measure(&refusing_motion.robot, &pose)
-                .first_hazard(&refusing_motion.robot);
-            assert_eq!(refusing_motion.go_to(&pose).err(), expected_hazard);
+            let expected_hazard =
+                Clearance::measure(&motion.robot, &pose).first_hazard(&motion.robot);
+            assert_eq!(motion.go_to(&pose).err(), expected_hazard);
             assert!(expected_hazard.is_some());
-            assert_same_motion(refusing_motion, Motion::in_gait(name, frames));
+            assert_same_motion(motion, Motion::in_gait(name, frames));
         }
     }
 }

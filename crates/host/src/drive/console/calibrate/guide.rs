@@ -5,7 +5,7 @@
 use std::io::{Read, Write};
 use std::time::Duration;
 
-use lizard_calibrate::{BadReply, ConsoleError, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
+use lizard_calibrate::{ConsoleError, ReplyError, SCALE_TURNS_DEG, SIGN_TURNS_DEG};
 use lizard_robot::Status;
 use pollster::block_on;
 
@@ -130,7 +130,7 @@ impl<'a, P: Read + Write> Guide<'a, P> {
             _ => Ok(()),
         };
         match result {
-            Err(ConsoleError::Reply(BadReply::Refused { line, reason })) => {
+            Err(ConsoleError::Reply(ReplyError::Refused { line, reason })) => {
                 self.message = format!("The robot refuses `{line}`: {reason}.");
             }
             result => result?,

@@ -42,7 +42,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         return Err(Failure::Input(message.to_owned()));
     }
     let finder = args.connection.into_finder("calibrate")?;
-    let (mut board, _) = finder.open_and_greet()?;
+    let (mut board, _) = finder.connect()?;
     let result = Guide::new(&mut board.link).map_err(DialogueError::from);
     let result = result.and_then(|mut guide| run_guide(&mut guide));
     match result {
@@ -59,7 +59,7 @@ pub fn run(args: Args) -> Result<(), Failure> {
         Err(DialogueError::Io(error)) => Err(error.into()),
         Err(DialogueError::File(failure)) => Err(failure),
         // Opening the port again resets the board, so unsaved settings are lost then.
-        Err(DialogueError::Link(error)) => Err(Failure::Impossible(format!(
+        Err(DialogueError::Link(error)) => Err(Failure::Operation(format!(
             "{}: {error}; unsaved settings are lost when the port is opened again",
             board.name
         ))),

@@ -1,4 +1,4 @@
-//! `lizard console replay`: prints, summarizes and draws a recorded session.
+//! `lizard console replay`: prints, summarises and draws a recorded session.
 
 mod session;
 mod summary;
@@ -10,7 +10,7 @@ use crate::simulate::sim::analysis::Run;
 use crate::simulate::sim::dialogue::DialoguePrinter;
 use crate::simulate::sim::session::{DialogueLine, Sender};
 use crate::simulate::sim::timeline::{self, Caption};
-use crate::{Failure, RobotFile};
+use crate::{Failure, RobotArgs};
 
 use super::recorder::Event;
 use session::RecordedSession;
@@ -27,7 +27,7 @@ pub struct Args {
     #[arg(long, value_name = "FILE", default_value = "out/lizard-replay.svg")]
     svg: PathBuf,
     #[command(flatten)]
-    robot: RobotFile,
+    robot: RobotArgs,
 }
 
 const CAPTION: Caption = Caption {
@@ -69,10 +69,10 @@ pub fn run(args: Args) -> Result<(), Failure> {
     writeln!(out)?;
     summary::print(&session, &mut out)?;
 
-    let hash = format!(" {:08x},", robot.firmware().hash());
+    let hash_text = format!(" {:08x},", robot.firmware().hash());
     if session
         .banner()
-        .is_some_and(|banner| !banner.contains(&hash))
+        .is_some_and(|banner| !banner.contains(&hash_text))
     {
         writeln!(
             out,

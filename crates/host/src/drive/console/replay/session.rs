@@ -197,7 +197,7 @@ const _: () = assert!(crate::simulate::sim::frame::FRAME_CYCLES == FRAME_MS * CY
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shared::robot_file::built_in_robot;
+    use crate::shared::robot_args::built_in_robot;
 
     const BEGIN_LINE: &str =
         "{\"ms\":0,\"begin\":{\"format\":\"lizard record 1\",\"port\":\"p\",\"banner\":null}}\n";

@@ -1,7 +1,7 @@
 //! Tests of the results computed from synthetic frames.
 
 use super::*;
-use crate::shared::robot_file::built_in_robot;
+use crate::shared::robot_args::built_in_robot;
 
 /// Creates frames with the pulses for `angles(seconds)`; the first frame is at 1 s.
 fn create_frames(robot: &Robot, count: u64, angles: impl Fn(f64) -> [f64; 4]) -> FrameLog {

@@ -11,16 +11,16 @@ fn the_errata_page_is_up_to_date_and_every_correction_holds() {
     let results = evaluate_equations(SAMPLE_COUNT, &|| {});
     assert!(results.iter().all(|result| result.has_valid_form()));
     // Each printed form has one entry, so no erratum is counted twice.
-    let json_entries = run_line("errata --samples 1 --json", "").expect_json();
-    let printed_forms = json_entries.as_array().unwrap().iter();
-    let printed_forms = printed_forms.map(|entry| entry["printed"].as_str().unwrap());
-    let mut forms = BTreeSet::new();
+    let json = run_line("errata --samples 1 --json", "").expect_json();
+    let entries = json.as_array().unwrap().iter();
+    let printed_forms = entries.map(|entry| entry["printed"].as_str().unwrap());
+    let mut distinct_forms = BTreeSet::new();
     for form in printed_forms.filter(|form| form.contains('=')) {
-        assert!(forms.insert(form), "{form} is counted twice");
+        assert!(distinct_forms.insert(form), "{form} is counted twice");
     }
     assert!(
         read_file("docs/errata.md") == format_markdown(&results, SAMPLE_COUNT),
-        "docs/errata.md is out of date: lizard errata --markdown > docs/errata.md"
+        "docs/errata.md is out of date; run: lizard errata --markdown > docs/errata.md"
     );
 }
 
@@ -29,14 +29,14 @@ fn every_command_in_docs_paper_prints_the_output_on_the_page() {
     let page = read_file("docs/paper.md");
     let mut command_count = 0;
     for block in page.split("```console\n").skip(1) {
-        let block = block.split("```").next().expect("the block has a text");
-        let parts = block.split_once('\n');
-        let (command, expected_output) = parts.expect("the block has a command and its output");
+        let block = block.split("```").next().expect("the block has contents");
+        let command_and_output = block.split_once('\n');
+        let (command, expected_output) = command_and_output.expect("the block has both");
         let args = command.strip_prefix("$ lizard ").expect(command);
         let output = run_line(&with_paper(args), "").expect_success();
         assert!(
             output.trim_end() == expected_output.trim_end(),
-            "docs/paper.md is out of date: lizard {args}\n{output}"
+            "docs/paper.md is out of date; lizard {args} prints:\n{output}"
         );
         command_count += 1;
     }
@@ -46,9 +46,9 @@ fn every_command_in_docs_paper_prints_the_output_on_the_page() {
 #[test]
 fn draw_charts_writes_the_svg_files_in_docs() {
     let folder = std::env::temp_dir().join(format!("lizard-charts-{}", std::process::id()));
-    let robot = repo_root().join("robots/paper.toml");
-    let (folder_path, robot) = (folder.display(), robot.display());
-    let line = format!("draw charts --json {folder_path} --robot {robot}");
+    let robot_file = repo_root().join("robots/paper.toml");
+    let (folder_path, robot_path) = (folder.display(), robot_file.display());
+    let line = format!("draw charts --json {folder_path} --robot {robot_path}");
     run_line(&line, "").expect_success();
     let mut names: Vec<String> = std::fs::read_dir(&folder)
         .unwrap()
@@ -65,7 +65,7 @@ fn draw_charts_writes_the_svg_files_in_docs() {
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
         assert!(
             read_file(&format!("docs/charts/{name}")) == svg,
-            "docs/charts/{name} is out of date: lizard draw charts docs/charts --robot robots/paper.toml"
+            "docs/charts/{name} is out of date; run: lizard draw charts docs/charts --robot robots/paper.toml"
         );
     }
     std::fs::remove_dir_all(&folder).unwrap();
@@ -106,8 +106,8 @@ fn table_1_matches_the_papers_robot_except_for_the_link_listed_twice() {
 #[test]
 fn docs_paper_lists_every_figure_of_the_paper_with_its_command_and_files() {
     let page = read_file("docs/paper.md");
-    let table = page.split_once("| in the paper |");
-    let (_, table) = table.expect("the page has the table");
+    let heading_split = page.split_once("| in the paper |");
+    let (_, table) = heading_split.expect("the page has the table");
     let rows: Vec<Vec<&str>> = table
         .lines()
         .skip(2)
@@ -115,11 +115,11 @@ fn docs_paper_lists_every_figure_of_the_paper_with_its_command_and_files() {
         .map(|line| line.trim_end_matches(" |").split(" | ").collect())
         .collect();
     let figures = (1..=10).map(|number| format!("Figure {number}"));
-    let other_entries = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
-    let expected: Vec<String> = figures.chain(other_entries).collect();
-    let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
-    assert_eq!(names, expected);
-    let charts = run_line("draw charts --help", "").expect_success();
+    let other_names = ["Table 1", "Algorithm 1", "section 3.1.2"].map(str::to_owned);
+    let expected_names: Vec<String> = figures.chain(other_names).collect();
+    let row_names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(row_names, expected_names);
+    let charts_help = run_line("draw charts --help", "").expect_success();
     for row in &rows {
         let [name, _, command, files, agreement] = row[..] else {
             panic!("{row:?}")
@@ -134,14 +134,14 @@ fn docs_paper_lists_every_figure_of_the_paper_with_its_command_and_files() {
             continue;
         };
         let command = command.trim_end_matches('`');
-        // Commands with a DIR take seconds and are run by other tests.
+        // Commands that take a DIR run for seconds; other tests run them.
         if let Some(base_command) = command.strip_suffix(" DIR") {
             run_line(&format!("{base_command} --help"), "").expect_success();
             let chart_names = files
                 .split(", ")
                 .filter_map(|file| file.strip_prefix("charts/")?.strip_suffix(".svg"));
-            for chart in chart_names {
-                assert!(charts.contains(chart), "{name}: {chart}");
+            for chart_name in chart_names {
+                assert!(charts_help.contains(chart_name), "{name}: {chart_name}");
             }
         } else {
             run_line(&with_paper(command), "").expect_success();
@@ -178,16 +178,16 @@ fn docs_paper_states_the_computed_movements_of_the_papers_gaits() {
     let uneven_walk_mm = find_numbers("friction", "walk")[3];
     for phrase in [
         format!("25 cycles of `walk` are {:.0} mm", 25.0 * walk_mm),
-        format!("`left` turns {left_deg:.1} deg in a cycle"),
+        format!("`left` turns {left_deg:.1} deg per cycle"),
         format!(
-            "`trot`, {:.1} mm in a cycle",
+            "`trot`, {:.1} mm per cycle",
             find_prediction("trot", "forward")
         ),
-        format!("in a cycle `walk` makes {walk_mm:.1} mm"),
+        format!("`walk` moves {walk_mm:.1} mm per cycle"),
         format!("the feet, 97 mm from the middle, move by {foot_travel_mm:.1} mm"),
-        format!("`walk` makes {mounted_walk_mm:.1} mm a cycle instead of {walk_mm:.1}"),
+        format!("`walk` moves {mounted_walk_mm:.1} mm per cycle instead of {walk_mm:.1}"),
         format!("`left` turns {mounted_turn_deg:.1} deg instead of {left_deg:.1}"),
-        format!("1.25 times as strong backward as forward, `walk` makes {uneven_walk_mm:.1} mm"),
+        format!("1.25 times as strong backward as forward, `walk` moves {uneven_walk_mm:.1} mm"),
     ] {
         assert!(
             page.contains(&phrase),

@@ -1,15 +1,15 @@
-//! The analogue-to-digital converter, whose measurements take several frames.
+//! The analogue-to-digital converter (ADC), whose measurements take several frames.
 
 use crate::control::supply::Reading;
 use crate::numbers::supplies::Supplies;
 
 /// The analogue-to-digital converter, which measures one voltage in every second frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Converter {
-    /// The reading of the actual supplies.
+pub struct Adc {
+    /// The reading of the actual supplies, as an instantaneous measurement would return it.
     true_reading: Reading,
-    /// True if the servo rail is measured, too.
-    has_rail: bool,
+    /// True if the servo rail is also measured.
+    measures_rail: bool,
     /// The latest measured values.
     last_reading: Reading,
     /// The index of the frame within a round of measurements.
@@ -18,12 +18,12 @@ pub struct Converter {
     is_complete: bool,
 }
 
-impl Converter {
-    /// Creates a converter whose supplies have this reading; `has_rail` is true if the servo rail is measured, too.
-    pub fn new(true_reading: Reading, has_rail: bool) -> Self {
+impl Adc {
+    /// Creates an ADC whose supplies have this reading; `measures_rail` is true if the servo rail is also measured.
+    pub fn new(true_reading: Reading, measures_rail: bool) -> Self {
         Self {
             true_reading,
-            has_rail,
+            measures_rail,
             ..Self::default()
         }
     }
@@ -43,17 +43,17 @@ impl Converter {
         self.is_complete
     }
 
-    pub(super) fn reset(self) -> Self {
-        Self::new(self.true_reading, self.has_rail)
+    pub(super) fn after_reset(self) -> Self {
+        Self::new(self.true_reading, self.measures_rail)
     }
 
-    /// Advances the converter by a frame. Returns the latest value of each voltage, or the default reading until every
+    /// Advances the ADC by a frame. Returns the latest value of each voltage, or the default reading until every
     /// voltage has been measured.
     pub(super) fn advance_frame(&mut self) -> Reading {
         match self.frame_in_round {
             1 => {
                 self.last_reading.reference = self.true_reading.reference;
-                self.is_complete |= !self.has_rail;
+                self.is_complete |= !self.measures_rail;
             }
             3 => {
                 self.last_reading.rail = self.true_reading.rail;
@@ -61,7 +61,7 @@ impl Converter {
             }
             _ => {}
         }
-        let round_frames = if self.has_rail { 4 } else { 2 };
+        let round_frames = if self.measures_rail { 4 } else { 2 };
         self.frame_in_round = (self.frame_in_round + 1) % round_frames;
         if self.is_complete {
             self.last_reading
@@ -71,17 +71,17 @@ impl Converter {
     }
 }
 
-/// Computes the converter's reading if the chip is supplied with `board_mv` and the servo rail with `rail_mv`. The
+/// Computes the reading of an ADC whose chip is supplied with `board_mv`, and whose servo rail with `rail_mv`. The
 /// rail is measured through its voltage divider.
 pub fn compute_reading(supplies: &Supplies, board_mv: u32, rail_mv: u32) -> Reading {
-    let board = u64::from(board_mv);
-    let convert = |mv: u64| ((1024 * mv + board / 2) / board.max(1)).min(1023) as u16;
-    let reference = u64::from(supplies.reference_mv);
+    let board_mv = u64::from(board_mv);
+    let convert = |mv: u64| ((1024 * mv + board_mv / 2) / board_mv.max(1)).min(1023) as u16;
+    let reference_mv = u64::from(supplies.reference_mv);
     Reading {
-        reference: convert(reference),
-        rail: match supplies.rail_reference_mv {
+        reference: convert(reference_mv),
+        rail: match u64::from(supplies.rail_reference_mv) {
             0 => 0,
-            rail_reference => convert(u64::from(rail_mv) * reference / u64::from(rail_reference)),
+            rail_reference_mv => convert(u64::from(rail_mv) * reference_mv / rail_reference_mv),
         },
     }
 }

@@ -1,5 +1,5 @@
-//! Expected values in floating point, without the core: every safety condition of a pose, which lizard-kinematics
-//! computes at the exact angles of the core's pose.
+//! Reference values: every safety condition of a pose, which lizard-kinematics computes in floating point at the exact
+//! angles of the core's pose, independently of the core.
 
 use std::fmt;
 
@@ -14,9 +14,9 @@ use lizard_kinematics::{Check, InfeasiblePose, Limits, Mechanism};
 use lizard_proof::LENGTH_BAND_STEPS;
 use lizard_robot::{CoreRobot, Robot};
 
-/// The maximum error of a margin due to the guard's arithmetic, as a sine. Rounding of lengths adds to this error.
-pub const MARGIN_BAND: f64 = 0.002;
-/// The smallest type-2 limit that robot.toml may set, a sine. Below this value, the guard must only detect that a
+/// The largest allowed error of a margin due to the guard's arithmetic, as a sine. Rounding of lengths adds to it.
+const MARGIN_TOLERANCE: f64 = 0.002;
+/// The smallest type-2 limit that robot.toml may set, as a sine. Below this value, the guard must only detect that a
 /// margin is small.
 pub const MIN_TYPE2_LIMIT: f64 = 0.1;
 
@@ -57,37 +57,43 @@ pub fn chassis_angles_deg(firmware: &CoreRobot, pose: &Pose) -> [f64; 4] {
     pose.angles(&firmware.neutral_angles()).map(to_degrees)
 }
 
-/// The values of all safety conditions of a pose, computed in floating point.
+/// The values of all safety conditions of a pose, computed in floating point, and the guard's tolerances.
 #[derive(Clone, Copy, Debug)]
-pub struct ExactConditions {
+pub struct Reference {
     /// The margins as sines, in the order of [`MARGINS`]. The type-2 margins have the sign of K2, which is negative for
     /// crossed crank tips.
     pub margins: [f64; 10],
     /// The sliders' strokes, which are their lengths minus their nominal lengths, mm.
     pub strokes_mm: [f64; 2],
-    /// K2 of head and tail, mm.
+    /// K2 of head and tail: the signed distance between the crank tips along the base, mm.
     pub k2_mm: [f64; 2],
     /// True for each condition that is violated according to lizard-kinematics. Crossed crank tips count as a violated
     /// type-2 margin.
-    pub are_violated: [bool; 12],
+    pub violated: [bool; 12],
     limits: Limits,
-    /// The band of each condition, which is the guard's maximum allowed error: first the bands of the ten margins, then
-    /// in mm the bands of the left stroke, the right stroke, K2 of the head and K2 of the tail.
-    pub bands: [f64; 14],
+    pub tolerances: Tolerances,
 }
 
-/// The verdict on a pose, which is undetermined within the band of a limit.
+/// The guard's largest allowed error in each value of [`Reference`].
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerances {
+    pub margins: [f64; 10],
+    strokes_mm: [f64; 2],
+    k2_mm: [f64; 2],
+}
+
+/// The verdict on a pose, which is undetermined if a value is within its tolerance of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Within every limit by more than the limit's band.
+    /// Every value is within its limits by more than the tolerance.
     Safe,
-    /// Beyond a limit by more than the limit's band.
+    /// A value is beyond a limit by more than the tolerance, or a loop does not close.
     Unsafe,
     /// Too close to a limit to decide.
     Undetermined,
 }
 
-impl ExactConditions {
+impl Reference {
     /// Computes all conditions for servo angles in the chassis frame, deg.
     ///
     /// # Errors
@@ -103,53 +109,52 @@ impl ExactConditions {
             *type2 = type2.copysign(k2);
         }
         let firmware = robot.firmware();
-        let side_band = |side| LENGTH_BAND_STEPS / steps_per_mm(firmware.slider(side).scale);
-        let end_band =
-            |end| LENGTH_BAND_STEPS / steps_per_mm(firmware.five_bar(end).bars().scale());
+        let length_tolerance_mm = |scale| LENGTH_BAND_STEPS / steps_per_mm(scale);
+        let k2_tolerances_mm =
+            End::ALL.map(|end| length_tolerance_mm(firmware.link_lengths(end).scale()));
         let [
             [head_type2, a1_type1, a2_type1],
             [tail_type2, a4_type1, a3_type1],
         ] = [(End::Head, &solution.head), (End::Tail, &solution.tail)].map(|(end, five_bar)| {
-            five_bar_bands(
+            five_bar_tolerances(
                 robot,
                 end,
                 five_bar.gap.length(),
                 five_bar.type2.abs(),
-                end_band(end),
+                k2_tolerances_mm[end as usize],
             )
         });
-        let leg_band = MARGIN_BAND;
-        let mut are_violated = [false; 12];
+        let mut violated = [false; 12];
         for violation in robot.limits().violations(&solution) {
-            are_violated[condition_index(violation.check)] = true;
+            violated[condition_index(violation.check)] = true;
         }
         Ok(Self {
-            are_violated,
+            violated,
             margins,
             strokes_mm: [solution.left.s, solution.right.s],
             k2_mm: k2_values,
             limits: *robot.limits(),
-            bands: [
-                head_type2,
-                tail_type2,
-                a1_type1,
-                a2_type1,
-                a3_type1,
-                a4_type1,
-                leg_band,
-                leg_band,
-                leg_band,
-                leg_band,
-                side_band(Side::Left),
-                side_band(Side::Right),
-                end_band(End::Head),
-                end_band(End::Tail),
-            ],
+            tolerances: Tolerances {
+                margins: [
+                    head_type2,
+                    tail_type2,
+                    a1_type1,
+                    a2_type1,
+                    a3_type1,
+                    a4_type1,
+                    MARGIN_TOLERANCE,
+                    MARGIN_TOLERANCE,
+                    MARGIN_TOLERANCE,
+                    MARGIN_TOLERANCE,
+                ],
+                strokes_mm: Side::ALL.map(|side| length_tolerance_mm(firmware.slider(side).scale)),
+                k2_mm: k2_tolerances_mm,
+            },
         })
     }
 
-    /// Returns the distances of the margins and then of the strokes from their limits, in bands. Positive distances are
-    /// safe. As in the guard, crossed crank tips violate the type-2 limit.
+    /// Returns how far each margin, then each stroke, is from its limit, in units of its tolerance. Positive distances
+    /// are safe. As in the guard, crossed crank tips violate the type-2 limit.
     pub fn distances_from_limits(&self) -> [f64; 12] {
         let Limits {
             type2,
@@ -158,16 +163,18 @@ impl ExactConditions {
             stroke_min,
             stroke_max,
         } = self.limits;
+        let tolerances = &self.tolerances;
         std::array::from_fn(|index| match index {
             0..2 => {
-                let margin = (self.margins[index].abs() - type2) / self.bands[index];
-                margin.min(self.k2_mm[index] / self.bands[12 + index])
+                let margin = (self.margins[index].abs() - type2) / tolerances.margins[index];
+                margin.min(self.k2_mm[index] / tolerances.k2_mm[index])
             }
-            2..6 => (self.margins[index] - type1) / self.bands[index],
-            6..10 => (self.margins[index] - leg) / self.bands[index],
+            2..6 => (self.margins[index] - type1) / tolerances.margins[index],
+            6..10 => (self.margins[index] - leg) / tolerances.margins[index],
             _ => {
                 let stroke = self.strokes_mm[index - 10];
-                (stroke - stroke_min).min(stroke_max - stroke) / self.bands[index]
+                let distance = (stroke - stroke_min).min(stroke_max - stroke);
+                distance / tolerances.strokes_mm[index - 10]
             }
         })
     }
@@ -175,7 +182,7 @@ impl ExactConditions {
     /// True if K2 of a five-bar is so close to 0 that rounding may change its sign in the guard. The index is 0 for the
     /// head and 1 for the tail.
     pub fn is_at_crossing(&self, index: usize) -> bool {
-        self.k2_mm[index].abs() <= self.bands[12 + index]
+        self.k2_mm[index].abs() <= self.tolerances.k2_mm[index]
     }
 }
 
@@ -195,10 +202,10 @@ fn condition_index(check: Check) -> usize {
     indices.next().expect("every condition is of a known kind")
 }
 
-/// Returns the bands of a five-bar's margins: type-2, left type-1 and right type-1. Each band is the sum of the error
+/// Returns the tolerances of a five-bar's margins: type-2, left type-1 and right type-1. Each is the sum of the error
 /// of the guard's arithmetic and the effect of an error of `step_mm` in the distance `tip_distance_mm` between the
 /// crank tips. Near a singularity, where `type2` is small, a length error turns the couplers by a large angle.
-fn five_bar_bands(
+fn five_bar_tolerances(
     robot: &Robot,
     end: End,
     tip_distance_mm: f64,
@@ -217,16 +224,16 @@ fn five_bar_bands(
         1.0 / left_coupler,
         1.0 / right_coupler,
     ]
-    .map(|turn_per_mm| MARGIN_BAND + step_mm * turn_per_mm / type2)
+    .map(|turn_per_mm| MARGIN_TOLERANCE + step_mm * turn_per_mm / type2)
 }
 
 impl Verdict {
     /// Computes the verdict for servo angles in the chassis frame, deg.
     pub fn compute(robot: &Robot, angles: [f64; 4]) -> Self {
-        let Ok(conditions) = ExactConditions::compute(robot, angles) else {
+        let Ok(reference) = Reference::compute(robot, angles) else {
             return Self::Unsafe;
         };
-        let min_distance = conditions
+        let min_distance = reference
             .distances_from_limits()
             .into_iter()
             .fold(f64::INFINITY, f64::min);
@@ -249,17 +256,17 @@ pub fn find_unclosed_five_bar(error: &InfeasiblePose) -> Option<usize> {
     }
 }
 
-/// The maximum and root mean square of many errors.
+/// The largest absolute value and the root mean square of many errors.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ErrorStatistics {
-    pub max: f64,
+    pub max_abs: f64,
     sum_of_squares: f64,
     count: f64,
 }
 
 impl ErrorStatistics {
     pub fn add(&mut self, error: f64) {
-        self.max = self.max.max(error.abs());
+        self.max_abs = self.max_abs.max(error.abs());
         self.sum_of_squares += error * error;
         self.count += 1.0;
     }
@@ -268,11 +275,11 @@ impl ErrorStatistics {
 impl fmt::Display for ErrorStatistics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let rms = (self.sum_of_squares / self.count.max(1.0)).sqrt();
-        write!(f, "max {:.5} rms {rms:.5}", self.max)
+        write!(f, "max {:.5} rms {rms:.5}", self.max_abs)
     }
 }
 
-/// Returns a random pose in the servos' entire travel.
+/// Returns a random pose anywhere in the servos' travel.
 pub fn random_pose(rng: &mut Rng, calibration: &[Calibration; 4]) -> Pose {
     Pose(calibration.map(|servo| Sweep(rng.i16(servo.travel_min.0..=servo.travel_max.0))))
 }

@@ -14,7 +14,7 @@ export async function applyGait(session: Session, gait: EditedGait): Promise<Ref
  * Puts the gait into the session's robot, restarts the simulated board and starts the gait. Refuses a real board, which
  * has only the gaits that were written to it.
  */
-export async function tryGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
+export async function driveGait(session: Session, gait: EditedGait): Promise<Refusal | null> {
   const refusal = await restartWithGait(session, gait);
   if (!refusal) await session.drive(gait.name.replaceAll('-', ' '));
   return refusal;

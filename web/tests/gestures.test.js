@@ -1,5 +1,5 @@
-// Drawing a gesture: the point of the head or the tail follows the line; a line out of reach is refused with a valid
-// size.
+// Drawing a gesture: the point of the head or the tail follows the line; a line out of reach is refused, and a valid
+// size is offered.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 
@@ -7,15 +7,15 @@ import { advance, browserErrors, measureOverflow, openStanding, unfold, useBrows
 
 useBrowser();
 
-const readPanelText = (page, id) => page.locator(`#path-${id}`).innerText();
-const waitForValue = (page, id) => page.waitForFunction((id) => document.querySelector(`#path-${id}`).textContent !== '–', id);
-/** Waits until the table has the circle of 6 mm radius that `draw` has drawn. */
-const waitForCircle = (page) => page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#path-table').textContent));
-const waitForOtherTable = (page, table) => page.waitForFunction((table) => document.querySelector('#path-table').textContent !== table, table);
+const readPanelText = (page, id) => page.locator(`#gesture-${id}`).innerText();
+const waitForValue = (page, id) => page.waitForFunction((id) => document.querySelector(`#gesture-${id}`).textContent !== '–', id);
+/** Waits until the table has the circle of 6 mm radius that `drawCircle` has drawn. */
+const waitForCircle = (page) => page.waitForFunction(() => /k = 1, amplitude = [56]\./.test(document.querySelector('#gesture-table').textContent));
+const waitForTableChange = (page, table) => page.waitForFunction((table) => document.querySelector('#gesture-table').textContent !== table, table);
 
 async function openPanel(options) {
   const page = await openStanding(options);
-  await unfold(page, '#path-editor');
+  await unfold(page, '#gesture-editor');
   await waitForValue(page, 'margin');
   return page;
 }
@@ -23,13 +23,13 @@ async function openPanel(options) {
 /** Returns the screen position of a point in the head's own frame, mm. */
 const computeScreenPoint = (page, [x, y]) =>
   page.evaluate(([x, y]) => {
-    const point = new DOMPoint(x, -y).matrixTransform(document.querySelector('#path-plane').getScreenCTM());
+    const point = new DOMPoint(x, -y).matrixTransform(document.querySelector('#gesture-plane').getScreenCTM());
     return [point.x, point.y];
   }, [x, y]);
 
 /** Draws a circle around the head's neutral point with the mouse. */
-async function draw(page, radiusMm, cornerCount = 40) {
-  await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
+async function drawCircle(page, radiusMm, cornerCount = 40) {
+  await page.locator('#gesture-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
   const [x, y] = await page.evaluate(() => window.lizard.robot.workspace(0).neutral);
   for (let n = 0; n <= cornerCount; n++) {
     const angle = (2 * Math.PI * n) / cornerCount;
@@ -45,12 +45,12 @@ const readHeadPoint = (page) => page.evaluate(() => window.lizard.last.scene.poi
 
 test('a drawn circle is added to robot.toml as the path of the head', async () => {
   const page = await openPanel();
-  await draw(page, 6);
+  await drawCircle(page, 6);
   await waitForCircle(page);
-  assert.equal(await page.locator('#path-shape').inputValue(), 'own');
+  assert.equal(await page.locator('#gesture-shape').inputValue(), 'own');
   assert.match(await readPanelText(page, 'table'), /^\[gait\.gesture\]\nperiod = 4\.0\n\[gait\.gesture\.head\]\ncentre = /);
   const neutral = await readHeadPoint(page);
-  await page.locator('#path-try').click();
+  await page.locator('#gesture-try').click();
   await page.waitForFunction(() => window.lizard.toml.includes('[gait.gesture.head]'));
   await advance(page, 3000);
   await page.waitForFunction(() => window.lizard.gait === 'gesture');
@@ -67,47 +67,47 @@ test('a drawn circle is added to robot.toml as the path of the head', async () =
 
 test('a line that is too large is refused, and a button offers the largest valid size', async () => {
   const page = await openPanel();
-  await draw(page, 45);
-  const button = page.locator('#path-alternatives button', { hasText: 'a size of' });
+  await drawCircle(page, 45);
+  const button = page.locator('#gesture-alternatives button', { hasText: 'a size of' });
   await button.waitFor();
   assert.notEqual(await readPanelText(page, 'refusal'), '');
-  for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#path-${id}`).isDisabled(), id);
+  for (const id of ['try', 'write', 'copy']) assert.ok(await page.locator(`#gesture-${id}`).isDisabled(), id);
   const size = Number(/a size of (\d+) %/.exec(await button.innerText())[1]);
   await button.click();
   await waitForValue(page, 'margin');
-  await page.waitForFunction(() => document.querySelector('#path-refused').hidden);
-  assert.equal(Number(await page.locator('#path-size').inputValue()), size);
-  await page.locator('#path-size').fill(String(size + 1));
+  await page.waitForFunction(() => document.querySelector('#gesture-refused').hidden);
+  assert.equal(Number(await page.locator('#gesture-size').inputValue()), size);
+  await page.locator('#gesture-size').fill(String(size + 1));
   await button.waitFor();
 });
 
-test('the keyboard can choose every shape, also for the tail', async () => {
+test('every predefined shape can be chosen, also for the tail', async () => {
   const page = await openPanel();
   const previousTable = await readPanelText(page, 'table');
-  await page.locator('#path-end').selectOption('tail');
-  await waitForOtherTable(page, previousTable);
+  await page.locator('#gesture-end').selectOption('tail');
+  await waitForTableChange(page, previousTable);
   assert.match(await readPanelText(page, 'table'), /\[gait\.gesture\.tail\]/);
   for (const shape of ['circle', 'side', 'nod', 'eight']) {
     const table = await readPanelText(page, 'table');
-    await page.locator('#path-shape').selectOption(shape);
-    await waitForOtherTable(page, table);
-    assert.ok(await page.locator('#path-refused').isHidden(), `${shape}: ${await readPanelText(page, 'refusal')}`);
+    await page.locator('#gesture-shape').selectOption(shape);
+    await waitForTableChange(page, table);
+    assert.ok(await page.locator('#gesture-refused').isHidden(), `${shape}: ${await readPanelText(page, 'refusal')}`);
   }
 });
 
-test('a tap is refused with the message that it is not a line', async () => {
+test('a tap does not count as a line, and the message says so', async () => {
   const page = await openPanel();
   const previousTable = await readPanelText(page, 'table');
-  await page.locator('#path-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
-  await page.locator('#path-plane').click();
+  await page.locator('#gesture-plane').evaluate((plane) => plane.scrollIntoView({ block: 'center' }));
+  await page.locator('#gesture-plane').click();
   assert.equal(await readPanelText(page, 'message'), 'A tap is not a line: press, hold and draw.');
   assert.equal(await readPanelText(page, 'table'), previousTable);
 });
 
 test('a finger draws on a phone, and the page does not scroll meanwhile', async () => {
   const page = await openPanel({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-  assert.equal(await page.locator('#path-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
-  await draw(page, 6);
+  assert.equal(await page.locator('#gesture-plane').evaluate((plane) => getComputedStyle(plane).touchAction), 'none');
+  await drawCircle(page, 6);
   await waitForCircle(page);
   assert.equal(await measureOverflow(page), 0);
 });

@@ -1,4 +1,4 @@
-// The map of singularities of the head's or the tail's five-bar over the angles of its left and right servo, with the
+// The map of singularities of the head's or the tail's five-bar over the angles of its left and right servos, with the
 // robot's current pose.
 import type { Scene, SingularityMap } from '../robot';
 import type { Session } from '../session';
@@ -9,8 +9,8 @@ import { onPaletteChange, getPalette } from './palette';
 /** Number of poses in the trail. */
 const TRAIL_LENGTH = 100;
 
-/** The map's view for one end, head or tail. */
-export class MapView {
+/** The view of the singularity map of one end, head or tail. */
+export class SingularityMapView {
   private readonly canvas: HTMLCanvasElement;
   private map: SingularityMap | null = null;
   private trail: [number, number][] = [];
@@ -76,11 +76,11 @@ export class MapView {
     context.fillRect(0, 0, size, size);
     const cellSize = size / (map.size - 1);
     map.margins.forEach((margin, index) => {
-      const [left, right] = [Math.floor(index / map.size), index % map.size];
+      const [column, row] = [Math.floor(index / map.size), index % map.size];
       if (margin === null || margin <= 0) return;
       context.fillStyle = map.safe[index] ? colours.safe : colours.near;
       context.globalAlpha = map.safe[index] ? 0.45 + Math.min(0.55, margin / 160) : 0.7;
-      context.fillRect((left - 0.5) * cellSize, size - (right + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
+      context.fillRect((column - 0.5) * cellSize, size - (row + 0.5) * cellSize, cellSize + 0.6, cellSize + 0.6);
     });
     context.globalAlpha = 1;
     const scale = size / (map.max_angle - map.min_angle);

@@ -11,7 +11,7 @@ use crate::shared::suggestion::format_suggestion;
 /// The text of the source tree's robot.toml, the default if no robot.toml is found.
 pub(crate) const DEFAULT_ROBOT_TOML: &str = include_str!("../../../../robot.toml");
 
-/// The robots of robots/ with their names.
+/// The robots in robots/, with their names.
 const BUILT_IN_ROBOTS: [(&str, &str); 5] = [
     ("grain", include_str!("../../../../robots/grain.toml")),
     ("large", include_str!("../../../../robots/large.toml")),
@@ -28,7 +28,7 @@ pub(crate) fn built_in_names() -> [&'static str; BUILT_IN_ROBOTS.len()] {
     BUILT_IN_ROBOTS.map(|(name, _)| name)
 }
 
-/// Returns a robot of robots/, for tests.
+/// Returns a robot in robots/, for tests.
 #[cfg(test)]
 pub fn built_in_robot(name: &str) -> Robot {
     let entry = BUILT_IN_ROBOTS
@@ -39,7 +39,7 @@ pub fn built_in_robot(name: &str) -> Robot {
 
 /// The option `--robot`.
 #[derive(clap::Args, Debug, Default)]
-pub struct RobotFile {
+pub struct RobotArgs {
     /// A robot file, or the name of a built-in robot: grain, large, own-gaits, paper, unequal
     /// [default: robot.toml in this folder or the nearest folder above it, else the built-in
     /// robot.toml]
@@ -50,9 +50,9 @@ pub struct RobotFile {
     text: Option<String>,
 }
 
-impl RobotFile {
-    /// Creates a robot file from its text.
-    pub(crate) fn with_text(text: String) -> Self {
+impl RobotArgs {
+    /// Selects the robot with this text.
+    pub(crate) fn from_text(text: String) -> Self {
         Self {
             path: None,
             text: Some(text),
@@ -62,7 +62,7 @@ impl RobotFile {
     /// Returns the text of the robot file.
     ///
     /// # Errors
-    /// Fails if the file is missing or is not valid UTF-8, or if the current folder was removed.
+    /// Fails if the file is missing or is not valid UTF-8, or if the current folder cannot be determined.
     pub(crate) fn text(&self) -> Result<String, Failure> {
         if let Some(text) = &self.text {
             return Ok(text.clone());
@@ -74,7 +74,7 @@ impl RobotFile {
         files::read_text(&path)
     }
 
-    /// Creates a robot file from its path. With `None`, [`RobotFile::load`] searches for robot.toml.
+    /// Selects the robot in the file at this path. With `None`, [`RobotArgs::load`] searches for robot.toml.
     pub fn from_path(path: Option<PathBuf>) -> Self {
         Self { path, text: None }
     }
@@ -93,10 +93,10 @@ impl RobotFile {
         })
     }
 
-    /// Returns the name of the robot's source, for messages.
+    /// Returns the name of the robot's source, for messages; ignores a text from `from_text`.
     ///
     /// # Errors
-    /// Fails if the current folder was removed.
+    /// Fails if the current folder cannot be determined.
     pub fn name(&self) -> Result<String, Failure> {
         Ok(match (self.find_source()?, &self.path) {
             (RobotSource::File(path), _) => path.display().to_string(),
@@ -166,10 +166,10 @@ pub(crate) fn unknown_gait_failure<'a>(
 /// Returns the current folder.
 ///
 /// # Errors
-/// Fails if the folder was removed, or may not be read.
+/// Fails if the folder does not exist or is not accessible.
 pub(crate) fn current_folder() -> Result<PathBuf, Failure> {
     std::env::current_dir().map_err(|error| {
-        Failure::Impossible(format!("cannot determine the current folder: {error}"))
+        Failure::Operation(format!("cannot determine the current folder: {error}"))
     })
 }
 
@@ -188,7 +188,7 @@ mod tests {
         names.sort();
         assert_eq!(names, BUILT_IN_ROBOTS.map(|(name, _)| name));
         for (name, text) in BUILT_IN_ROBOTS {
-            let file = RobotFile::from_path(Some(name.into()));
+            let file = RobotArgs::from_path(Some(name.into()));
             assert!(file.load().is_ok(), "{name}");
             assert_eq!(file.text().expect("a built-in robot has a text"), text);
             assert_eq!(
@@ -196,7 +196,7 @@ mod tests {
                 format!("the robot {name}")
             );
         }
-        let result = RobotFile::from_path(Some("papre".into())).load();
+        let result = RobotArgs::from_path(Some("papre".into())).load();
         assert!(result.is_err_and(|error| error.to_string().contains("papre")));
     }
 }

@@ -1,9 +1,9 @@
 //! EEPROM operations, one byte at a time between the frames.
 //!
 //! Writing a byte takes 3.4 ms, so an order only starts an operation. The main loop advances the operation by a byte
-//! whenever it has nothing more urgent to do, and takes no input until the operation is complete. With a weak supply a
-//! wrong byte may be written. Therefore nothing is written below a certain voltage, or before the supply has been
-//! measured.
+//! whenever it has nothing more urgent to do, and takes no input until the operation is complete. At a low supply
+//! voltage, a byte may be written incorrectly, so nothing is written below a certain voltage, or before the supply has
+//! been measured.
 
 use super::Controller;
 use crate::control::refusal::Refusal;
@@ -13,12 +13,14 @@ use crate::memory::copies::{self, SavedState};
 use crate::memory::record::{Memory, Progress, RecordWrite};
 use crate::memory::settings::Settings;
 
-/// Frames within which the supplies are measured, the longest time that an order waits for the measurement.
+use EepromOperation::{ChooseCopy, Load, WriteCopy};
+
+/// Frames after the program's start within which the supplies are measured. No order waits longer for the measurement.
 const MEASURING_FRAMES: u32 = 25;
 
 /// An EEPROM operation that an order has started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Job {
+pub enum EepromOperation {
     /// Load the saved settings.
     Load,
     /// Choose the copy to be overwritten, the first step of saving.
@@ -28,13 +30,14 @@ pub enum Job {
 }
 
 impl Controller {
-    /// True while an EEPROM operation is in progress, and no order may be given. The write of a rest pose that waits
-    /// for a better supply does not count, because no order depends on it.
+    /// True while an EEPROM operation is in progress; meanwhile no order may be given. The write of a rest pose that
+    /// waits for a better supply does not count, because no order depends on it.
     pub fn is_memory_in_use(&self) -> bool {
-        self.job.is_some() || self.rest_pose_write.is_some() && self.safety.allows_writing_now()
+        self.eeprom_operation.is_some()
+            || self.rest_pose_write.is_some() && self.safety.allows_writing_now()
     }
 
-    /// True while an order waits for the measurement of the supply, or for the end of a dip: either the supply recovers
+    /// True while an order waits for the measurement of the supply, or for the end of a dip, when the supply recovers
     /// or its level falls. Meanwhile there is nothing to do before the next frame.
     pub fn is_waiting_for_supply(&self) -> bool {
         let supply = self.safety.supply();
@@ -42,13 +45,13 @@ impl Controller {
             None => self.motion.frame_count() < MEASURING_FRAMES,
             Some(level) => level == Level::Good && !supply.is_steady(),
         };
-        self.job.is_some() && is_supply_undetermined
+        self.eeprom_operation.is_some() && is_supply_undetermined
     }
 
     /// Advances the EEPROM operation by at most one byte. Returns the outcome of the order once the order is complete,
     /// otherwise `None`.
     #[inline(never)]
-    pub fn advance_memory<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
+    pub fn advance_operation<M: Memory>(&mut self, memory: &mut M) -> Option<Result<(), Refusal>> {
         if !memory.is_ready() || self.is_waiting_for_supply() {
             return None;
         }
@@ -63,9 +66,9 @@ impl Controller {
             self.rest_pose_write = None;
             return None;
         }
-        let outcome = match &mut self.job {
+        let outcome = match &mut self.eeprom_operation {
             None => return None,
-            Some(Job::Load) => {
+            Some(Load) => {
                 let mut saved_settings = Settings::NONE;
                 match copies::read_latest(self.motion.robot(), memory, &mut saved_settings) {
                     SavedState::Latest | SavedState::OneCopy => {
@@ -77,15 +80,15 @@ impl Controller {
                     _ => Err(Refusal::NothingSaved),
                 }
             }
-            Some(Job::ChooseCopy | Job::WriteCopy(_)) if !may_write => Err(Refusal::SupplyTooLow),
-            Some(Job::ChooseCopy) => match copies::start_save(&mut self.settings, memory) {
+            Some(ChooseCopy | WriteCopy(_)) if !may_write => Err(Refusal::SupplyTooLow),
+            Some(ChooseCopy) => match copies::start_save(&mut self.settings, memory) {
                 None => Ok(()),
                 Some(record_write) => {
-                    self.job = Some(Job::WriteCopy(record_write));
+                    self.eeprom_operation = Some(WriteCopy(record_write));
                     return None;
                 }
             },
-            Some(Job::WriteCopy(record_write)) => {
+            Some(WriteCopy(record_write)) => {
                 match record_write.advance(self.settings.bytes(), memory) {
                     Progress::InProgress => return None,
                     Progress::Done => Ok(()),
@@ -93,7 +96,7 @@ impl Controller {
                 }
             }
         };
-        self.job = None;
+        self.eeprom_operation = None;
         Some(outcome)
     }
 }
