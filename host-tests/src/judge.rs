@@ -29,7 +29,7 @@ pub const AVR8JS_LAG_CYCLES: i64 = 1;
 /// A pulse at a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PinPulse {
-    /// The pin.
+    /// The pin that has the pulse.
     pub pin: Pin,
     /// The cycle of the rising edge.
     pub rise_cycle: u64,

@@ -17,7 +17,7 @@ const RANDOM_ROBOT_COUNT: u64 = 8;
 pub struct NamedRobot {
     /// The name in messages: the robot's file, or the number of a random robot.
     pub name: String,
-    /// The robot.
+    /// The robot under test.
     pub robot: Robot,
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct MotorStep {
     half_dead_band: f64,
     /// Error beyond the dead band at which the motor applies its full torque, rad.
     full_torque_error: f64,
-    /// Stall torque.
+    /// Torque of the stalled motor.
     stall_torque: f64,
     /// Torque of the rotor's inertia and of the damping per radian of lag, for this step's duration.
     inertial_stiffness: f64,

@@ -24,7 +24,7 @@ pub struct Identification {
 /// The result for one key.
 #[derive(Clone, Debug)]
 pub struct KeyResult {
-    /// The key.
+    /// The key of robot.toml.
     pub key: &'static Key,
     /// Value in the file.
     pub file_value: f64,

@@ -15,9 +15,9 @@ use crate::vector::Vector;
 /// The rates and accelerations of the four servos, in servo order A1, A2, A3, A4, chassis frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ServoMotion {
-    /// Rates, deg/s.
+    /// Rates of the servos, deg/s.
     pub rates: [f64; 4],
-    /// Accelerations, deg/s^2.
+    /// Accelerations of the servos, deg/s^2.
     pub accelerations: [f64; 4],
 }
 

@@ -9,9 +9,9 @@ use crate::vector::Vector;
 /// A circle in the five-bar's own frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
-    /// Centre, mm.
+    /// Centre of the circle, mm.
     pub centre: Vector,
-    /// Radius, mm.
+    /// Radius of the circle, mm.
     pub radius: f64,
 }
 

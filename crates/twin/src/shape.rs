@@ -7,7 +7,7 @@ use lizard_robot::{LegPoints, Robot};
 /// The positions of a robot's joints, mm, in the chassis frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// Servo shafts.
+    /// Shafts of the servos.
     pub shafts: [Vector; 4],
     /// Crank tips of the head and tail five-bars.
     pub crank_tips: [Vector; 4],

@@ -35,7 +35,7 @@ pub enum Program {
     Blank,
     /// The idle loop of an unfinished upload, which does nothing.
     Incomplete,
-    /// Lizard firmware.
+    /// Lizard firmware of any version.
     Lizard {
         /// The version mark in the code.
         mark: Mark,

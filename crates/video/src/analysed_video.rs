@@ -41,7 +41,7 @@ pub struct CameraEstimate {
 pub struct AnalysedVideo {
     /// The robot's path.
     pub path: Vec<PathPoint>,
-    /// The camera.
+    /// The camera that took the video.
     pub camera: CameraEstimate,
     pub(crate) scene: Scene,
     /// The tags of each frame of the path.

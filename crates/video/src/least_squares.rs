@@ -10,7 +10,7 @@ const MIN_RELATIVE_REDUCTION: f64 = 1e-10;
 /// The parameters that minimise the sum of squares.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
-    /// The parameters.
+    /// The parameters with the best fit.
     pub parameters: Vec<f64>,
     /// The covariance of the parameters for residuals with a variance of one.
     pub covariance: DMatrix<f64>,

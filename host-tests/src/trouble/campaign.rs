@@ -18,9 +18,9 @@ use super::scenario_run::run_scenario;
 /// A scenario in which the firmware violated at least one rule.
 #[derive(Debug, Clone)]
 pub struct Failure {
-    /// The scenario.
+    /// The scenario that was run.
     pub scenario: Scenario,
-    /// The violations.
+    /// The violations of rules, at least one.
     pub violations: Vec<Violation>,
 }
 

@@ -33,7 +33,7 @@ impl Span {
 pub struct Exchange {
     /// The cycle at which the line was sent.
     pub sent_cycle: u64,
-    /// The line.
+    /// The line that was sent.
     pub line: String,
     /// The effect on the servos if the board carries out the line.
     pub effect: Effect,
@@ -65,7 +65,7 @@ impl Exchange {
 pub struct ReceivedLine {
     /// The cycle at which the line end arrived.
     pub cycle: u64,
-    /// The line.
+    /// The text that arrived.
     pub text: String,
     /// The effect on the servos if the board carries out the line.
     pub effect: Effect,

@@ -61,13 +61,13 @@ pub enum Event<'a> {
     },
     /// The answer to a line.
     Answer {
-        /// The line.
+        /// The line that was sent.
         line: &'a str,
         /// The line's effect on the servos.
         effect: Effect,
         /// The time at which the line was sent.
         sent_at: Time,
-        /// The answer.
+        /// The line that the robot answered.
         answer: &'a str,
     },
     /// The line that was sent at this time got no answer.

@@ -9,7 +9,7 @@ macro_rules! rules {
         pub enum Rule { $(#[doc = $sentence] $name),* }
 
         impl Rule {
-            /// All rules.
+            /// All rules, in the order of this list.
             pub const ALL: &[Self] = &[$(Self::$name),*];
 
             /// The rule as a sentence.
@@ -67,7 +67,7 @@ rules! {
 /// A violation of a rule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Violation {
-    /// The rule.
+    /// The violated rule.
     pub rule: Rule,
     /// A description of the observation that violates the rule.
     pub observation: String,

@@ -76,7 +76,7 @@ pub struct PartEntry {
 /// A step of the guide.
 #[derive(Clone, Debug, PartialEq, Serialize, Tsify)]
 pub struct StepEntry {
-    /// The headline.
+    /// The headline of the step.
     pub title: &'static str,
     /// The instructions, as Markdown.
     pub instructions: String,

@@ -77,7 +77,7 @@ pub struct Scene {
     /// The legs in servo order.
     #[tsify(type = "Four<LegScene>")]
     pub legs: Vec<LegScene>,
-    /// All margins.
+    /// All margins of the pose.
     pub margins: Vec<Margin>,
     /// The message about the limit that this pose violates; `None` if the pose is allowed.
     pub refusal: Option<String>,

@@ -22,7 +22,7 @@ pub enum Cause {
 }
 
 impl Cause {
-    /// All causes.
+    /// All causes of a reset.
     pub const ALL: [Self; 4] = [Self::Power, Self::External, Self::BrownOut, Self::Watchdog];
 }
 

@@ -36,7 +36,7 @@ const DEADMAN_OFFSET: usize = 40;
 pub enum Boot {
     /// A gait, which may be `stand`.
     Gait(GaitId),
-    /// No pulses.
+    /// No pulses, as after `rest`.
     Rest,
 }
 

@@ -53,7 +53,7 @@ struct MeasureOutput {
 #[derive(Deserialize)]
 struct MeasuredGait {
     gait: String,
-    /// Pace, percent.
+    /// Pace of the gait, percent of its full pace.
     #[serde(rename = "speed")]
     pace_percent: f64,
     /// Cycle time in the robot.toml of the measurement, s; `None` if that file does not have the gait.

@@ -35,7 +35,7 @@ pub enum BoardError {
     /// A command was not answered in time.
     #[error("no answer to {line:?} within {ANSWER_TIMEOUT_MS} ms, received {notes:?}")]
     NoAnswer {
-        /// The command.
+        /// The command that was sent.
         line: String,
         /// The `#` lines received instead.
         notes: Vec<String>,

@@ -22,7 +22,7 @@ use solid::Solid;
 pub struct OutputFile {
     /// Path within the output folder, such as `stl/link-A1-A3.stl`.
     pub path: String,
-    /// Content.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
 }
 

@@ -13,7 +13,7 @@ const INSTRUCTIONS: &str = include_str!("steps.md");
 
 /// A step of the guide.
 pub struct Step {
-    /// Headline.
+    /// Headline of the step.
     pub title: &'static str,
     /// Instructions as Markdown, with each paragraph in one line.
     pub instructions: String,

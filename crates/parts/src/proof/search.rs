@@ -50,9 +50,9 @@ pub struct SearchResult {
 /// A pose, and the distance between the nearest two shapes at this pose.
 #[derive(Clone, Debug)]
 pub struct NearestPose {
-    /// Accepted pose.
+    /// Pose that the guard accepts.
     pub pose: Solution,
-    /// Distance, mm.
+    /// Distance between the two shapes, mm.
     pub mm: f64,
 }
 

@@ -9,7 +9,7 @@ use lizard_kinematics::Vector;
 pub struct Harmonic {
     /// Order of the harmonic: the number of its periods in a cycle, a whole number so that the path closes.
     pub order: f64,
-    /// Amplitude, mm.
+    /// Amplitude of the harmonic, mm.
     pub amplitude: f64,
     /// Phase shift, in periods of this harmonic.
     pub phase_shift: f64,

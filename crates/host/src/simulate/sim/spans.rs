@@ -7,7 +7,7 @@ use super::script::Script;
 /// The time span of a command's effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Span {
-    /// The command.
+    /// The command that begins the span.
     pub command: String,
     /// Time when the command was sent, s since power-on.
     pub start_s: f64,

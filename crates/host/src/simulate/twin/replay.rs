@@ -11,7 +11,7 @@ use crate::simulate::sim::spans::Span;
 
 /// A run replayed on the simulated robot.
 pub struct Replay {
-    /// The robot.
+    /// The robot that the pulses move.
     pub robot: Robot,
     /// Seconds from power-on to the first frame.
     pub start_s: f64,
